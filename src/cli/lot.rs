@@ -112,7 +112,7 @@ fn show(archive: &Archive, lot: &str, as_json: bool) -> anyhow::Result<()> {
         ..Filter::default()
     };
     let (runs, counts) = (archive.lots(&filter)?, archive.lot_yield(lot)?);
-    let checks = archive.golden_checks(&filter)?;
+    let checks = archive.reference_checks(&filter)?;
     let mut out = std::io::stdout().lock();
     if as_json {
         let it = json!({"lot": lot, "standing": standing, "yield": counts, "runs": runs, "golden_checks": checks});

@@ -37,7 +37,7 @@ pub enum NotAdmitted {
         "{}: [golden_check]: found a check and no golden part of {nominal_v} V, expected one in {golden}",
         file.display()
     )]
-    NoGoldenPart {
+    NoReferencePart {
         /// Where the check is asked for.
         file: PathBuf,
         /// Nominal coil voltage of the recipe.
@@ -96,7 +96,7 @@ impl NotAdmitted {
                 .with("lot", lot)
                 .with("recipe", &standing.recipe),
             Self::NothingToRetest { lot } => of("nothing_to_retest").with("lot", lot),
-            Self::Recipe(_) | Self::NoGoldenPart { .. } | Self::History(_) => {
+            Self::Recipe(_) | Self::NoReferencePart { .. } | Self::History(_) => {
                 of("lot_not_begun").with("detail", self)
             }
         }
@@ -139,7 +139,7 @@ fn pass_gates(
         && plant.lot.golden_check.any()
         && plant.golden.of_nominal(nominal_v).next().is_none()
     {
-        return Err(NotAdmitted::NoGoldenPart {
+        return Err(NotAdmitted::NoReferencePart {
             file: plant.dir.join("lot.toml"),
             nominal_v,
             golden: plant.calibration.golden.clone(),

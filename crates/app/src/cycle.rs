@@ -12,11 +12,11 @@ mod desk;
 mod event;
 mod foresight;
 pub mod mimic;
-mod patience;
+mod timeouts;
 mod profile;
 mod publish;
 mod record;
-mod rota;
+mod scan_schedule;
 mod still;
 mod traffic;
 mod underway;
@@ -43,7 +43,7 @@ use machine::station::packml;
 use machine::station::trouble::Alarm;
 use machine::station::wants::{Ending, Inputs, Wants};
 use machine::view::{self, OrderRequest, View};
-use patience::Patience;
+use timeouts::Timeouts;
 pub use profile::Profile;
 use profile::lap;
 use std::sync::Arc;
@@ -86,7 +86,7 @@ pub struct Cycle {
     image: Image,
     outputs: Outputs,
     traffic: Traffic,
-    patience: Patience,
+    timeouts: Timeouts,
     links: CycleLinks,
     job_done: Option<JobDone>,
     /// The nest whose job is under way, or was last.
@@ -130,7 +130,7 @@ impl Cycle {
             image: Image::new(Arc::clone(&wiring)),
             outputs: Outputs::new(Arc::clone(&wiring)),
             traffic: Traffic::new(&wiring, lines),
-            patience: Patience::new(&wiring),
+            timeouts: Timeouts::new(&wiring),
             wiring,
             pace,
             inside: station.ledger().parts_to_find(),
@@ -244,7 +244,7 @@ impl Cycle {
         match (purpose, trouble) {
             (Purpose::Write { module, job }, None) => {
                 self.outputs.confirmed(module);
-                self.patience.written(module);
+                self.timeouts.written(module);
                 self.finish_job(job, answer.answered_at, None);
             }
             // A module that ignores writes has had its host watchdog trip: it stands at its safe value.
@@ -252,7 +252,7 @@ impl Cycle {
                 self.outputs.confirmed(module);
             }
             (Purpose::Write { module, job }, Some(trouble)) => {
-                if self.patience.may_rewrite(module) {
+                if self.timeouts.may_rewrite(module) {
                     self.outputs.failed(module);
                     if job {
                         self.traffic.rewrite_for_job(module);
@@ -276,12 +276,12 @@ impl Cycle {
                 if is_status && self.is_measuring(line) {
                     self.lost_status = Some(trouble.clone());
                 }
-                if let Some(times) = self.patience.scan_failed(line, &answer.command) {
+                if let Some(times) = self.timeouts.scan_failed(line, &answer.command) {
                     self.bus_alarm
                         .get_or_insert(Alarm::bus(&format!("{trouble}, {times} times in a row")));
                 }
             }
-            (Purpose::Scan, None) => self.patience.scan_answered(line, &answer.command),
+            (Purpose::Scan, None) => self.timeouts.scan_answered(line, &answer.command),
             (Purpose::Check, Some(trouble)) => {
                 self.bus_alarm.get_or_insert(Alarm::bus(&trouble));
             }
@@ -305,7 +305,7 @@ impl Cycle {
         let orders = self.orders(now);
         self.making_safe = packml::is_aborted(self.station.outer());
         if self.making_safe {
-            self.patience.forgive();
+            self.timeouts.forgive();
         }
         let inputs = Inputs {
             abort: self.links.abort.load(Ordering::Acquire),

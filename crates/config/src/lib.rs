@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | `rig.toml` | lines, modules, points, mechanism, references | [`Wiring`], the settings of `gauge` |
 //! | `scene.toml` | the bodies around the nest | `GuardSettings` |
-//! | `golden.toml` (named in `rig.toml`) | certified relays | `GoldenSet` |
+//! | `golden.toml` (named in `rig.toml`) | certified relays | `ReferenceSet` |
 //! | `card.toml` | what the process card says of the plant | `CardSettings` |
 //! | `lot.toml`, which may be missing | gates of a lot | `LotSettings` |
 //! | `recipes/NAME.toml` | one kind of part | `Recipe` |

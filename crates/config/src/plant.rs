@@ -6,7 +6,7 @@ use super::keys;
 use super::lot::load_lot;
 use super::tree::{Node, NotToml, not_toml};
 use machine::dut::em_relay::settings::{
-    AccuracySettings, CalibrationSettings, GoldenSet, ReferenceSettings,
+    AccuracySettings, CalibrationSettings, ReferenceSet, ReferenceSettings,
 };
 use machine::dut::{self, Recipe};
 use machine::form::Key;
@@ -36,7 +36,7 @@ pub struct Plant {
     /// How long a calibration holds.
     pub calibration: CalibrationSettings,
     /// Golden parts.
-    pub golden: GoldenSet,
+    pub golden: ReferenceSet,
     /// Gates of a lot.
     pub lot: LotSettings,
     /// Text of `rig.toml`, for the record of a lot.
@@ -62,7 +62,7 @@ impl Plant {
         let gauge: GaugeSections = rig.settings(keys::rig::FILE)?;
         let wiring =
             Wiring::resolve(&settings, dut::FIXTURES).map_err(|fault| rig.locate(&fault))?;
-        let golden = load_golden(&dir.join(&gauge.calibration.golden))?;
+        let golden = load_reference_parts(&dir.join(&gauge.calibration.golden))?;
         let scene = load_scene(&dir.join("scene.toml"))?;
         check_axis(&wiring, &scene, &rig)?;
         Ok(Self {
@@ -134,9 +134,9 @@ fn syntax(file: PathBuf, fault: NotToml) -> ConfigError {
 }
 
 /// Golden parts: every serial number once.
-fn load_golden(path: &Path) -> Result<GoldenSet, ConfigError> {
+fn load_reference_parts(path: &Path) -> Result<ReferenceSet, ConfigError> {
     let file = File::read(path.to_owned(), "the golden parts")?;
-    let set: GoldenSet = file.settings(keys::golden::FILE)?;
+    let set: ReferenceSet = file.settings(keys::golden::FILE)?;
     for (index, part) in set.parts.iter().enumerate() {
         if let Some(other) = set.parts[..index]
             .iter()

@@ -66,7 +66,7 @@ pub struct LotStateRecord {
 
 /// Golden parts were measured and compared with their certificates.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct GoldenCheckRecord {
+pub struct ReferenceCheckRecord {
     /// The open lot it was made in.
     pub lot: String,
     /// When it was decided.
@@ -107,7 +107,7 @@ pub struct LotYield {
 
 /// One golden check, as it leaves the history.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct GoldenCheck {
+pub struct ReferenceCheck {
     /// Number of the run within its lot.
     pub run: u32,
     /// When it was decided.
@@ -259,8 +259,8 @@ impl Archive {
     }
 }
 
-fn golden_check_of(row: &rusqlite::Row<'_>) -> rusqlite::Result<GoldenCheck> {
-    Ok(GoldenCheck {
+fn reference_check_of(row: &rusqlite::Row<'_>) -> rusqlite::Result<ReferenceCheck> {
+    Ok(ReferenceCheck {
         run: row.get(0)?,
         at: Moment(row.get(1)?),
         passed: row.get(2)?,

@@ -4,7 +4,7 @@
 //! number that is not finite is stored as no number at all.
 
 use super::{
-    AlarmChangeRecord, CurveRecord, GoldenCheckRecord, InsideRecord, LotStateRecord, OrderRecord,
+    AlarmChangeRecord, CurveRecord, ReferenceCheckRecord, InsideRecord, LotStateRecord, OrderRecord,
     RunEndRecord, WearRecord,
 };
 use machine::dut::Reason;
@@ -190,7 +190,7 @@ pub enum Row {
     /// A lot changes its state.
     LotState(LotStateRecord),
     /// Golden parts were compared with their certificates.
-    GoldenCheck(GoldenCheckRecord),
+    ReferenceCheck(ReferenceCheckRecord),
     /// An order with its answer.
     Order(OrderRecord),
     /// Uses of what wears.

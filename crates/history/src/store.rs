@@ -272,7 +272,7 @@ fn write(transaction: &Transaction<'_>, known: &mut Known, rows: &[Row]) -> Resu
         Row::LotState(it) => gates::state(transaction, it)
             .map(|_| ())
             .doing("recording the state of a lot"),
-        Row::GoldenCheck(it) => gates::golden_check(transaction, known, it),
+        Row::ReferenceCheck(it) => gates::golden_check(transaction, known, it),
         Row::Order(it) => orders::insert(transaction, known, it),
         Row::Wear(it) => wear::add(transaction, it),
         Row::Inside(it) => inside::keep(transaction, it),

@@ -18,7 +18,7 @@ use quality::spread::median;
 
 /// Longest test of a good part, seconds of rig time.
 const TEST_S: f64 = 0.85;
-/// The law that places the fine ramps ([`machine::dut::em_relay::lag`]) has six terms, and golden parts are chosen to lie far apart:
+/// The law that places the fine ramps ([`machine::dut::em_relay::overshoot`]) has six terms, and golden parts are chosen to lie far apart:
 /// before as many parts of a lot have taught it, it is sure of so little that ramps are long. That bounds the first.
 const TEACH: usize = 6;
 /// Longest test of any part: a defect may ask for another ramp.

@@ -48,7 +48,7 @@ pub fn calibrate(
     (recipe, verify): (&str, bool),
     outer: &mut dyn Subscriber,
 ) -> anyhow::Result<Calibrated> {
-    let nominal_v = golden_voltage(&files.config, recipe)?;
+    let nominal_v = reference_voltage(&files.config, recipe)?;
     let stored = match verify {
         true => Some(to_verify(
             &open(&files.db)?,
@@ -89,7 +89,7 @@ pub fn calibrate(
 }
 
 /// Nominal voltage of the coil, of which there is a golden part.
-fn golden_voltage(config: &Path, recipe: &str) -> anyhow::Result<f64> {
+fn reference_voltage(config: &Path, recipe: &str) -> anyhow::Result<f64> {
     let plant = Plant::load(config)?;
     let Some(nominal_v) = load_recipe(config, recipe)?.rated_v() else {
         bail!("--recipe {recipe}: found a kind that needs no calibration, expected a relay");

@@ -35,7 +35,7 @@ impl Cycle {
         self.traffic.only_writes();
         while !self.traffic.is_quiet() {
             let now = self.pace.now();
-            self.patience.forgive();
+            self.timeouts.forgive();
             self.scan(now);
             self.traffic.dispatch(now);
             self.wait(now, Some(now + IDLE)).await;
@@ -49,7 +49,7 @@ impl Cycle {
         self.making_safe = true;
         while self.pace.now() < end {
             let now = self.pace.now();
-            self.patience.forgive();
+            self.timeouts.forgive();
             self.scan(now);
             for write in self.outputs.writes() {
                 let purpose = Purpose::Write {

@@ -1,9 +1,9 @@
 //! Who may use a line next: writes first, then the heartbeat, the measuring job, and the scan.
 //!
 //! Every line has one transaction under way at most. The module with the emergency-stop contact is
-//! every second transaction of its line's scan ([`super::rota`]).
+//! every second transaction of its line's scan ([`super::scan_schedule`]).
 
-use super::rota::{Next, Rota};
+use super::scan_schedule::{Next, ScanSchedule};
 use super::underway::JobUnderway;
 use bus::{Answer, Request};
 use dcon::{Command, Common};
@@ -77,7 +77,7 @@ struct Slot {
     waiting: Option<Answer>,
     queue: VecDeque<(Command, Purpose)>,
     heartbeat_due: RigTime,
-    rota: Rota,
+    scan_schedule: ScanSchedule,
     scan_due: RigTime,
 }
 
@@ -117,7 +117,7 @@ impl Traffic {
                     waiting: None,
                     queue: VecDeque::new(),
                     heartbeat_due: RigTime(0),
-                    rota: Rota::new(
+                    scan_schedule: ScanSchedule::new(
                         (ends.line == estop_line).then(|| wiring.poll(estop)),
                         scan.into_iter().map(|m| wiring.poll(m)).collect(),
                         reset_questions(wiring, ends.line),
@@ -155,7 +155,7 @@ impl Traffic {
         let measuring = slots.filter(|slot| self.measuring.contains(&slot.ends.line));
         let resets = |slot: &Slot| {
             let line = slot.ends.line;
-            let resets = slot.rota.resets.clone();
+            let resets = slot.scan_schedule.resets.clone();
             resets.into_iter().map(move |command| (line, command))
         };
         measuring.flat_map(resets).collect()
@@ -207,7 +207,7 @@ impl Traffic {
     pub fn suspect(&mut self, suspicious: bool) {
         if suspicious && !self.suspicious {
             for slot in &mut self.slots {
-                slot.rota.ask_for_resets();
+                slot.scan_schedule.ask_for_resets();
             }
         }
         self.suspicious = suspicious;
@@ -300,12 +300,12 @@ impl Traffic {
         if waits
             && self.scanning
             && !self.making_safe
-            && let Some(poll) = slot.rota.contact()
+            && let Some(poll) = slot.scan_schedule.contact()
         {
             return Some((poll, Purpose::Scan));
         }
         if waits {
-            slot.rota.something_else();
+            slot.scan_schedule.something_else();
         }
         let write = slot
             .queue
@@ -325,7 +325,7 @@ impl Traffic {
             return None;
         }
         let beam = self.beam.filter(|_| slot.ends.line == self.beam_line);
-        match slot.rota.next(beam)? {
+        match slot.scan_schedule.next(beam)? {
             Next::Priority(command) => Some((command, Purpose::Scan)),
             Next::Other(command) => {
                 slot.scan_due = now + self.scan_period;

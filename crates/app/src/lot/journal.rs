@@ -2,7 +2,7 @@
 
 use crate::exit::Exit;
 use history::{
-    AlarmChange, AlarmChangeRecord, AlarmRecord, GoldenCheckRecord, InsideRecord, LotState,
+    AlarmChange, AlarmChangeRecord, AlarmRecord, ReferenceCheckRecord, InsideRecord, LotState,
     LotStateRecord, OrderRecord, Row, RunEndRecord, WearRecord,
 };
 use machine::handling::inside::Inside;
@@ -16,7 +16,7 @@ use machine::view::AnsweredOrder;
 use texts::Lang;
 
 /// Alarms after which a lot takes no run before somebody releases it.
-const HOLDS: [AlarmCode; 2] = [AlarmCode::GoldenCheckFailed, AlarmCode::LotDiscardLimit];
+const HOLDS: [AlarmCode; 2] = [AlarmCode::ReferenceCheckFailed, AlarmCode::LotDiscardLimit];
 /// The alarm that says that golden parts do not agree with their certificates.
 const NOT_CALIBRATED: AlarmCode = AlarmCode::CalibrationFailed;
 
@@ -162,7 +162,7 @@ impl Journal {
 
     fn check(&self, passed: bool, text: &str, at_us: i64) -> Option<Row> {
         let row = |lot: &String| {
-            Row::GoldenCheck(GoldenCheckRecord {
+            Row::ReferenceCheck(ReferenceCheckRecord {
                 lot: lot.clone(),
                 at_us,
                 passed,
@@ -240,7 +240,7 @@ mod tests {
     #[test]
     fn a_failed_check_holds_the_lot_until_the_alarm_is_cleared() {
         let mut journal = journal();
-        let alarm = Alarm::golden_check_failed("G-12-1 reads high");
+        let alarm = Alarm::reference_check_failed("G-12-1 reads high");
         let mut list = Annunciator::default();
         list.raise(&alarm, RigTime(1));
         assert_eq!(states(&journal.alarm(&alarm, 1)), [LotState::Held]);
@@ -271,7 +271,7 @@ mod tests {
     #[test]
     fn between_lots_an_alarm_belongs_to_the_rig_and_no_lot_changes() {
         let mut journal = Journal::new(false);
-        let rows = journal.alarm(&Alarm::golden_check_failed("G-12-1 reads high"), 1);
+        let rows = journal.alarm(&Alarm::reference_check_failed("G-12-1 reads high"), 1);
         assert!(matches!(&rows[..], [Row::Alarm(it)] if it.lot.is_none()));
         let ended = journal.ended(&Ending::Stopped, &Exit::Stopped, 2);
         assert!(ended.is_empty());

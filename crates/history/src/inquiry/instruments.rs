@@ -2,7 +2,7 @@
 //! read when they were measured last.
 
 use super::Result;
-use crate::{Archive, CalibrationRecord, GoldenCheck, Moment, Part};
+use crate::{Archive, CalibrationRecord, ReferenceCheck, Moment, Part};
 use jiff::Timestamp;
 use machine::dut::Characteristic;
 use machine::dut::instruments::{Certificate, factors};
@@ -20,7 +20,7 @@ pub struct Instruments {
     /// The golden parts of the plant.
     pub golden: Vec<Golden>,
     /// The golden check made last.
-    pub check: Option<GoldenCheck>,
+    pub check: Option<ReferenceCheck>,
 }
 
 /// A calibration and whether it holds.
@@ -97,11 +97,11 @@ pub fn instruments(
     let now_us = Timestamp::now().as_microsecond();
     let stored = archive.calibrations(simulated)?;
     let held = stored.into_iter().map(|it| held(it, now_us));
-    let golden = golden.iter().map(|part| of_golden(archive, part));
+    let golden = golden.iter().map(|part| of_reference_part(archive, part));
     Ok(Instruments {
         calibrations: held.collect(),
         golden: golden.collect::<Result<_>>()?,
-        check: archive.last_golden_check(simulated)?,
+        check: archive.last_reference_check(simulated)?,
     })
 }
 
@@ -125,7 +125,7 @@ fn held(record: CalibrationRecord, now_us: i64) -> Held {
     }
 }
 
-fn of_golden(archive: &Archive, part: &Certificate) -> Result<Golden> {
+fn of_reference_part(archive: &Archive, part: &Certificate) -> Result<Golden> {
     let seen = archive.golden_part(&part.serial)?;
     let values = part.values.iter().map(|(parameter, certified)| {
         let read = seen.as_ref().and_then(|it| read(it, *parameter));

@@ -3,7 +3,7 @@
 use super::*;
 
 fn check(lot: &str, at_us: i64, passed: bool) -> Row {
-    Row::GoldenCheck(GoldenCheckRecord {
+    Row::ReferenceCheck(ReferenceCheckRecord {
         lot: lot.into(),
         at_us,
         passed,
@@ -50,7 +50,7 @@ fn what_was_judged_between_a_good_check_and_a_failed_one_is_suspect() {
         .values("operate_voltage_v", &by_value)
         .unwrap();
     assert_eq!(values.values.len(), 3);
-    let checks = file.archive().golden_checks(&Filter::default()).unwrap();
+    let checks = file.archive().reference_checks(&Filter::default()).unwrap();
     assert_eq!(checks[0].suspect_since, None);
     assert_eq!(checks[1].suspect_since, Some(Moment(2_500_000)));
 }

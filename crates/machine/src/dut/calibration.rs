@@ -16,7 +16,7 @@ impl Calibration {
     /// True when it measures everything that the kind needs, reference parts included.
     pub fn is_complete(&self) -> bool {
         match self {
-            Self::EmRelay(relay) => relay.lags.is_some(),
+            Self::EmRelay(relay) => relay.overshoots.is_some(),
         }
     }
 

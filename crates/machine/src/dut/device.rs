@@ -2,7 +2,7 @@
 
 use super::calibration::Calibration;
 use super::em_relay;
-use super::em_relay::settings::{AccuracySettings, GoldenSet, ReferenceSettings};
+use super::em_relay::settings::{AccuracySettings, ReferenceSet, ReferenceSettings};
 use super::procedure::Procedure;
 use super::recipe::{DeviceRecipe, Recipe};
 use super::record::TestRecord;
@@ -36,7 +36,7 @@ pub struct Rig<'a> {
     /// What the makers promise.
     pub accuracy: &'a AccuracySettings,
     /// Parts with a certificate.
-    pub reference_parts: &'a GoldenSet,
+    pub reference_parts: &'a ReferenceSet,
 }
 
 /// How a part is to be tested.
@@ -58,7 +58,7 @@ pub enum CalibrationFault {
     Reference(#[from] em_relay::reference::ReferenceFault),
     /// A reference part.
     #[error(transparent)]
-    ReferencePart(#[from] em_relay::golden::Misfit),
+    ReferencePart(#[from] em_relay::reference_part::Misfit),
 }
 
 const NO_REFERENCE_PARTS: &str = "a resistor has no reference parts, so none was planned";

@@ -3,7 +3,7 @@
 
 use super::calibration::Calibration;
 use super::characteristic::Characteristic;
-use super::em_relay::settings::{Certified, GoldenPart};
+use super::em_relay::settings::{Certified, ReferencePart};
 use crate::gauge::factor::Named;
 
 /// What the certificate of a reference part says.
@@ -17,8 +17,8 @@ pub struct Certificate {
     pub values: Vec<(Characteristic, Certified)>,
 }
 
-impl From<&GoldenPart> for Certificate {
-    fn from(part: &GoldenPart) -> Self {
+impl From<&ReferencePart> for Certificate {
+    fn from(part: &ReferencePart) -> Self {
         let values = part.certified();
         Self {
             serial: part.serial.clone(),

@@ -122,7 +122,7 @@ fn pushed(turn: &mut Turn, nest: NestId) -> Feed {
             let golden = if turn.ledger.is_pocket_found() {
                 None
             } else {
-                turn.next_golden()
+                turn.next_reference_part()
             };
             turn.ledger.enter_nest(nest, golden);
             turn.drive(Move::PusherRetract);

@@ -23,7 +23,7 @@ use units::{RigTime, Second};
 
 /// Most tests of a void reference part. Its result affects every later part, and one lost reset status or one refused
 /// reply should not force a new calibration.
-const GOLDEN_TESTS: u8 = 3;
+const REFERENCE_TESTS: u8 = 3;
 
 /// State of a nest.
 #[derive(Debug)]
@@ -222,7 +222,7 @@ fn repeat_reason(id: NestId, turn: &Turn, test: &Procedure) -> Option<Trouble> {
     };
     // A complete test is inconclusive while overshoots are learned, but needs no repetition.
     let why = test.why_void()?;
-    (test.number() < GOLDEN_TESTS).then(|| Trouble::GoldenRepeated(serial.clone(), why.to_string()))
+    (test.number() < REFERENCE_TESTS).then(|| Trouble::ReferenceRepeated(serial.clone(), why.to_string()))
 }
 
 fn judged(id: NestId, turn: &mut Turn, test: &mut Procedure) {

@@ -181,7 +181,7 @@ fn pushed(turn: &mut Turn, seen: &SensedParts) {
     if gone && !turn.ledger.holds(Place::NEST) && seen.nest {
         let golden = match turn.ledger.is_pocket_found() {
             true => None,
-            false => turn.next_golden(),
+            false => turn.next_reference_part(),
         };
         turn.ledger.enter_nest(NestId::FIRST, golden);
     }

@@ -41,5 +41,5 @@ pub enum Trouble {
     /// The fingers closed, but the part is still in the nest.
     Stuck,
     /// A reference part is tested again: serial number and reason.
-    GoldenRepeated(String, String),
+    ReferenceRepeated(String, String),
 }

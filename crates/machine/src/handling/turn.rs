@@ -72,7 +72,7 @@ impl Turn<'_> {
     }
 
     /// Takes the serial number of the next part, if it is a reference part.
-    pub fn next_golden(&mut self) -> Option<String> {
+    pub fn next_reference_part(&mut self) -> Option<String> {
         self.golden.pop_front()
     }
 }

@@ -101,11 +101,11 @@ pub enum AlarmCode {
     /// A part nobody knows was found inside.
     PartFound,
     /// The last golden check is longer ago than the lot allows.
-    GoldenCheckDue,
+    ReferenceCheckDue,
     /// A golden part does not read as its certificate says.
-    GoldenCheckFailed,
+    ReferenceCheckFailed,
     /// The test of a golden part was cut off and begins anew.
-    GoldenRepeated,
+    ReferenceRepeated,
     /// More parts have failed than the lot may have.
     LotDiscardLimit,
     /// Less of the supply reaches the coil than at the calibration.
@@ -179,9 +179,9 @@ impl AlarmCode {
             | Self::PartLost
             | Self::FallUnseen
             | Self::PartFound
-            | Self::GoldenCheckDue
-            | Self::GoldenCheckFailed
-            | Self::GoldenRepeated
+            | Self::ReferenceCheckDue
+            | Self::ReferenceCheckFailed
+            | Self::ReferenceRepeated
             | Self::LotDiscardLimit
             | Self::ProbeContact
             | Self::CalibrationInvalid => text.to_owned(),
@@ -220,9 +220,9 @@ impl AlarmCode {
             Self::PartLost => "part_lost",
             Self::FallUnseen => "fall_unseen",
             Self::PartFound => "part_found",
-            Self::GoldenCheckDue => "golden_check_due",
-            Self::GoldenCheckFailed => "golden_check_failed",
-            Self::GoldenRepeated => "golden_repeated",
+            Self::ReferenceCheckDue => "golden_check_due",
+            Self::ReferenceCheckFailed => "golden_check_failed",
+            Self::ReferenceRepeated => "golden_repeated",
             Self::LotDiscardLimit => "lot_discard_limit",
             Self::ProbeContact => "probe_contact",
             Self::Worn(_) => "worn",
@@ -253,8 +253,8 @@ impl AlarmCode {
             | Self::CalibrationInvalid => (Stops::Abort, Goes::ByClear),
             Self::BinBeam
             | Self::PartNotArrived
-            | Self::GoldenCheckDue
-            | Self::GoldenCheckFailed
+            | Self::ReferenceCheckDue
+            | Self::ReferenceCheckFailed
             | Self::LotDiscardLimit => (Stops::Hold, Goes::ByClear),
             Self::MagazineEmpty | Self::BinFull => (Stops::Suspend, Goes::BySensor),
             Self::Retried(_)
@@ -264,7 +264,7 @@ impl AlarmCode {
             | Self::FallUnseen
             | Self::PartFound => (Stops::Nothing, Goes::AtOnce),
             Self::ButtonStuck => (Stops::Nothing, Goes::BySensor),
-            Self::GoldenRepeated | Self::ProbeContact | Self::Worn(_) => {
+            Self::ReferenceRepeated | Self::ProbeContact | Self::Worn(_) => {
                 (Stops::Nothing, Goes::ByClear)
             }
         };
@@ -316,9 +316,9 @@ const SINGLE: [AlarmCode; 31] = [
     AlarmCode::PartLost,
     AlarmCode::FallUnseen,
     AlarmCode::PartFound,
-    AlarmCode::GoldenCheckDue,
-    AlarmCode::GoldenCheckFailed,
-    AlarmCode::GoldenRepeated,
+    AlarmCode::ReferenceCheckDue,
+    AlarmCode::ReferenceCheckFailed,
+    AlarmCode::ReferenceRepeated,
     AlarmCode::LotDiscardLimit,
     AlarmCode::ProbeContact,
     AlarmCode::CalibrationInvalid,

@@ -20,7 +20,7 @@ pub enum Doing {
     /// Parts of the lot are on their way.
     Running,
     /// Golden parts are on their way.
-    GoldenParts,
+    ReferenceParts,
     /// What the state of the outer machine says.
     Resting(State),
 }
@@ -36,7 +36,7 @@ impl Doing {
             Self::Calibrating => "calibrating",
             Self::Testing(_) => "testing",
             Self::Running => "running",
-            Self::GoldenParts => "golden_parts",
+            Self::ReferenceParts => "golden_parts",
             Self::Resting(state) => return state.name().to_lowercase(),
         };
         code.to_owned()
@@ -52,7 +52,7 @@ impl Doing {
             | Self::Discharging
             | Self::Calibrating
             | Self::Running
-            | Self::GoldenParts
+            | Self::ReferenceParts
             | Self::Resting(_) => None,
         }
     }
@@ -83,7 +83,7 @@ mod tests {
             Doing::Calibrating,
             Doing::Testing("Off"),
             Doing::Running,
-            Doing::GoldenParts,
+            Doing::ReferenceParts,
         ];
         let outer = State::ALL.iter().map(|state| Doing::Resting(*state));
         for doing in inner.into_iter().chain(outer) {

@@ -134,9 +134,9 @@ impl Station {
     /// A golden part comes next: nothing else is judged before one has read as certified.
     pub(super) fn begin_check(&mut self) {
         let next: VecDeque<String> = self.plan.golden.first().cloned().into_iter().collect();
-        self.lot.golden_planned += next.len().saturating_sub(self.lot.golden_left.len()) as u64;
+        self.lot.reference_planned += next.len().saturating_sub(self.lot.reference_left.len()) as u64;
         self.lot.gates.checking = !next.is_empty();
-        self.lot.golden_left = next;
+        self.lot.reference_left = next;
     }
 
     /// Looks whether a golden check is due while parts are being made.
@@ -168,17 +168,17 @@ impl Station {
         } else if self.lot.gates.due_by_time(settings, now) {
             self.begin_check();
             let trouble = &mut wants.notes.trouble;
-            trouble.extend(self.next_serial().map(Alarm::golden_check_due));
+            trouble.extend(self.next_serial().map(Alarm::reference_check_due));
         }
     }
 
     fn next_serial(&self) -> Option<&str> {
-        self.lot.golden_left.front().map(String::as_str)
+        self.lot.reference_left.front().map(String::as_str)
     }
 
     /// Golden parts that teach the lags are still to come or have not taught them yet.
     pub(super) fn is_calibrating(&self) -> bool {
-        !self.lot.golden_left.is_empty() || !self.device.is_calibrated()
+        !self.lot.reference_left.is_empty() || !self.device.is_calibrated()
     }
 
     /// The part in the nest is measured by the slow strategy.
@@ -209,7 +209,7 @@ impl Station {
                 self.begin_check();
                 wants
                     .trouble
-                    .push(Alarm::golden_check_failed(&why.to_string()));
+                    .push(Alarm::reference_check_failed(&why.to_string()));
             }
         }
     }

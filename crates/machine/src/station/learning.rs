@@ -33,8 +33,8 @@ impl Station {
         self.plan.calibrated = false;
         self.referenced = false;
         let all: VecDeque<String> = self.plan.golden.iter().cloned().collect();
-        self.lot.golden_planned += all.len().saturating_sub(self.lot.golden_left.len()) as u64;
-        self.lot.golden_left = all;
+        self.lot.reference_planned += all.len().saturating_sub(self.lot.reference_left.len()) as u64;
+        self.lot.reference_left = all;
         self.device.forget_calibration();
     }
 
@@ -48,7 +48,7 @@ impl Station {
                 }
                 Kind::Golden(_) | Kind::Lot(_) if judged.part.interrupted.is_some() => {}
                 Kind::Golden(serial) => {
-                    let last = self.lot.golden_left.is_empty();
+                    let last = self.lot.reference_left.is_empty();
                     let learned = self.device.learn_reference(serial, &judged.record, last);
                     calibrated(learned, &mut wants.record.calibrated, &mut told);
                 }
@@ -72,8 +72,8 @@ impl Station {
     }
 
     /// The last golden part was interrupted: what the others taught has to do, or the calibration has failed.
-    pub(super) fn end_golden_run(&mut self, wants: &mut Wants) {
-        if self.referenced && self.lot.golden_left.is_empty() && self.is_calibrating() {
+    pub(super) fn end_reference_run(&mut self, wants: &mut Wants) {
+        if self.referenced && self.lot.reference_left.is_empty() && self.is_calibrating() {
             let mut told = Told::default();
             let complete = self.device.conclude_reference_parts().map(Some);
             calibrated(complete, &mut wants.record.calibrated, &mut told);

@@ -30,7 +30,7 @@ mod machine;
 pub mod orders;
 pub mod packml;
 mod panel;
-mod patience;
+mod timeouts;
 mod produce;
 mod safety;
 mod states;
@@ -53,7 +53,7 @@ use line::Line;
 use machine::Machine;
 use packml::{Mode, State};
 use panel::Panel;
-use patience::Patience;
+use timeouts::Timeouts;
 use std::collections::VecDeque;
 use units::RigTime;
 use wants::{Inputs, Wants};
@@ -117,9 +117,9 @@ pub struct Station {
 #[derive(Debug)]
 struct LotControl {
     gates: Gates,
-    golden_left: VecDeque<String>,
+    reference_left: VecDeque<String>,
     /// Golden parts that this run has asked for so far.
-    golden_planned: u64,
+    reference_planned: u64,
     /// Calibration and golden parts are over.
     began: bool,
 }
@@ -127,8 +127,8 @@ struct LotControl {
 impl LotControl {
     /// Checks what holds after every turn.
     fn check(&self) {
-        let left = self.golden_left.len() as u64;
-        assert!(self.golden_planned >= left, "golden parts nobody planned");
+        let left = self.reference_left.len() as u64;
+        assert!(self.reference_planned >= left, "golden parts nobody planned");
     }
 }
 
@@ -136,7 +136,7 @@ impl LotControl {
 #[derive(Debug, Default)]
 struct Alarms {
     annunciator: Annunciator,
-    patience: Patience,
+    timeouts: Timeouts,
     panel: Panel,
     lamps: Lamps,
     /// When the emergency-stop chain was last seen open.
@@ -148,7 +148,7 @@ struct Alarms {
 impl Station {
     /// A station that knows nothing of its sensors yet.
     pub fn new(plan: Plan, device: Device, table: AxisTable, mechanism: Mechanism) -> Self {
-        let golden_left = if plan.calibrated {
+        let reference_left = if plan.calibrated {
             VecDeque::new()
         } else {
             plan.golden.iter().cloned().collect()
@@ -159,8 +159,8 @@ impl Station {
             line: Line::new(Feeder::new(table), ledger, mechanism),
             lot: LotControl {
                 gates: Gates::default(),
-                golden_planned: golden_left.len() as u64,
-                golden_left,
+                reference_planned: reference_left.len() as u64,
+                reference_left,
                 began: false,
             },
             alarms: Alarms::default(),
@@ -230,8 +230,8 @@ impl Station {
             State::Starting => Doing::Calibrating,
             State::Execute | State::Completing => match self.line.feeder.test() {
                 Some(test) => Doing::Testing(test.stage()),
-                None if self.lot.began || self.lot.golden_left.is_empty() => Doing::Running,
-                None => Doing::GoldenParts,
+                None if self.lot.began || self.lot.reference_left.is_empty() => Doing::Running,
+                None => Doing::ReferenceParts,
             },
             state @ (State::Stopped
             | State::Idle

@@ -28,7 +28,7 @@ impl Station {
         let resting = self.machine.is_coming_to_rest();
         let (feeder, _, mut turn) =
             self.line
-                .at(now, &inputs, wants, &mut self.lot.golden_left, resting);
+                .at(now, &inputs, wants, &mut self.lot.reference_left, resting);
         if feeder.step(&mut turn, job, terms, permits) {
             self.line.mechanism.new_part();
         }
@@ -41,7 +41,7 @@ impl Station {
     }
 
     fn note_begin(&mut self, wants: &mut Wants) {
-        if !self.lot.began && self.lot.golden_left.is_empty() && self.device.is_calibrated() {
+        if !self.lot.began && self.lot.reference_left.is_empty() && self.device.is_calibrated() {
             self.lot.began = true;
             wants.record.lot_began = true;
         }
@@ -51,6 +51,6 @@ impl Station {
     pub(super) fn wants_more(&self) -> bool {
         self.plan
             .count
-            .is_none_or(|count| self.line.ledger.own_parts() < self.lot.golden_planned + count)
+            .is_none_or(|count| self.line.ledger.own_parts() < self.lot.reference_planned + count)
     }
 }

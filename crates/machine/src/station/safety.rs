@@ -50,17 +50,17 @@ impl Station {
         trouble.extend(inputs.bus.clone());
         trouble.extend(there);
         trouble.extend(self.worn());
-        let golden = &mut self.lot.golden_left;
+        let golden = &mut self.lot.reference_left;
         let (feeder, _, mut turn) = self.line.at(now, inputs, wants, golden, false);
         feeder.confirm(&mut turn);
         wants.notes.take_over();
         if !self.line.dark.is_empty() {
-            self.alarms.patience.wait_for_bin();
+            self.alarms.timeouts.wait_for_bin();
         }
         let feeder = &self.line.feeder;
         let late = self
             .alarms
-            .patience
+            .timeouts
             .look(now, self.machine.state, self.machine.mode, feeder);
         wants.notes.trouble.extend(late);
     }

@@ -105,7 +105,7 @@ impl Station {
 
     /// What a state begins with.
     fn entered(&mut self, to: State, now: RigTime, wants: &mut Wants) {
-        self.alarms.patience.forget();
+        self.alarms.timeouts.forget();
         wants.rig.wake_at = Some(now);
         match to {
             State::Resetting => {
@@ -193,7 +193,7 @@ impl Station {
         if self.line.recovery.drive_reset(now) {
             self.line.mechanism.drive_reset(now);
         }
-        let golden = &mut self.lot.golden_left;
+        let golden = &mut self.lot.reference_left;
         let (feeder, recovery, mut turn) = self.line.at(now, &inputs, wants, golden, false);
         let home = recovery.step(&mut turn, feeder.is_releasing());
         wants.notes.take_over();
@@ -211,7 +211,7 @@ impl Station {
         if self.lot.gates.is_checking() {
             self.begin_check();
         }
-        self.end_golden_run(wants);
+        self.end_reference_run(wants);
         self.take_up_gripped(now, wants);
         self.take_up_nested(wants);
         wants.rig.wake_at = Some(now);

@@ -46,7 +46,7 @@ impl From<Trouble> for Alarm {
             Trouble::Dropped => AlarmCode::PartDropped.into(),
             Trouble::Sticks => Self::part_sticks(),
             Trouble::Stuck => AlarmCode::PartStuck.into(),
-            Trouble::GoldenRepeated(serial, why) => Self::golden_repeated(&serial, &why),
+            Trouble::ReferenceRepeated(serial, why) => Self::reference_repeated(&serial, &why),
         }
     }
 }
@@ -148,18 +148,18 @@ impl Alarm {
     }
 
     /// A golden part has to be measured, and nobody can have put it into the magazine.
-    pub fn golden_check_due(serial: &str) -> Self {
-        Self::from(AlarmCode::GoldenCheckDue).with("serial", serial)
+    pub fn reference_check_due(serial: &str) -> Self {
+        Self::from(AlarmCode::ReferenceCheckDue).with("serial", serial)
     }
 
     /// A golden part does not read as certified.
-    pub fn golden_check_failed(why: &str) -> Self {
-        Self::from(AlarmCode::GoldenCheckFailed).with("detail", why)
+    pub fn reference_check_failed(why: &str) -> Self {
+        Self::from(AlarmCode::ReferenceCheckFailed).with("detail", why)
     }
 
     /// The test of a golden part was cut off and begins anew.
-    pub fn golden_repeated(serial: &str, why: &str) -> Self {
-        Self::from(AlarmCode::GoldenRepeated)
+    pub fn reference_repeated(serial: &str, why: &str) -> Self {
+        Self::from(AlarmCode::ReferenceRepeated)
             .with("serial", serial)
             .with("detail", why)
     }

@@ -2,7 +2,7 @@
 
 use super::*;
 use ::history::{
-    CalibrationRecord, GoldenCheckRecord, Identity, LotRecord, MeasurementRecord, PartRecord, Row,
+    CalibrationRecord, ReferenceCheckRecord, Identity, LotRecord, MeasurementRecord, PartRecord, Row,
     Store, snapshot_hash,
 };
 use machine::dut::em_relay::Calibration;
@@ -33,7 +33,7 @@ fn made(at_us: i64, simulated: bool, nominal_v: f64) -> CalibrationRecord {
         fine: OutputLine::IDEAL,
         coarse_v_per_s: known,
         fine_v_per_s: known,
-        lags: None,
+        overshoots: None,
         probe_contact_ohm: 0.0,
     });
     let body = body.unwrap();
@@ -133,7 +133,7 @@ async fn the_latest_calibration_of_each_coil_is_told_and_one_that_ran_out_is_ove
 
 #[tokio::test]
 async fn a_golden_part_is_told_with_its_certificate_and_what_was_read_last() {
-    let check = Row::GoldenCheck(GoldenCheckRecord {
+    let check = Row::ReferenceCheck(ReferenceCheckRecord {
         lot: "A".into(),
         at_us: 7_000_000,
         passed: false,

@@ -3,9 +3,9 @@
 //!
 //! The factors come from the references on the interface board (5.000 V, 400 ohm, 50 mOhm, 1.000 ms)
 //! and from golden parts, never from the specimens they are later used on. A calibration without
-//! golden parts has no lag corrections and measures no threshold ([`Calibration::lags`] is `None`).
+//! golden parts has no lag corrections and measures no threshold ([`Calibration::overshoots`] is `None`).
 
-use super::lag::LagLaw;
+use super::overshoot::OvershootModel;
 use super::threshold::Direction;
 use crate::gauge::Factor;
 use crate::gauge::factor::Named;
@@ -57,10 +57,10 @@ impl OutputLine {
 
 /// How far a ramp overshoots the quasi-static threshold, found on golden parts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Lag {
+pub struct Overshoot {
     /// Indicated minus certified threshold on the fine ramp, volts; positive for operate, negative for release.
     pub fine_v: Factor,
-    /// Mean certified threshold of those parts, volts: a gain error of the supply was in [`Lag::fine_v`] there,
+    /// Mean certified threshold of those parts, volts: a gain error of the supply was in [`Overshoot::fine_v`] there,
     /// and only away from it is left over.
     #[serde(default)]
     pub at_v: f64,
@@ -69,7 +69,7 @@ pub struct Lag {
     pub at_coarse_v: f64,
     /// Coarse minus fine indication: places the fine ramp, and gives results where a recipe trusts it.
     #[serde(default = "untaught")]
-    pub coarse: LagLaw,
+    pub coarse: OvershootModel,
     /// That law was taught by parts of the lot, enough of them to judge others like them.
     #[serde(default)]
     pub judges: bool,
@@ -78,11 +78,11 @@ pub struct Lag {
 /// Parts of a lot that teach the coarse lag before it gives results.
 const FIRST_PARTS: u32 = 20;
 
-impl Lag {
+impl Overshoot {
     /// With what golden parts and lot have taught so far, and what the lot alone has. Golden parts are chosen to lie far
     /// apart, where the line bends and their times do not go with their thresholds: they place ramps, and judge nothing
     /// once the lot has taught enough.
-    pub fn taught(self, by_all: LagLaw, by_lot: LagLaw) -> Self {
+    pub fn taught(self, by_all: OvershootModel, by_lot: OvershootModel) -> Self {
         let judges = by_lot.parts() >= FIRST_PARTS;
         let coarse = if judges { by_lot } else { by_all };
         Self {
@@ -109,17 +109,17 @@ impl Lag {
 }
 
 /// Of a calibration that was stored before the lag was a law.
-fn untaught() -> LagLaw {
-    LagLaw::guess(0.0)
+fn untaught() -> OvershootModel {
+    OvershootModel::guess(0.0)
 }
 
 /// Lag of both directions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Lags {
+pub struct Overshoots {
     /// Rising ramp to NO make.
-    pub operate: Lag,
+    pub operate: Overshoot,
     /// Falling ramp to NO break.
-    pub release: Lag,
+    pub release: Overshoot,
 }
 
 /// All factors of a rig, as kept in the history with their date.
@@ -154,7 +154,8 @@ pub struct Calibration {
     /// Slope of the fine ramp at the coil, volts per second.
     pub fine_v_per_s: Factor,
     /// Ramp lags, once golden parts were run.
-    pub lags: Option<Lags>,
+    #[serde(rename = "lags")]
+    pub overshoots: Option<Overshoots>,
     /// Force contacts of the coil in series when the golden parts taught these lags, which hold it, ohm; 0: not known.
     #[serde(default)]
     pub probe_contact_ohm: f64,
@@ -182,7 +183,7 @@ impl Calibration {
             fine: OutputLine::IDEAL,
             coarse_v_per_s: unknown,
             fine_v_per_s: unknown,
-            lags: None,
+            overshoots: None,
             probe_contact_ohm: 0.0,
         }
     }
@@ -204,9 +205,9 @@ impl Calibration {
             named("fine_gain", Unit::One, self.fine.gain),
             named("fine_slope", Unit::VoltPerSecond, self.fine_v_per_s),
         ];
-        if let Some(lags) = &self.lags {
-            all.push(named("operate_lag", Unit::Volt, lags.operate.fine_v));
-            all.push(named("release_lag", Unit::Volt, lags.release.fine_v));
+        if let Some(overshoots) = &self.overshoots {
+            all.push(named("operate_lag", Unit::Volt, overshoots.operate.fine_v));
+            all.push(named("release_lag", Unit::Volt, overshoots.release.fine_v));
         }
         all
     }
@@ -228,23 +229,23 @@ mod tests {
 
     #[test]
     fn the_fine_lag_of_a_part_is_its_own_as_far_as_the_coarse_ramp_tells() {
-        let lag = Lag {
+        let overshoot = Overshoot {
             fine_v: Factor::new(0.028, 0.0),
             at_v: 7.88,
             at_coarse_v: 0.84,
-            coarse: LagLaw::guess(0.84),
+            coarse: OvershootModel::guess(0.84),
             judges: false,
         };
-        let rising = |coarse_v| lag.own_v(coarse_v, Direction::Rising);
+        let rising = |coarse_v| overshoot.own_v(coarse_v, Direction::Rising);
         assert_eq!(rising(0.84), Factor::new(0.0, 0.0));
         let late = rising(0.90);
         assert!((late.value - 0.002).abs() < 1e-12 && late.u == late.value);
         assert_eq!(rising(f64::NAN), Factor::new(0.0, 0.028));
-        let falling = lag.own_v(0.90, Direction::Falling);
+        let falling = overshoot.own_v(0.90, Direction::Falling);
         assert_eq!((falling.value, falling.u), (0.0, late.u));
-        let untaught = Lag {
+        let untaught = Overshoot {
             at_coarse_v: 0.0,
-            ..lag
+            ..overshoot
         };
         assert_eq!(untaught.own_v(0.90, Direction::Rising).u, 0.028);
     }

@@ -3,17 +3,17 @@
 //! Holds the recipe, what the instruments were found to do, and what parts have taught: reference parts the overshoot of
 //! the ramps, every good part of the lot the place of the next fine ramp, every part how well the probes meet the coil.
 
-use super::calibration::{Calibration, Lags};
+use super::calibration::{Calibration, Overshoots};
 use super::feasible::nominal_v_per_s;
-use super::golden::{self, GoldenRun, Misfit};
-use super::lag::LagLaw;
+use super::reference_part::{self, ReferenceRun, Misfit};
+use super::overshoot::OvershootModel;
 use super::measure::context::{UNTAUGHT_FINE_V, untaught};
 use super::measure::{Context, Seen, Test};
 use super::points::{AnalogIn, AnalogOut, Points};
 use super::probe_contact::Trend;
 use super::recipe::RelayRecipe;
 use super::reference::{self, ReferenceFault};
-use super::settings::GoldenPart;
+use super::settings::ReferencePart;
 use crate::dut::Recipe;
 use crate::dut::device::{Made, Rig, TestOrder};
 use crate::dut::record::{Own, TestRecord};
@@ -29,12 +29,12 @@ pub struct Device {
     context: Context,
     /// Volts at the terminal per volt of the coil, fine channel.
     voltage_gain: f64,
-    certificates: Vec<GoldenPart>,
-    reference_parts: GoldenRun,
+    certificates: Vec<ReferencePart>,
+    reference_parts: ReferenceRun,
     /// Laws of the coarse ramps, operate and release, taught by every part that passed and by reference parts.
-    coarse: (LagLaw, LagLaw),
+    coarse: (OvershootModel, OvershootModel),
     /// The same, taught by parts of this lot alone.
-    of_lot: (LagLaw, LagLaw),
+    of_lot: (OvershootModel, OvershootModel),
     probe_contact: Trend,
 }
 
@@ -71,15 +71,15 @@ impl Device {
         Ok(Self::of(context, voltage_gain, certificates.collect()))
     }
 
-    pub(super) fn of(context: Context, voltage_gain: f64, certificates: Vec<GoldenPart>) -> Self {
-        let coarse = context.calibration.lags.map_or(untaught(), |lags| {
-            (lags.operate.coarse, lags.release.coarse)
+    pub(super) fn of(context: Context, voltage_gain: f64, certificates: Vec<ReferencePart>) -> Self {
+        let coarse = context.calibration.overshoots.map_or(untaught(), |overshoots| {
+            (overshoots.operate.coarse, overshoots.release.coarse)
         });
         Self {
             context,
             voltage_gain,
             certificates,
-            reference_parts: GoldenRun::default(),
+            reference_parts: ReferenceRun::default(),
             coarse,
             of_lot: untaught(),
             probe_contact: Trend::default(),
@@ -98,8 +98,8 @@ impl Device {
 
     /// True when the overshoot of the fine ramps is known, so that parts may be judged.
     pub fn is_calibrated(&self) -> bool {
-        let lags = self.context.calibration.lags;
-        lags.is_some_and(|lags| lags.operate.fine_v.u.is_finite())
+        let overshoots = self.context.calibration.overshoots;
+        overshoots.is_some_and(|overshoots| overshoots.operate.fine_v.u.is_finite())
     }
 
     /// The measurements against the references on the board.
@@ -132,8 +132,8 @@ impl Device {
 
     /// Forgets what reference parts have taught: references and reference parts are measured again.
     pub fn forget_calibration(&mut self) {
-        self.reference_parts = GoldenRun::default();
-        self.calibrate(|calibration| calibration.lags = None);
+        self.reference_parts = ReferenceRun::default();
+        self.calibrate(|calibration| calibration.overshoots = None);
     }
 
     /// Begins the test of the part in the nest; the probes are up.
@@ -176,9 +176,9 @@ impl Device {
             return self.conclude_reference_parts().map(Some);
         }
         let fine_v = self.reference_parts.fine_v().unwrap_or(UNTAUGHT_FINE_V);
-        self.teach(Lags {
-            operate: golden::interim(self.coarse.0, fine_v.0),
-            release: golden::interim(self.coarse.1, fine_v.1),
+        self.teach(Overshoots {
+            operate: reference_part::interim(self.coarse.0, fine_v.0),
+            release: reference_part::interim(self.coarse.1, fine_v.1),
         });
         Ok(None)
     }
@@ -189,10 +189,10 @@ impl Device {
     /// Says which part does not fit the others, or that there are too few.
     pub fn conclude_reference_parts(&mut self) -> Result<Calibration, Misfit> {
         let accuracy = &self.context.accuracy;
-        let lags = self
+        let overshoots = self
             .reference_parts
-            .lags(&self.certificates, accuracy, self.coarse)?;
-        self.teach(lags);
+            .overshoots(&self.certificates, accuracy, self.coarse)?;
+        self.teach(overshoots);
         Ok(self.calibration().clone())
     }
 
@@ -205,14 +205,14 @@ impl Device {
         if pass {
             self.learn_ramps(seen, true);
         }
-        self.calibrate_lags(Lags {
+        self.calibrate_overshoots(Overshoots {
             operate: self
                 .context
-                .operate_lag()
+                .operate_overshoot()
                 .taught(self.coarse.0, self.of_lot.0),
             release: self
                 .context
-                .release_lag()
+                .release_overshoot()
                 .taught(self.coarse.1, self.of_lot.1),
         });
     }
@@ -223,7 +223,7 @@ impl Device {
     /// Names what does not agree.
     pub fn check(&self, serial: &str, record: &TestRecord) -> Result<(), Misfit> {
         match self.certificate(serial) {
-            Some(part) => golden::check(part, record),
+            Some(part) => reference_part::check(part, record),
             None => Err(Misfit::NoCertificate {
                 serial: serial.to_owned(),
             }),
@@ -240,7 +240,7 @@ impl Device {
         self.probe_contact.settled()
     }
 
-    fn certificate(&self, serial: &str) -> Option<&GoldenPart> {
+    fn certificate(&self, serial: &str) -> Option<&ReferencePart> {
         self.certificates.iter().find(|part| part.serial == serial)
     }
 
@@ -261,14 +261,14 @@ impl Device {
     }
 
     /// Takes over what reference parts have taught, with the probe contact that their overshoot holds.
-    fn teach(&mut self, lags: Lags) {
+    fn teach(&mut self, overshoots: Overshoots) {
         let probe_contact_ohm = self.reference_parts.probe_contact_ohm();
         self.calibrate(|calibration| calibration.probe_contact_ohm = probe_contact_ohm);
-        self.calibrate_lags(lags);
+        self.calibrate_overshoots(overshoots);
     }
 
-    fn calibrate_lags(&mut self, lags: Lags) {
-        self.calibrate(|calibration| calibration.lags = Some(lags));
+    fn calibrate_overshoots(&mut self, overshoots: Overshoots) {
+        self.calibrate(|calibration| calibration.overshoots = Some(overshoots));
     }
 
     fn calibrate(&mut self, change: impl FnOnce(&mut Calibration)) {

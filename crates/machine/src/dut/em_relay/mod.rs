@@ -15,7 +15,7 @@
 //! | what the instruments are known to do | [`calibration`], [`settings`] |
 //! | how the factors are found: board references, reference parts | [`reference`], [`golden`] |
 //! | coil resistance | [`coil`] |
-//! | operate and release voltage | [`threshold`], [`lag`], [`supply`] |
+//! | operate and release voltage | [`threshold`], [`overshoot`], [`supply`] |
 //! | times and bounce | [`timing`] |
 //! | contact resistance | [`contact`] |
 //! | contact of the probes at the coil | [`probe_contact`] |
@@ -33,9 +33,9 @@ pub mod device;
 pub mod evidence;
 pub mod feasible;
 pub mod finding;
-pub mod golden;
+pub mod reference_part;
 pub mod keys;
-pub mod lag;
+pub mod overshoot;
 pub mod made_up;
 pub mod measure;
 pub mod parameter;

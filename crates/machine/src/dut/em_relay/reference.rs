@@ -304,7 +304,7 @@ pub fn conclude(
             gate_delay(context, readings, 1)?,
         ],
         coil_input,
-        lags: None,
+        overshoots: None,
         probe_contact_ohm: 0.0,
     })
 }

@@ -94,7 +94,7 @@ pub struct Certified {
 
 /// A relay with a certificate, run before a lot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct GoldenPart {
+pub struct ReferencePart {
     /// Serial number.
     pub serial: String,
     /// Nominal coil voltage: it serves recipes of this voltage.
@@ -107,7 +107,7 @@ pub struct GoldenPart {
     pub coil_resistance_ohm: Certified,
 }
 
-impl GoldenPart {
+impl ReferencePart {
     /// What is certified of it.
     pub fn certified(&self) -> [(Parameter, Certified); 3] {
         [
@@ -120,22 +120,22 @@ impl GoldenPart {
 
 /// All golden parts of the plant.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct GoldenSet {
+pub struct ReferenceSet {
     /// Temperature of the certified values, degrees Celsius.
     pub reference_temperature_c: f64,
     /// The parts.
     #[serde(rename = "golden")]
-    pub parts: Vec<GoldenPart>,
+    pub parts: Vec<ReferencePart>,
 }
 
-impl GoldenSet {
+impl ReferenceSet {
     /// The certificates of all parts.
     pub fn certificates(&self) -> Vec<Certificate> {
         self.parts.iter().map(Certificate::from).collect()
     }
 
     /// The parts that serve recipes of this nominal coil voltage.
-    pub fn of_nominal(&self, nominal_v: f64) -> impl Iterator<Item = &GoldenPart> {
+    pub fn of_nominal(&self, nominal_v: f64) -> impl Iterator<Item = &ReferencePart> {
         self.parts
             .iter()
             .filter(move |part| (part.nominal_v - nominal_v).abs() < 1e-6)

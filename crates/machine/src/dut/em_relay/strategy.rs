@@ -5,7 +5,7 @@
 //! | `pulse` | one step to the limit less the guard band | one bit: proven, or measured after all |
 //! | `staircase` | steps of 20 mV with a dwell, until the contact changes | a value, slowly, from levels alone: the method in dispute |
 //! | `bisection` | seven steps into a halved interval, each from rest | a value to a hundredth of the interval |
-//! | `ramp` | the coarse ramp with the gated counter; for operate the lag follows the part's operate time ([`super::lag`]) | a value at the scatter of its lag |
+//! | `ramp` | the coarse ramp with the gated counter; for operate the lag follows the part's operate time ([`super::overshoot`]) | a value at the scatter of its lag |
 //! | `two_rates` | coarse and fine ramp, the lag eliminated by its law | a value without golden parts |
 //! | `coarse_fine` | a coarse ramp that places a fine one | a value at the scatter of the fine lag |
 //! | `adaptive` | the coarse ramp; the fine one within the uncertainty of a limit | the decision of the fine one at the pace of the coarse one |
@@ -102,8 +102,8 @@ pub fn from_two_rates(seen_v: [f64; 2], rates: [f64; 2], growth_s: f64) -> f64 {
 }
 
 /// Growth time L in seconds from the lags of two rates on parts of known threshold; both lags positive.
-pub fn growth_s(lags_v: [f64; 2], rates: [f64; 2]) -> f64 {
-    let each = |place: usize| lags_v[place] / rates[place];
+pub fn growth_s(overshoots_v: [f64; 2], rates: [f64; 2]) -> f64 {
+    let each = |place: usize| overshoots_v[place] / rates[place];
     (each(1) - each(0)) / (rates[0].ln() - rates[1].ln())
 }
 

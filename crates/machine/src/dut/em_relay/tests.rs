@@ -4,11 +4,11 @@
 use crate::dut;
 use crate::dut::em_relay::Calibration;
 use crate::dut::em_relay::Device;
-use crate::dut::em_relay::calibration::{InputLine, Lag, Lags, OutputLine};
-use crate::dut::em_relay::lag::LagLaw;
+use crate::dut::em_relay::calibration::{InputLine, Overshoot, Overshoots, OutputLine};
+use crate::dut::em_relay::overshoot::OvershootModel;
 use crate::dut::em_relay::measure::Context;
 use crate::dut::em_relay::points::Points;
-use crate::dut::em_relay::settings::{AccuracySettings, GoldenPart, GoldenSet, ReferenceSettings};
+use crate::dut::em_relay::settings::{AccuracySettings, ReferencePart, ReferenceSet, ReferenceSettings};
 use crate::dut::recipe::{DeviceRecipe, Recipe};
 use crate::gauge::Factor;
 use crate::handling::tests::wiring;
@@ -58,19 +58,19 @@ pub fn device_of(context: Context) -> dut::Device {
 }
 
 /// The golden parts of 12 V.
-pub fn golden_parts() -> Vec<GoldenPart> {
-    let set: GoldenSet = toml::from_str(include_str!("../../../../../config/golden.toml")).unwrap();
+pub fn golden_parts() -> Vec<ReferencePart> {
+    let set: ReferenceSet = toml::from_str(include_str!("../../../../../config/golden.toml")).unwrap();
     set.of_nominal(12.0).cloned().collect()
 }
 
 /// Channels with the gains of the default rig and no error.
 fn calibration() -> Calibration {
     let exact = |value| Factor::new(value, 1e-6);
-    let lag = |coarse_v| Lag {
+    let overshoot = |coarse_v| Overshoot {
         fine_v: exact(0.0),
         at_v: 0.0,
         at_coarse_v: coarse_v,
-        coarse: LagLaw::guess(coarse_v),
+        coarse: OvershootModel::guess(coarse_v),
         judges: false,
     };
     Calibration {
@@ -92,9 +92,9 @@ fn calibration() -> Calibration {
         coarse_v_per_s: exact(96.0),
         fine_v_per_s: exact(1.5),
         probe_contact_ohm: 0.0,
-        lags: Some(Lags {
-            operate: lag(0.85),
-            release: lag(-1.05),
+        overshoots: Some(Overshoots {
+            operate: overshoot(0.85),
+            release: overshoot(-1.05),
         }),
     }
 }

@@ -7,7 +7,7 @@
 //! 50 mV, the error of the level, the contact of the probes and the mean heating of the coil, all of which were there too.
 //! Pickup current does not depend on temperature, so the voltage scales like the coil (IEC 61810-7).
 
-use super::calibration::Lag;
+use super::calibration::Overshoot;
 use super::coil::{relative_per_kelvin, to_reference};
 use crate::gauge::Factor;
 use crate::gauge::budget::{Budget, Reading, resolution};
@@ -65,15 +65,15 @@ pub struct RampDoubt {
 pub fn quasi_static(
     (seen, own): (Volt, Factor),
     gate: Second,
-    lag: Lag,
+    overshoot: Overshoot,
     part: Celsius,
     reference: Celsius,
     doubt: RampDoubt,
 ) -> Reading {
-    let at_part = seen.0 - lag.fine_v.value - own.value;
+    let at_part = seen.0 - overshoot.fine_v.value - own.value;
     let value = at_part * to_reference(part, reference);
     let budget = Budget::default()
-        .with("golden parts", lag.fine_v.u)
+        .with("golden parts", overshoot.fine_v.u)
         .with("lag of the part", own.u)
         .with(
             "coil temperature",
@@ -92,7 +92,7 @@ pub fn quasi_static(
             "resolution",
             resolution(doubt.slope_v_per_s.value * doubt.refresh.0),
         )
-        .with("level", (at_part - lag.at_v) * doubt.level_share)
+        .with("level", (at_part - overshoot.at_v) * doubt.level_share)
         .with("probe contact", value * doubt.contact_share);
     Reading {
         value,
@@ -104,7 +104,7 @@ pub fn quasi_static(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dut::em_relay::lag::LagLaw;
+    use crate::dut::em_relay::overshoot::OvershootModel;
 
     #[test]
     fn a_rising_ramp_indicates_start_plus_window_plus_slope_times_gate() {
@@ -116,11 +116,11 @@ mod tests {
 
     /// U / 2 of an operate voltage of 7.88 V with these doubts and no others.
     fn doubted(contact: f64, temperature_k: f64) -> f64 {
-        let lag = Lag {
+        let overshoot = Overshoot {
             fine_v: Factor::new(0.0, 0.0),
             at_v: 7.88,
             at_coarse_v: 0.85,
-            coarse: LagLaw::guess(0.85),
+            coarse: OvershootModel::guess(0.85),
             judges: false,
         };
         let doubt = RampDoubt {
@@ -135,7 +135,7 @@ mod tests {
         let reading = quasi_static(
             (Volt(7.88), Factor::new(0.0, 0.0)),
             Second(0.04),
-            lag,
+            overshoot,
             Celsius(23.0),
             Celsius(23.0),
             doubt,

@@ -3,9 +3,9 @@
 use super::golden_parts;
 use super::machine::{Machine, Specimen};
 use crate::dut::em_relay::Parameter;
-use crate::dut::em_relay::golden::check;
+use crate::dut::em_relay::reference_part::check;
 use crate::dut::em_relay::measure::TestRecord;
-use crate::dut::em_relay::settings::GoldenPart;
+use crate::dut::em_relay::settings::ReferencePart;
 use crate::gauge::budget::{Budget, Reading};
 use crate::handling::ledger::Kind;
 use crate::handling::place::Place;
@@ -21,7 +21,7 @@ use crate::station::wants::Ending;
 const BAD: Specimen = Specimen::OpenCoil;
 
 /// What a test finds on a golden part that is so many standard deviations off in one parameter.
-fn read(part: &GoldenPart, off: Parameter, deviations: f64) -> TestRecord {
+fn read(part: &ReferencePart, off: Parameter, deviations: f64) -> TestRecord {
     let mut record = TestRecord::default();
     for (parameter, certified) in [
         (Parameter::CoilResistance, part.coil_resistance_ohm),
@@ -111,7 +111,7 @@ fn nothing_but_a_golden_part_is_judged_after_a_check_that_failed() {
     machine.order(Order::Command(Command::Unhold)).unwrap();
     assert_eq!(kinds(&mut machine), ["golden"], "the gate stays closed");
     let failed = machine.station.annunciator().standing();
-    assert_eq!(failed[0].alarm.code, AlarmCode::GoldenCheckFailed);
+    assert_eq!(failed[0].alarm.code, AlarmCode::ReferenceCheckFailed);
 }
 
 #[test]
@@ -143,7 +143,7 @@ fn after_so_many_hours_the_line_holds_and_asks_for_the_golden_part() {
         "{made:?}"
     );
     let due = &machine.station.annunciator().standing()[0].alarm;
-    assert!(due.code == AlarmCode::GoldenCheckDue && due.args.get("serial") == Some("G-12-1"));
+    assert!(due.code == AlarmCode::ReferenceCheckDue && due.args.get("serial") == Some("G-12-1"));
     machine.order(Order::Command(Command::Unhold)).unwrap();
     assert_eq!(
         kinds(&mut machine).first().map(String::as_str),

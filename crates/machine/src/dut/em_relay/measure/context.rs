@@ -2,13 +2,13 @@
 
 use crate::dut::Recipe;
 use crate::dut::em_relay::act::Act;
-use crate::dut::em_relay::calibration::{Calibration, Lag};
+use crate::dut::em_relay::calibration::{Calibration, Overshoot};
 use crate::dut::em_relay::coil::ScanDoubt;
-use crate::dut::em_relay::golden::interim;
-use crate::dut::em_relay::lag::LagLaw;
+use crate::dut::em_relay::reference_part::interim;
+use crate::dut::em_relay::overshoot::OvershootModel;
 use crate::dut::em_relay::points::{AnalogIn, Points};
 use crate::dut::em_relay::recipe::{CoilChannels, RelayRecipe};
-use crate::dut::em_relay::settings::{AccuracySettings, GoldenPart, ReferenceSettings};
+use crate::dut::em_relay::settings::{AccuracySettings, ReferencePart, ReferenceSettings};
 use crate::dut::em_relay::threshold::Direction;
 use crate::dut::em_relay::timing::Clock;
 use crate::dut::em_relay::{Parameter, Strategy};
@@ -48,7 +48,7 @@ pub struct Context {
     /// The slow strategy for every result: a golden check or a first article.
     pub thorough: bool,
     /// The golden part in the nest while golden parts teach the lags: its certificate places its fine ramps.
-    pub golden: Option<GoldenPart>,
+    pub golden: Option<ReferencePart>,
 }
 
 impl Context {
@@ -120,51 +120,51 @@ impl Context {
     /// parts of a lot before `adaptive` trusts its coarse ramp.
     pub fn strategy(&self, parameter: Parameter) -> Strategy {
         let falls = parameter == Parameter::ReleaseVoltage;
-        let lag = if falls {
-            self.release_lag()
+        let overshoot = if falls {
+            self.release_overshoot()
         } else {
-            self.operate_lag()
+            self.operate_overshoot()
         };
         let mut each = self.relay.test.strategy.each().into_iter();
         match each.find(|(known, _)| *known == parameter) {
             Some(_) if self.thorough => Strategy::CoarseFine,
-            Some((_, Strategy::Adaptive)) if !lag.judges => Strategy::CoarseFine,
-            Some((_, strategy)) if lag.fine_v.u.is_finite() => strategy,
+            Some((_, Strategy::Adaptive)) if !overshoot.judges => Strategy::CoarseFine,
+            Some((_, strategy)) if overshoot.fine_v.u.is_finite() => strategy,
             Some(_) | None => Strategy::CoarseFine,
         }
     }
 
     /// Lag of the ramps of a direction.
-    pub fn lag(&self, direction: Direction) -> Lag {
+    pub fn overshoot(&self, direction: Direction) -> Overshoot {
         match direction {
-            Direction::Rising => self.operate_lag(),
-            Direction::Falling => self.release_lag(),
+            Direction::Rising => self.operate_overshoot(),
+            Direction::Falling => self.release_overshoot(),
         }
     }
 
     /// Lag of the operate ramps; before golden parts were run, a guess with a wide scatter.
-    pub fn operate_lag(&self) -> Lag {
+    pub fn operate_overshoot(&self) -> Overshoot {
         self.calibration
-            .lags
-            .map_or(interim(untaught().0, UNTAUGHT_FINE_V.0), |lags| {
-                lags.operate
+            .overshoots
+            .map_or(interim(untaught().0, UNTAUGHT_FINE_V.0), |overshoots| {
+                overshoots.operate
             })
     }
 
     /// Lag of the release ramps.
-    pub fn release_lag(&self) -> Lag {
+    pub fn release_overshoot(&self) -> Overshoot {
         self.calibration
-            .lags
-            .map_or(interim(untaught().1, UNTAUGHT_FINE_V.1), |lags| {
-                lags.release
+            .overshoots
+            .map_or(interim(untaught().1, UNTAUGHT_FINE_V.1), |overshoots| {
+                overshoots.release
             })
     }
 }
 
 /// Laws of both coarse ramps before any part was run, operate and release.
-pub fn untaught() -> (LagLaw, LagLaw) {
+pub fn untaught() -> (OvershootModel, OvershootModel) {
     (
-        LagLaw::guess(UNTAUGHT_OPERATE_V),
-        LagLaw::guess(UNTAUGHT_RELEASE_V),
+        OvershootModel::guess(UNTAUGHT_OPERATE_V),
+        OvershootModel::guess(UNTAUGHT_RELEASE_V),
     )
 }

@@ -3,9 +3,9 @@
 use super::search::parameter;
 use super::{Context, Ramp};
 use crate::dut::em_relay::Strategy;
-use crate::dut::em_relay::calibration::Lag;
+use crate::dut::em_relay::calibration::Overshoot;
 use crate::dut::em_relay::coil::to_reference;
-use crate::dut::em_relay::lag::Shown;
+use crate::dut::em_relay::overshoot::Shown;
 use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::strategy::{from_two_rates, growth_s};
 use crate::dut::em_relay::threshold::{Direction, RampDoubt, quasi_static};
@@ -31,11 +31,11 @@ pub(super) fn gate0(context: &Context, readings: &Readings) -> Option<Second> {
 /// error of its slope; each would otherwise be counted twice.
 pub(super) fn coarse_reading(
     context: &Context,
-    (seen, lag): (Shown, Lag),
+    (seen, overshoot): (Shown, Overshoot),
     part: Celsius,
     direction: Direction,
 ) -> Option<Reading> {
-    let predicted = lag.coarse.of(&seen);
+    let predicted = overshoot.coarse.of(&seen);
     // What was learned holds the operation of the fine ramp as well, which is none of this value's.
     let operation_v = context.operation_v();
     let own_v = (predicted.u_v.powi(2) - operation_v.powi(2)).max(operation_v.powi(2));
@@ -49,9 +49,9 @@ pub(super) fn coarse_reading(
         ..doubt(context)
     };
     let reference = context.reference_temperature();
-    let own = lag.own_v(predicted.volts, direction);
+    let own = overshoot.own_v(predicted.volts, direction);
     let as_fine = seen.indicated - Volt(predicted.volts);
-    let mut reading = quasi_static((as_fine, own), Second(0.0), lag, part, reference, doubt);
+    let mut reading = quasi_static((as_fine, own), Second(0.0), overshoot, part, reference, doubt);
     reading.budget = reading.budget.with_random("strategy", own_v.sqrt());
     predicted.alike.then_some(reading)
 }
@@ -63,11 +63,11 @@ pub(super) fn fine_reading(
     part: Celsius,
     direction: Direction,
 ) -> Reading {
-    let (lag, parameter) = (context.lag(direction), parameter(direction));
+    let (overshoot, parameter) = (context.overshoot(direction), parameter(direction));
     let seen = ramps.fine.unwrap_or(Volt(f64::NAN));
     let reference = context.reference_temperature();
-    let own = lag.own_v((ramps.coarse.indicated - seen).0, direction);
-    let mut reading = quasi_static((seen, own), gate, lag, part, reference, doubt(context));
+    let own = overshoot.own_v((ramps.coarse.indicated - seen).0, direction);
+    let mut reading = quasi_static((seen, own), gate, overshoot, part, reference, doubt(context));
     if context.strategy(parameter) == Strategy::TwoRates && ramps.coarse.indicated.0.is_finite() {
         let rates = [
             context.calibration.coarse_v_per_s.value,
@@ -75,10 +75,10 @@ pub(super) fn fine_reading(
         ];
         let sign = direction.sign();
         // The growth time from the lags of both rates on golden parts; their common offset stays out of it.
-        let predicted = lag.coarse.of(&ramps.coarse);
-        let fine_v = lag.fine_v.value + lag.own_v(predicted.volts, direction).value;
-        let lags = [predicted.volts + fine_v, fine_v];
-        let growth = growth_s(lags.map(|it| it * sign), rates);
+        let predicted = overshoot.coarse.of(&ramps.coarse);
+        let fine_v = overshoot.fine_v.value + overshoot.own_v(predicted.volts, direction).value;
+        let overshoots = [predicted.volts + fine_v, fine_v];
+        let growth = growth_s(overshoots.map(|it| it * sign), rates);
         let seen = [ramps.coarse.indicated.0, seen.0].map(|volts| volts * sign);
         let found = sign * from_two_rates(seen, rates, growth);
         let scatter = rates[1] / (rates[0] - rates[1]) * predicted.u_v;

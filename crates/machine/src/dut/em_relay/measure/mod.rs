@@ -7,7 +7,7 @@
 //! Conditioning takes part where the recipe asks for operations before the first measurement.
 //! Each release follows on the operation before it, so that a part operates three times and not five.
 //! The times come first: a relay that is late on a step is late on a ramp, and its times and its coil predict by how much
-//! ([`crate::dut::em_relay::lag`]), which places the fine ramps. The test so finds a contact that does not move at nominal
+//! ([`crate::dut::em_relay::overshoot`]), which places the fine ramps. The test so finds a contact that does not move at nominal
 //! voltage before any ramp, and still measures the coil, which may be the cause.
 //!
 //! A stage consists of acts and a conclusion; `state.rs` calls both. The acts begin from the state of the board (`board.rs`)

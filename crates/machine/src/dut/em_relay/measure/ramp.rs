@@ -5,9 +5,9 @@ use super::Context;
 use super::indication::coarse_reading;
 use super::search::parameter;
 use super::state::TestState;
-use crate::dut::em_relay::calibration::Lag;
+use crate::dut::em_relay::calibration::Overshoot;
 use crate::dut::em_relay::coil::to_reference;
-use crate::dut::em_relay::lag::Shown;
+use crate::dut::em_relay::overshoot::Shown;
 use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::threshold::Direction;
 use units::{Celsius, Volt};
@@ -67,8 +67,8 @@ impl Expected {
     }
 
     /// Where a coarse ramp and the law of its lag say.
-    pub fn after(coarse: &Shown, lag: &Lag) -> Self {
-        let predicted = lag.coarse.of(coarse);
+    pub fn after(coarse: &Shown, overshoot: &Overshoot) -> Self {
+        let predicted = overshoot.coarse.of(coarse);
         let sd_v = predicted.u_v.min(WIDEST_SD_V);
         Self::new(coarse.indicated - Volt(predicted.volts), sd_v)
     }
@@ -76,18 +76,18 @@ impl Expected {
     /// Where the certificate of a golden part that teaches the lags says; the first of them is to tell the fine one.
     pub fn certified(context: &Context, track: Celsius, direction: Direction) -> Option<Self> {
         let golden = context.golden.as_ref()?;
-        let lag = context.lag(direction);
+        let overshoot = context.overshoot(direction);
         let certified = match direction {
             Direction::Rising => golden.operate_voltage_v,
             Direction::Falling => golden.release_voltage_v,
         };
         let at_part = certified.value / to_reference(track, context.reference_temperature());
-        let sd_v = if lag.coarse.parts() == 0 {
+        let sd_v = if overshoot.coarse.parts() == 0 {
             FINE_GUESS_SD_V
         } else {
             TWO_OPERATIONS_V.hypot(TWO_TEMPERATURES * at_part)
         };
-        Some(Self::new(Volt(at_part + lag.fine_v.value), sd_v))
+        Some(Self::new(Volt(at_part + overshoot.fine_v.value), sd_v))
     }
 
     /// The rising ramp that searches this interval after a run-up.
@@ -154,12 +154,12 @@ pub(super) fn after_coarse(
     let Some(part) = state.record.own.track else {
         return false;
     };
-    let (lag, parameter) = (context.lag(direction), parameter(direction));
+    let (overshoot, parameter) = (context.overshoot(direction), parameter(direction));
     let certified = Expected::certified(context, part, direction);
-    let expected = certified.unwrap_or_else(|| Expected::after(&seen, &lag));
+    let expected = certified.unwrap_or_else(|| Expected::after(&seen, &overshoot));
     state.plan.expect(direction, expected);
     let strategy = context.strategy(parameter);
-    match coarse_reading(context, (seen, lag), part, direction) {
+    match coarse_reading(context, (seen, overshoot), part, direction) {
         Some(reading) if strategy.trusts_coarse() => {
             let gates = readings.gates.iter().flatten();
             state.record.found(parameter, reading, gates);

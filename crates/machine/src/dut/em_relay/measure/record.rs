@@ -1,7 +1,7 @@
 //! What only the test of a relay sees beside its results: ramps, temperature, contact of the probes.
 
 use crate::dut::em_relay::Parameter;
-use crate::dut::em_relay::lag::Shown;
+use crate::dut::em_relay::overshoot::Shown;
 use crate::dut::em_relay::threshold::Direction;
 use crate::dut::record;
 use crate::gauge::Judgement;

@@ -15,7 +15,7 @@ mod trial;
 use super::pace::Pace;
 use super::plan::Plan;
 use super::{Context, TestRecord};
-use crate::dut::em_relay::lag::Shown;
+use crate::dut::em_relay::overshoot::Shown;
 use crate::dut::em_relay::threshold::Direction;
 use crate::dut::em_relay::{Parameter, Strategy};
 pub(super) use outcome::conclude;
@@ -27,8 +27,8 @@ const REACH: f64 = 4.5;
 /// The interval of a search that only places a ramp, in standard deviations of the lot.
 const WIDE: f64 = 6.0;
 /// A coarse ramp has overshot by as many times what it overshoots on other parts: a dragging hinge by the most.
-const MOST_LAG: f64 = 3.5;
-const LEAST_LAG: f64 = 0.3;
+const MOST_OVERSHOOT: f64 = 3.5;
+const LEAST_OVERSHOOT: f64 = 0.3;
 /// The search goes no lower than this fraction of nominal.
 const LOWEST: f64 = 0.02;
 /// Number of the attempt of a fine ramp that a search has placed.
@@ -175,8 +175,8 @@ impl Search {
 /// Between the ends of what a coarse ramp may have overshot by, if there was one.
 fn overshot(context: &Context, record: &TestRecord, direction: Direction) -> Option<(Volt, Volt)> {
     let indicated = record.ramp(direction)?.coarse.indicated;
-    let lag_v = context.lag(direction).coarse.of(&Shown::NOTHING).volts;
-    let [near, end] = [MOST_LAG, LEAST_LAG].map(|lags| indicated - Volt(lags * lag_v));
+    let overshoot_v = context.overshoot(direction).coarse.of(&Shown::NOTHING).volts;
+    let [near, end] = [MOST_OVERSHOOT, LEAST_OVERSHOOT].map(|overshoots| indicated - Volt(overshoots * overshoot_v));
     (near.0.is_finite() && near.0 > 0.0).then_some((near, end))
 }
 

@@ -78,7 +78,7 @@ fn placed(
 /// Where a fine ramp will show a threshold that levels have found.
 fn near(context: &Context, direction: Direction, volts: Volt, step: Volt) -> Expected {
     Expected::new(
-        volts + Volt(context.lag(direction).fine_v.value),
+        volts + Volt(context.overshoot(direction).fine_v.value),
         step.0.abs().max(0.010),
     )
 }

@@ -4,9 +4,9 @@ use super::super::{Stage, fine};
 use super::{PULLED, RESTING, at_23_c, context, watched};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::act::Act;
-use crate::dut::em_relay::calibration::{Calibration, Lags};
-use crate::dut::em_relay::golden::interim;
-use crate::dut::em_relay::lag::{LagLaw, Shown};
+use crate::dut::em_relay::calibration::{Calibration, Overshoots};
+use crate::dut::em_relay::reference_part::interim;
+use crate::dut::em_relay::overshoot::{OvershootModel, Shown};
 use crate::dut::em_relay::measure::pace::Pace;
 use crate::dut::em_relay::measure::ramp::Expected;
 use crate::dut::em_relay::points::DigitalOut;
@@ -119,23 +119,23 @@ fn a_release_ramp_turns_the_one_before_it_round_and_prolongs_an_operate_ramp() {
 #[test]
 fn a_golden_part_that_teaches_is_looked_for_where_its_certificate_says() {
     let mut context = context();
-    let learned = context.operate_lag();
-    let mut half_width = |coarse: LagLaw| {
+    let learned = context.operate_overshoot();
+    let mut half_width = |coarse: OvershootModel| {
         context.golden = golden_parts().into_iter().next();
-        let lag = interim(coarse, 0.03);
-        let lags = Lags {
-            operate: lag,
-            release: lag,
+        let overshoot = interim(coarse, 0.03);
+        let overshoots = Overshoots {
+            operate: overshoot,
+            release: overshoot,
         };
         context.calibration = Arc::new(Calibration {
-            lags: Some(lags),
+            overshoots: Some(overshoots),
             ..(*context.calibration).clone()
         });
         let found = Expected::certified(&context, Celsius(23.0), Direction::Rising).unwrap();
         assert!((found.centre.0 - 7.43).abs() < 1e-9, "{found:?}");
         found.half_width.0
     };
-    let first = half_width(LagLaw::guess(0.85));
+    let first = half_width(OvershootModel::guess(0.85));
     let mut taught = learned.coarse;
     taught.learn(&shown(), Volt(7.9));
     let second = half_width(taught);

@@ -5,7 +5,7 @@ use super::super::{Ramp, Stage, coil, fine, operate, release, timing};
 use super::{PULLED, RESTING, assert_ends, at_23_c, context, drop_of, ended, gates, scan, watched};
 use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::bins;
-use crate::dut::em_relay::lag::{LagLaw, Shown};
+use crate::dut::em_relay::overshoot::{OvershootModel, Shown};
 use crate::dut::em_relay::measure::ramp::Expected;
 use crate::dut::em_relay::measure::{Context, TestState};
 use crate::dut::em_relay::points::DigitalOut;
@@ -281,11 +281,11 @@ fn a_closure_with_the_source_in_compliance_fails_by_contact() {
 /// The default context on the strategy `ramp`, with a law taught by parts of which each millisecond of operate time
 /// showed 96 mV more.
 fn on_the_ramp() -> Context {
-    let mut law = LagLaw::guess(0.85);
+    let mut law = OvershootModel::guess(0.85);
     for at in 0..40 {
         let turn = |by: f64| (f64::from(at) * by).fract() - 0.5;
         let late_ms = 0.8 * turn(0.618);
-        let lag = Volt(0.85 + 0.096 * late_ms);
+        let overshoot = Volt(0.85 + 0.096 * late_ms);
         let indicated = Volt(8.87 + 0.9 * turn(0.382_7));
         let shown = Shown {
             indicated,
@@ -294,16 +294,16 @@ fn on_the_ramp() -> Context {
             release_ms: 2.9 + 0.4 * turn(0.271),
             coil_ohm: 400.0 + 20.0 * turn(0.724),
         };
-        law.learn(&shown, shown.indicated - lag);
+        law.learn(&shown, shown.indicated - overshoot);
     }
     let mut context = context();
     let strategy = &mut Arc::make_mut(&mut context.relay).test.strategy;
     strategy.operate_voltage_v = Strategy::Ramp;
-    let lags = Arc::make_mut(&mut context.calibration)
-        .lags
+    let overshoots = Arc::make_mut(&mut context.calibration)
+        .overshoots
         .as_mut()
         .unwrap();
-    lags.operate.coarse = law;
+    overshoots.operate.coarse = law;
     context
 }
 

@@ -2,11 +2,11 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::dut::em_relay::Parameter;
-use crate::dut::em_relay::golden::{GoldenRun, interim};
-use crate::dut::em_relay::lag::Shown;
+use crate::dut::em_relay::reference_part::{ReferenceRun, interim};
+use crate::dut::em_relay::overshoot::Shown;
 use crate::dut::em_relay::measure::context::untaught;
 use crate::dut::em_relay::measure::{Ramp, TestRecord};
-use crate::dut::em_relay::settings::GoldenPart;
+use crate::dut::em_relay::settings::ReferencePart;
 use crate::dut::em_relay::tests::context;
 use crate::dut::em_relay::tests::golden_parts;
 use crate::gauge::budget::{Budget, Reading};
@@ -16,7 +16,7 @@ use units::{Celsius, Unit, Volt};
 const REFERENCE: Celsius = Celsius(23.0);
 
 /// What a test finds on a golden part whose ramps overshoot by so much, at 23 C.
-fn tested(part: &GoldenPart, operate_v: f64, release_v: f64, coil_off_ohm: f64) -> TestRecord {
+fn tested(part: &ReferencePart, operate_v: f64, release_v: f64, coil_off_ohm: f64) -> TestRecord {
     let fine = |volts: f64| Some(Ramp::fine_only(Volt(volts)));
     let mut record = TestRecord::default();
     record.own.track = Some(REFERENCE);
@@ -31,8 +31,8 @@ fn tested(part: &GoldenPart, operate_v: f64, release_v: f64, coil_off_ohm: f64) 
     record
 }
 
-fn run_of(operate_mv: &[f64], release_mv: f64) -> GoldenRun {
-    let mut run = GoldenRun::default();
+fn run_of(operate_mv: &[f64], release_mv: f64) -> ReferenceRun {
+    let mut run = ReferenceRun::default();
     for (part, mv) in golden_parts().iter().zip(operate_mv) {
         let record = tested(part, mv / 1e3, release_mv / 1e3, 0.0);
         run.learn(part, REFERENCE, &record, &record.own).unwrap();
@@ -43,19 +43,19 @@ fn run_of(operate_mv: &[f64], release_mv: f64) -> GoldenRun {
 #[test]
 fn the_fine_lag_is_the_mean_shift_from_the_certificates() {
     let run = run_of(&[12.0, 15.0, 13.0, 14.0, 16.0], -9.0);
-    let lags = run
-        .lags(&golden_parts(), &context().accuracy, untaught())
+    let overshoots = run
+        .overshoots(&golden_parts(), &context().accuracy, untaught())
         .unwrap();
-    assert!((lags.operate.fine_v.value - 0.014).abs() < 1e-9);
-    assert!((lags.release.fine_v.value + 0.009).abs() < 1e-9);
-    assert!(lags.operate.fine_v.u > 0.001 && lags.operate.fine_v.u < 0.005);
-    assert!(lags.release.fine_v.u < lags.operate.fine_v.u);
+    assert!((overshoots.operate.fine_v.value - 0.014).abs() < 1e-9);
+    assert!((overshoots.release.fine_v.value + 0.009).abs() < 1e-9);
+    assert!(overshoots.operate.fine_v.u > 0.001 && overshoots.operate.fine_v.u < 0.005);
+    assert!(overshoots.release.fine_v.u < overshoots.operate.fine_v.u);
 }
 
 #[test]
 fn a_warm_golden_part_is_compared_with_its_certificate_at_its_own_temperature() {
     let parts = golden_parts();
-    let mut run = GoldenRun::default();
+    let mut run = ReferenceRun::default();
     let warm = Celsius(28.0);
     for part in &parts {
         let scale = (234.5 + 28.0) / (234.5 + 23.0);
@@ -71,16 +71,16 @@ fn a_warm_golden_part_is_compared_with_its_certificate_at_its_own_temperature() 
         });
         run.learn(part, REFERENCE, &record, &record.own).unwrap();
     }
-    let lags = run.lags(&parts, &context().accuracy, untaught()).unwrap();
-    assert!((lags.operate.fine_v.value - 0.012).abs() < 1e-9);
-    assert!((lags.release.fine_v.value + 0.012).abs() < 1e-9);
+    let overshoots = run.overshoots(&parts, &context().accuracy, untaught()).unwrap();
+    assert!((overshoots.operate.fine_v.value - 0.012).abs() < 1e-9);
+    assert!((overshoots.release.fine_v.value + 0.012).abs() < 1e-9);
 }
 
 #[test]
 fn a_part_that_does_not_fit_the_others_is_named() {
     let run = run_of(&[12.0, 15.0, 130.0, 14.0, 16.0], -9.0);
     let why = run
-        .lags(&golden_parts(), &context().accuracy, untaught())
+        .overshoots(&golden_parts(), &context().accuracy, untaught())
         .unwrap_err();
     let why = why.to_string();
     assert!(why.contains("G-12-3"), "{why}");
@@ -90,8 +90,8 @@ fn a_part_that_does_not_fit_the_others_is_named() {
 fn fewer_than_three_golden_parts_teach_no_lag() {
     for (n, usable) in [(0, false), (1, false), (2, false), (3, true), (5, true)] {
         let run = run_of(&vec![14.0; n], -9.0);
-        let lags = run.lags(&golden_parts(), &context().accuracy, untaught());
-        assert_eq!(lags.is_ok(), usable, "{n} parts");
+        let overshoots = run.overshoots(&golden_parts(), &context().accuracy, untaught());
+        assert_eq!(overshoots.is_ok(), usable, "{n} parts");
     }
 }
 
@@ -99,8 +99,8 @@ fn fewer_than_three_golden_parts_teach_no_lag() {
 fn more_golden_parts_make_the_lag_surer() {
     let u = |n: usize| {
         let run = run_of(&vec![14.0; n], -9.0);
-        let lags = run.lags(&golden_parts(), &context().accuracy, untaught());
-        lags.unwrap().operate.fine_v.u
+        let overshoots = run.overshoots(&golden_parts(), &context().accuracy, untaught());
+        overshoots.unwrap().operate.fine_v.u
     };
     assert!((u(3) / u(5) - (5f64 / 3.0).sqrt()).abs() < 1e-9);
 }
@@ -126,18 +126,18 @@ fn a_golden_part_that_was_not_fully_measured_is_refused_by_name() {
         ("coil", tested(&part, 0.014, -0.009, -3.0)),
     ];
     for (what, record) in cases {
-        let refused = GoldenRun::default().learn(&part, REFERENCE, &record, &record.own);
+        let refused = ReferenceRun::default().learn(&part, REFERENCE, &record, &record.own);
         let why = refused.unwrap_err();
         let why = why.to_string();
         assert!(why.contains("G-12-2") && why.contains(what), "{why}");
     }
-    let learned = GoldenRun::default().learn(&part, REFERENCE, &good(), &good().own);
+    let learned = ReferenceRun::default().learn(&part, REFERENCE, &good(), &good().own);
     assert_eq!(learned, Ok(()));
 }
 
 #[test]
 fn while_golden_parts_run_the_fine_lag_proves_nothing() {
-    let lag = interim(untaught().0, 0.0);
-    assert_eq!((lag.fine_v.value, lag.fine_v.u), (0.0, f64::INFINITY));
-    assert_eq!(lag.coarse, context().operate_lag().coarse);
+    let overshoot = interim(untaught().0, 0.0);
+    assert_eq!((overshoot.fine_v.value, overshoot.fine_v.u), (0.0, f64::INFINITY));
+    assert_eq!(overshoot.coarse, context().operate_overshoot().coarse);
 }

@@ -13,7 +13,7 @@ const RESET_EVERY: usize = 16;
 
 /// The scan of one line.
 #[derive(Debug)]
-pub(super) struct Rota {
+pub(super) struct ScanSchedule {
     /// Every second turn, if the line carries the emergency-stop contact.
     priority: Option<Command>,
     /// The other modules.
@@ -39,7 +39,7 @@ pub(super) enum Next {
     Other(Command),
 }
 
-impl Rota {
+impl ScanSchedule {
     pub(super) fn new(
         priority: Option<Command>,
         others: Vec<Command>,
@@ -127,10 +127,10 @@ mod tests {
     }
 
     /// How often each command comes in `turns` turns, and the longest wait between two of the contact.
-    fn counted(rota: &mut Rota, beam: Option<Command>, turns: usize) -> Vec<(Command, usize)> {
+    fn counted(scan_schedule: &mut ScanSchedule, beam: Option<Command>, turns: usize) -> Vec<(Command, usize)> {
         let mut counts: Vec<(Command, usize)> = Vec::new();
         for _ in 0..turns {
-            let Some(Next::Priority(command) | Next::Other(command)) = rota.next(beam) else {
+            let Some(Next::Priority(command) | Next::Other(command)) = scan_schedule.next(beam) else {
                 continue;
             };
             match counts.iter_mut().find(|(known, _)| *known == command) {
@@ -153,9 +153,9 @@ mod tests {
         for modules in 1..=6u8 {
             let others: Vec<Command> = (0..modules).map(|n| poll(0x20 + n)).collect();
             let resets: Vec<Command> = (0..modules).map(|n| reset(0x20 + n)).collect();
-            let mut rota = Rota::new(Some(poll(0x11)), others.clone(), resets.clone());
+            let mut scan_schedule = ScanSchedule::new(Some(poll(0x11)), others.clone(), resets.clone());
             let turns = 2 * RESET_EVERY * 60;
-            let counts = counted(&mut rota, Some(beam()), turns);
+            let counts = counted(&mut scan_schedule, Some(beam()), turns);
             assert_eq!(of(&counts, poll(0x11)), turns / 2);
             let fair = (turns / 2 - 60) / 2 / usize::from(modules);
             for command in &others {
@@ -177,22 +177,22 @@ mod tests {
 
     #[test]
     fn between_two_other_transactions_the_contact_is_asked() {
-        let mut rota = Rota::new(Some(poll(0x11)), vec![poll(0x12)], Vec::new());
-        rota.something_else();
-        assert_eq!(rota.contact(), Some(poll(0x11)));
-        assert_eq!(rota.contact(), None, "it was asked just now");
-        rota.something_else();
-        assert_eq!(rota.next(None), Some(Next::Priority(poll(0x11))));
-        assert_eq!(rota.next(None), Some(Next::Other(poll(0x12))));
+        let mut scan_schedule = ScanSchedule::new(Some(poll(0x11)), vec![poll(0x12)], Vec::new());
+        scan_schedule.something_else();
+        assert_eq!(scan_schedule.contact(), Some(poll(0x11)));
+        assert_eq!(scan_schedule.contact(), None, "it was asked just now");
+        scan_schedule.something_else();
+        assert_eq!(scan_schedule.next(None), Some(Next::Priority(poll(0x11))));
+        assert_eq!(scan_schedule.next(None), Some(Next::Other(poll(0x12))));
     }
 
     #[test]
     fn when_an_actuator_is_not_where_it_should_be_each_module_is_asked_at_once_whether_it_has_restarted()
      {
         let resets = vec![reset(0x13), reset(0x14)];
-        let mut rota = Rota::new(Some(poll(0x11)), vec![poll(0x12)], resets);
-        rota.ask_for_resets();
-        let asked = std::iter::from_fn(|| rota.next(Some(beam())));
+        let mut scan_schedule = ScanSchedule::new(Some(poll(0x11)), vec![poll(0x12)], resets);
+        scan_schedule.ask_for_resets();
+        let asked = std::iter::from_fn(|| scan_schedule.next(Some(beam())));
         let asked: Vec<Command> = asked
             .map(|(Next::Priority(command) | Next::Other(command))| command)
             .filter(|command| *command != poll(0x11))
@@ -203,16 +203,16 @@ mod tests {
 
     #[test]
     fn a_line_that_is_not_scanned_is_left_to_its_measurements() {
-        let mut rota = Rota::new(None, Vec::new(), vec![reset(0x04)]);
-        rota.ask_for_resets();
-        assert_eq!(rota.next(None), None);
+        let mut scan_schedule = ScanSchedule::new(None, Vec::new(), vec![reset(0x04)]);
+        scan_schedule.ask_for_resets();
+        assert_eq!(scan_schedule.next(None), None);
     }
 
     #[test]
     fn without_a_beam_its_turns_go_to_the_other_modules() {
         let others = vec![poll(0x12), poll(0x13)];
-        let mut rota = Rota::new(Some(poll(0x11)), others, Vec::new());
-        let counts = counted(&mut rota, None, 400);
+        let mut scan_schedule = ScanSchedule::new(Some(poll(0x11)), others, Vec::new());
+        let counts = counted(&mut scan_schedule, None, 400);
         assert_eq!(
             [0x11, 0x12, 0x13].map(|address| of(&counts, poll(address))),
             [200, 100, 100]
@@ -221,7 +221,7 @@ mod tests {
 
     #[test]
     fn a_line_with_nothing_to_scan_asks_nothing() {
-        let mut rota = Rota::new(None, Vec::new(), Vec::new());
-        assert!(counted(&mut rota, None, 100).is_empty());
+        let mut scan_schedule = ScanSchedule::new(None, Vec::new(), Vec::new());
+        assert!(counted(&mut scan_schedule, None, 100).is_empty());
     }
 }

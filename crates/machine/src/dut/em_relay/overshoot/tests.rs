@@ -7,10 +7,10 @@ fn part(at: u32) -> (Shown, Volt) {
     let turn = |by: f64| (f64::from(at) * by).fract() - 0.5;
     let (slow, holding, high) = (0.16 * turn(0.618), 0.15 * turn(0.382_7), 0.11 * turn(0.271));
     let fine = 7.88 * (1.0 + high);
-    let lag = 0.85 + 0.9 * slow - 0.1 * holding + 0.3 * high;
+    let overshoot = 0.85 + 0.9 * slow - 0.1 * holding + 0.3 * high;
     let shown = Shown {
-        indicated: Volt(fine + lag),
-        operate: Volt(fine + lag),
+        indicated: Volt(fine + overshoot),
+        operate: Volt(fine + overshoot),
         operate_ms: 4.7 * (1.0 + slow),
         release_ms: 2.9 * (1.0 + holding),
         coil_ohm: 400.0 * (1.0 + 0.05 * turn(0.724)),
@@ -19,8 +19,8 @@ fn part(at: u32) -> (Shown, Volt) {
 }
 
 /// Taught by so many parts, each read wrong by `noise_v` in turn upwards and downwards.
-fn taught(parts: u32, noise_v: f64) -> LagLaw {
-    let mut law = LagLaw::guess(0.80);
+fn taught(parts: u32, noise_v: f64) -> OvershootModel {
+    let mut law = OvershootModel::guess(0.80);
     for at in 0..parts {
         let (shown, fine) = part(at);
         let off = if at % 2 == 0 { noise_v } else { -noise_v };
@@ -29,14 +29,14 @@ fn taught(parts: u32, noise_v: f64) -> LagLaw {
     law
 }
 
-fn error_v(law: &LagLaw, at: u32) -> f64 {
+fn error_v(law: &OvershootModel, at: u32) -> f64 {
     let (shown, fine) = part(at);
     (law.of(&shown).volts - (shown.indicated - fine).0).abs()
 }
 
 #[test]
 fn before_any_part_the_guess_stands_and_nothing_is_alike() {
-    let predicted = LagLaw::guess(0.85).of(&part(0).0);
+    let predicted = OvershootModel::guess(0.85).of(&part(0).0);
     assert_eq!((predicted.volts, predicted.alike), (0.85, false));
     assert!(predicted.u_v > GUESS_SD_V, "{predicted:?}");
 }
@@ -189,7 +189,7 @@ fn a_late_armature_is_expected_to_lag_before_two_parts_have_told_so() {
         ..one
     };
     let further = |guess_v: f64| {
-        let mut law = LagLaw::guess(guess_v);
+        let mut law = OvershootModel::guess(guess_v);
         law.learn(&one, one.indicated - Volt(guess_v));
         law.of(&late).volts - law.of(&one).volts
     };

@@ -5,13 +5,13 @@ use machine::rig::wiring::{LineId, ModuleId, Wiring};
 
 /// Failures in a row, of scans by address and of writes by module.
 #[derive(Debug)]
-pub(super) struct Patience {
+pub(super) struct Timeouts {
     tries: u8,
     scans: Vec<(LineId, Option<Address>, u8)>,
     writes: Vec<u8>,
 }
 
-impl Patience {
+impl Timeouts {
     pub(super) fn new(wiring: &Wiring) -> Self {
         Self {
             tries: wiring.bus.tries,
@@ -69,20 +69,20 @@ mod tests {
 
     #[test]
     fn more_failures_than_a_byte_counts_are_still_trouble() {
-        let mut patience = Patience {
+        let mut timeouts = Timeouts {
             tries: 3,
             scans: Vec::new(),
             writes: vec![0],
         };
         let command = Common::ReadResetStatus.to(Address(0x11));
-        let mut failed = || patience.scan_failed(LineId(0), &command);
+        let mut failed = || timeouts.scan_failed(LineId(0), &command);
         assert_eq!([failed(), failed(), failed()], [None, None, Some(3)]);
         assert!((0..300).all(|_| failed() >= Some(3)));
         assert_eq!(failed(), Some(u8::MAX));
-        assert!(patience.may_rewrite(ModuleId(0)));
+        assert!(timeouts.may_rewrite(ModuleId(0)));
         assert!(
             (0..300)
-                .filter(|_| patience.may_rewrite(ModuleId(0)))
+                .filter(|_| timeouts.may_rewrite(ModuleId(0)))
                 .count()
                 == 1
         );

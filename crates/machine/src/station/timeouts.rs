@@ -41,11 +41,11 @@ struct Step {
 
 /// Since when feed, nests and sorter are in their step.
 #[derive(Debug, Default)]
-pub struct Patience {
+pub struct Timeouts {
     since: Vec<(Who, &'static str, RigTime)>,
 }
 
-impl Patience {
+impl Timeouts {
     /// A new state of the outer machine: every clock begins anew.
     pub fn forget(&mut self) {
         self.since.clear();

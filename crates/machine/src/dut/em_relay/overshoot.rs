@@ -95,18 +95,19 @@ pub struct Predicted {
 
 /// The law as far as it is known.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct LagLaw {
+pub struct OvershootModel {
     guess_v: f64,
     parts: u32,
     /// Logarithms of the first part.
     first: [f64; RESULTS],
     /// Prior and parts: sums of products of the terms, and of terms and lag less guess.
     products: [[f64; TERMS]; TERMS],
-    with_lag: [f64; TERMS],
+    #[serde(rename = "with_lag")]
+    with_overshoot: [f64; TERMS],
     squares: f64,
 }
 
-impl LagLaw {
+impl OvershootModel {
     /// Before any part was seen: a guess of the lag in volts.
     pub fn guess(guess_v: f64) -> Self {
         let mut law = Self {
@@ -114,13 +115,13 @@ impl LagLaw {
             parts: 0,
             first: [0.0; RESULTS],
             products: [[0.0; TERMS]; TERMS],
-            with_lag: [0.0; TERMS],
+            with_overshoot: [0.0; TERMS],
             squares: WORTH * SCATTER_V.powi(2),
         };
         for term in 0..TERMS {
             let (mean_v, weight) = believed(guess_v, term);
             law.products[term][term] = weight;
-            law.with_lag[term] = weight * mean_v;
+            law.with_overshoot[term] = weight * mean_v;
             law.squares += weight * mean_v.powi(2);
         }
         law
@@ -133,24 +134,24 @@ impl LagLaw {
 
     /// Takes in a part with both indications; one that is not a number is passed over.
     pub fn learn(&mut self, shown: &Shown, fine: Volt) {
-        let lag_v = (shown.indicated - fine).0;
-        let Some(logarithms) = shown.logarithms().filter(|_| lag_v.is_finite()) else {
+        let overshoot_v = (shown.indicated - fine).0;
+        let Some(logarithms) = shown.logarithms().filter(|_| overshoot_v.is_finite()) else {
             return;
         };
         if self.parts == 0 {
             self.first = logarithms;
         }
         let expected = self.of(shown);
-        let off_v = (lag_v - expected.volts).clamp(-ODD * expected.u_v, ODD * expected.u_v);
-        let lag_v = expected.volts + off_v - self.guess_v;
+        let off_v = (overshoot_v - expected.volts).clamp(-ODD * expected.u_v, ODD * expected.u_v);
+        let overshoot_v = expected.volts + off_v - self.guess_v;
         let terms = self.terms(logarithms);
         for (row, one) in terms.iter().enumerate() {
             for (column, other) in terms.iter().enumerate() {
                 self.products[row][column] += one * other;
             }
-            self.with_lag[row] += one * lag_v;
+            self.with_overshoot[row] += one * overshoot_v;
         }
-        self.squares += lag_v * lag_v;
+        self.squares += overshoot_v * overshoot_v;
         self.parts += 1;
     }
 
@@ -158,9 +159,9 @@ impl LagLaw {
     pub fn of(&self, shown: &Shown) -> Predicted {
         let logarithms = shown.logarithms().filter(|_| self.parts > 0);
         let terms = self.terms(logarithms.unwrap_or(self.first));
-        let line = solved(self.products, self.with_lag);
+        let line = solved(self.products, self.with_overshoot);
         let spread = dot(terms, solved(self.products, terms));
-        let left = (self.squares - dot(line, self.with_lag)).max(0.0);
+        let left = (self.squares - dot(line, self.with_overshoot)).max(0.0);
         let freedom = WORTH + f64::from(self.parts) - self.told();
         // Student's t of so many degrees of freedom is wider than a normal distribution by this.
         let student = freedom / (freedom - 2.0);

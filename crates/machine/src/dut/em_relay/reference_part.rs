@@ -6,11 +6,11 @@
 use super::measure::{Ramp, Seen};
 use crate::dut::TestRecord;
 use crate::dut::em_relay::Parameter;
-use crate::dut::em_relay::calibration::{Lag, Lags};
+use crate::dut::em_relay::calibration::{Overshoot, Overshoots};
 use crate::dut::em_relay::coil::{relative_per_kelvin, to_reference};
-use crate::dut::em_relay::lag::LagLaw;
+use crate::dut::em_relay::overshoot::OvershootModel;
 use crate::dut::em_relay::probe_contact::Trend;
-use crate::dut::em_relay::settings::{AccuracySettings, Certified, GoldenPart};
+use crate::dut::em_relay::settings::{AccuracySettings, Certified, ReferencePart};
 use crate::gauge::Factor;
 use crate::gauge::Reading;
 use thiserror::Error;
@@ -96,16 +96,16 @@ struct Shift {
 
 /// What the golden parts of a run have shown so far.
 #[derive(Debug, Clone, Default)]
-pub struct GoldenRun {
+pub struct ReferenceRun {
     shifts: Vec<Shift>,
     contact: Trend,
 }
 
-impl GoldenRun {
+impl ReferenceRun {
     /// Takes in a tested golden part, or says why it cannot be used.
     pub fn learn<T>(
         &mut self,
-        part: &GoldenPart,
+        part: &ReferencePart,
         reference: Celsius,
         record: &TestRecord<T>,
         seen: &Seen,
@@ -138,12 +138,12 @@ impl GoldenRun {
     }
 
     /// Lags from all golden parts; an error names the part that does not fit.
-    pub fn lags(
+    pub fn overshoots(
         &self,
-        sets: &[GoldenPart],
+        sets: &[ReferencePart],
         accuracy: &AccuracySettings,
-        coarse: (LagLaw, LagLaw),
-    ) -> Result<Lags, Misfit> {
+        coarse: (OvershootModel, OvershootModel),
+    ) -> Result<Overshoots, Misfit> {
         let operate = self.fine(
             |shift| shift.operate_v,
             |part| part.operate_voltage_v,
@@ -156,15 +156,15 @@ impl GoldenRun {
             sets,
             accuracy,
         )?;
-        Ok(Lags {
-            operate: Lag {
+        Ok(Overshoots {
+            operate: Overshoot {
                 fine_v: operate,
                 at_v: mean(sets, |part| part.operate_voltage_v),
                 at_coarse_v: self.over(0),
                 coarse: coarse.0,
                 judges: false,
             },
-            release: Lag {
+            release: Overshoot {
                 fine_v: release,
                 at_v: mean(sets, |part| part.release_voltage_v),
                 at_coarse_v: self.over(1),
@@ -198,8 +198,8 @@ impl GoldenRun {
     fn fine(
         &self,
         shift: fn(&Shift) -> f64,
-        certified: fn(&GoldenPart) -> Certified,
-        parts: &[GoldenPart],
+        certified: fn(&ReferencePart) -> Certified,
+        parts: &[ReferencePart],
         accuracy: &AccuracySettings,
     ) -> Result<Factor, Misfit> {
         let n = self.shifts.len() as f64;
@@ -219,7 +219,7 @@ impl GoldenRun {
                 off_mv: (shift(odd) - mean) * 1e3,
             });
         }
-        let of_part = |part: &GoldenPart| {
+        let of_part = |part: &ReferencePart| {
             let value = certified(part);
             let kelvin =
                 value.value * accuracy.part_minus_track_k * relative_per_kelvin(Celsius(23.0));
@@ -230,11 +230,11 @@ impl GoldenRun {
     }
 }
 
-fn mean(parts: &[GoldenPart], certified: fn(&GoldenPart) -> Certified) -> f64 {
+fn mean(parts: &[ReferencePart], certified: fn(&ReferencePart) -> Certified) -> f64 {
     parts.iter().map(|part| certified(part).value).sum::<f64>() / parts.len().max(1) as f64
 }
 
-fn check_coil<T>(part: &GoldenPart, record: &TestRecord<T>) -> Result<(), Misfit> {
+fn check_coil<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<(), Misfit> {
     let serial = &part.serial;
     let coil = record
         .result(Parameter::CoilResistance)
@@ -260,7 +260,7 @@ fn check_coil<T>(part: &GoldenPart, record: &TestRecord<T>) -> Result<(), Misfit
 const CHECK_K: f64 = 3.0;
 
 /// Compares what was measured on a golden part with its certificate; an error says what does not agree.
-pub fn check<T>(part: &GoldenPart, record: &TestRecord<T>) -> Result<(), Misfit> {
+pub fn check<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<(), Misfit> {
     let certified = [
         (Parameter::CoilResistance, part.coil_resistance_ohm),
         (Parameter::OperateVoltage, part.operate_voltage_v),
@@ -294,8 +294,8 @@ pub fn check<T>(part: &GoldenPart, record: &TestRecord<T>) -> Result<(), Misfit>
 }
 
 /// Lag before the golden parts are complete: no fine correction yet but where to look, the coarse one as far as learned.
-pub fn interim(coarse: LagLaw, fine_v: f64) -> Lag {
-    Lag {
+pub fn interim(coarse: OvershootModel, fine_v: f64) -> Overshoot {
+    Overshoot {
         fine_v: Factor::new(fine_v, f64::INFINITY),
         at_v: 0.0,
         at_coarse_v: 0.0,
