@@ -142,7 +142,7 @@ pub(super) fn state(connection: &Connection, record: &LotStateRecord) -> rusqlit
 pub(super) fn golden_check(
     tx: &Transaction<'_>,
     known: &Known,
-    it: &GoldenCheckRecord,
+    it: &ReferenceCheckRecord,
 ) -> Result<()> {
     let run = known.run(&it.lot)?;
     tx.execute(
@@ -227,7 +227,7 @@ impl Archive {
     }
 
     /// Golden checks of the runs that the filter leaves, in order of time.
-    pub fn golden_checks(&self, filter: &Filter) -> Result<Vec<GoldenCheck>> {
+    pub fn reference_checks(&self, filter: &Filter) -> Result<Vec<ReferenceCheck>> {
         let runs = filter.runs();
         let sql = format!(
             "SELECT run.number, golden_check.at_us, passed, text, suspect_since_us
@@ -238,21 +238,21 @@ impl Archive {
         self.connection
             .prepare(&sql)
             .and_then(|mut it| {
-                it.query_map(params_from_iter(&runs.values), golden_check_of)?
+                it.query_map(params_from_iter(&runs.values), reference_check_of)?
                     .collect()
             })
             .doing("reading golden checks")
     }
 
     /// The golden check made last, on the simulated rig or on the rig.
-    pub fn last_golden_check(&self, simulated: bool) -> Result<Option<GoldenCheck>> {
+    pub fn last_reference_check(&self, simulated: bool) -> Result<Option<ReferenceCheck>> {
         self.connection
             .query_row(
                 "SELECT run.number, golden_check.at_us, passed, text, suspect_since_us
                  FROM golden_check JOIN run ON run.id = golden_check.run_id
                  WHERE run.source = ?1 ORDER BY golden_check.at_us DESC, golden_check.id DESC LIMIT 1",
                 [source(simulated)],
-                golden_check_of,
+                reference_check_of,
             )
             .optional()
             .doing("reading the last golden check")

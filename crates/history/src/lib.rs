@@ -58,7 +58,9 @@ pub use curve::CurveRecord;
 pub use decision::Decision;
 pub use error::{HistoryError, Result};
 pub use filter::Filter;
-pub use gates::{ReferenceCheck, ReferenceCheckRecord, LotStanding, LotState, LotStateRecord, LotYield};
+pub use gates::{
+    LotStanding, LotState, LotStateRecord, LotYield, ReferenceCheck, ReferenceCheckRecord,
+};
 pub use import::{ImportError, ImportRow, parse_import, parse_records};
 pub use inside::InsideRecord;
 pub use lot_book::LotLine;

@@ -4,8 +4,8 @@
 //! number that is not finite is stored as no number at all.
 
 use super::{
-    AlarmChangeRecord, CurveRecord, ReferenceCheckRecord, InsideRecord, LotStateRecord, OrderRecord,
-    RunEndRecord, WearRecord,
+    AlarmChangeRecord, CurveRecord, InsideRecord, LotStateRecord, OrderRecord,
+    ReferenceCheckRecord, RunEndRecord, WearRecord,
 };
 use machine::dut::Reason;
 use serde::{Deserialize, Serialize};

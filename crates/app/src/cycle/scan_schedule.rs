@@ -127,10 +127,15 @@ mod tests {
     }
 
     /// How often each command comes in `turns` turns, and the longest wait between two of the contact.
-    fn counted(scan_schedule: &mut ScanSchedule, beam: Option<Command>, turns: usize) -> Vec<(Command, usize)> {
+    fn counted(
+        scan_schedule: &mut ScanSchedule,
+        beam: Option<Command>,
+        turns: usize,
+    ) -> Vec<(Command, usize)> {
         let mut counts: Vec<(Command, usize)> = Vec::new();
         for _ in 0..turns {
-            let Some(Next::Priority(command) | Next::Other(command)) = scan_schedule.next(beam) else {
+            let Some(Next::Priority(command) | Next::Other(command)) = scan_schedule.next(beam)
+            else {
                 continue;
             };
             match counts.iter_mut().find(|(known, _)| *known == command) {
@@ -153,7 +158,8 @@ mod tests {
         for modules in 1..=6u8 {
             let others: Vec<Command> = (0..modules).map(|n| poll(0x20 + n)).collect();
             let resets: Vec<Command> = (0..modules).map(|n| reset(0x20 + n)).collect();
-            let mut scan_schedule = ScanSchedule::new(Some(poll(0x11)), others.clone(), resets.clone());
+            let mut scan_schedule =
+                ScanSchedule::new(Some(poll(0x11)), others.clone(), resets.clone());
             let turns = 2 * RESET_EVERY * 60;
             let counts = counted(&mut scan_schedule, Some(beam()), turns);
             assert_eq!(of(&counts, poll(0x11)), turns / 2);

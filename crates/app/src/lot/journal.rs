@@ -2,8 +2,8 @@
 
 use crate::exit::Exit;
 use history::{
-    AlarmChange, AlarmChangeRecord, AlarmRecord, ReferenceCheckRecord, InsideRecord, LotState,
-    LotStateRecord, OrderRecord, Row, RunEndRecord, WearRecord,
+    AlarmChange, AlarmChangeRecord, AlarmRecord, InsideRecord, LotState, LotStateRecord,
+    OrderRecord, ReferenceCheckRecord, Row, RunEndRecord, WearRecord,
 };
 use machine::handling::inside::Inside;
 use machine::handling::wear::Uses;

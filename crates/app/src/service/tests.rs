@@ -28,7 +28,7 @@ async fn reset(orders: &mpsc::Sender<OrderRequest>) {
 fn a_part_that_is_found_inside_between_lots_gets_a_row_in_a_lot_of_its_own() {
     let mut nobody = ();
     let folder = tempfile::tempdir().unwrap();
-    let (config, db) = (Path::new("config"), folder.path().join("history.db"));
+    let (config, db) = (Path::new("../../config"), folder.path().join("history.db"));
     let plant = Plant::load(config).unwrap();
     let drawn = Simulated::drawn_by(1);
     let idle = between(config).unwrap();

@@ -2,7 +2,7 @@
 //! read when they were measured last.
 
 use super::Result;
-use crate::{Archive, CalibrationRecord, ReferenceCheck, Moment, Part};
+use crate::{Archive, CalibrationRecord, Moment, Part, ReferenceCheck};
 use jiff::Timestamp;
 use machine::dut::Characteristic;
 use machine::dut::instruments::{Certificate, factors};

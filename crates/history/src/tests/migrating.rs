@@ -52,12 +52,7 @@ fn a_file_of_every_earlier_schema_keeps_its_rows_and_can_be_written_on() {
         let parts = archive.query(&Filter::default()).unwrap();
         assert_eq!(parts.len(), 2, "schema {schema}");
         assert_eq!(parts[1].reasons, TEXTS);
-        // From schema 8 on codes stand in rows of their own, and this file has none.
-        let read = match schema < 8 {
-            true => TEXTS.map(Reason::from_text),
-            false => TEXTS.map(Reason::unclassified),
-        };
-        assert_eq!(parts[1].reason_codes, read);
+        assert_eq!(parts[1].reason_codes, TEXTS.map(Reason::from_text));
         assert_eq!(
             (parts[0].lot.as_str(), &parts[0].values["operate_voltage_v"]),
             ("批次", &7.5.into())

@@ -222,7 +222,8 @@ fn repeat_reason(id: NestId, turn: &Turn, test: &Procedure) -> Option<Trouble> {
     };
     // A complete test is inconclusive while overshoots are learned, but needs no repetition.
     let why = test.why_void()?;
-    (test.number() < REFERENCE_TESTS).then(|| Trouble::ReferenceRepeated(serial.clone(), why.to_string()))
+    (test.number() < REFERENCE_TESTS)
+        .then(|| Trouble::ReferenceRepeated(serial.clone(), why.to_string()))
 }
 
 fn judged(id: NestId, turn: &mut Turn, test: &mut Procedure) {

@@ -134,7 +134,8 @@ impl Station {
     /// A golden part comes next: nothing else is judged before one has read as certified.
     pub(super) fn begin_check(&mut self) {
         let next: VecDeque<String> = self.plan.golden.first().cloned().into_iter().collect();
-        self.lot.reference_planned += next.len().saturating_sub(self.lot.reference_left.len()) as u64;
+        self.lot.reference_planned +=
+            next.len().saturating_sub(self.lot.reference_left.len()) as u64;
         self.lot.gates.checking = !next.is_empty();
         self.lot.reference_left = next;
     }

@@ -33,7 +33,8 @@ impl Station {
         self.plan.calibrated = false;
         self.referenced = false;
         let all: VecDeque<String> = self.plan.golden.iter().cloned().collect();
-        self.lot.reference_planned += all.len().saturating_sub(self.lot.reference_left.len()) as u64;
+        self.lot.reference_planned +=
+            all.len().saturating_sub(self.lot.reference_left.len()) as u64;
         self.lot.reference_left = all;
         self.device.forget_calibration();
     }

@@ -30,10 +30,10 @@ mod machine;
 pub mod orders;
 pub mod packml;
 mod panel;
-mod timeouts;
 mod produce;
 mod safety;
 mod states;
+mod timeouts;
 pub mod trouble;
 pub mod wants;
 
@@ -53,8 +53,8 @@ use line::Line;
 use machine::Machine;
 use packml::{Mode, State};
 use panel::Panel;
-use timeouts::Timeouts;
 use std::collections::VecDeque;
+use timeouts::Timeouts;
 use units::RigTime;
 use wants::{Inputs, Wants};
 
@@ -128,7 +128,10 @@ impl LotControl {
     /// Checks what holds after every turn.
     fn check(&self) {
         let left = self.reference_left.len() as u64;
-        assert!(self.reference_planned >= left, "golden parts nobody planned");
+        assert!(
+            self.reference_planned >= left,
+            "golden parts nobody planned"
+        );
     }
 }
 

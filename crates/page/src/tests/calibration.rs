@@ -2,8 +2,8 @@
 
 use super::*;
 use ::history::{
-    CalibrationRecord, ReferenceCheckRecord, Identity, LotRecord, MeasurementRecord, PartRecord, Row,
-    Store, snapshot_hash,
+    CalibrationRecord, Identity, LotRecord, MeasurementRecord, PartRecord, ReferenceCheckRecord,
+    Row, Store, snapshot_hash,
 };
 use machine::dut::em_relay::Calibration;
 use machine::dut::em_relay::calibration::{InputLine, OutputLine};

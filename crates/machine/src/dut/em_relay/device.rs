@@ -5,14 +5,14 @@
 
 use super::calibration::{Calibration, Overshoots};
 use super::feasible::nominal_v_per_s;
-use super::reference_part::{self, ReferenceRun, Misfit};
-use super::overshoot::OvershootModel;
 use super::measure::context::{UNTAUGHT_FINE_V, untaught};
 use super::measure::{Context, Seen, Test};
+use super::overshoot::OvershootModel;
 use super::points::{AnalogIn, AnalogOut, Points};
 use super::probe_contact::Trend;
 use super::recipe::RelayRecipe;
 use super::reference::{self, ReferenceFault};
+use super::reference_part::{self, Misfit, ReferenceRun};
 use super::settings::ReferencePart;
 use crate::dut::Recipe;
 use crate::dut::device::{Made, Rig, TestOrder};
@@ -71,10 +71,17 @@ impl Device {
         Ok(Self::of(context, voltage_gain, certificates.collect()))
     }
 
-    pub(super) fn of(context: Context, voltage_gain: f64, certificates: Vec<ReferencePart>) -> Self {
-        let coarse = context.calibration.overshoots.map_or(untaught(), |overshoots| {
-            (overshoots.operate.coarse, overshoots.release.coarse)
-        });
+    pub(super) fn of(
+        context: Context,
+        voltage_gain: f64,
+        certificates: Vec<ReferencePart>,
+    ) -> Self {
+        let coarse = context
+            .calibration
+            .overshoots
+            .map_or(untaught(), |overshoots| {
+                (overshoots.operate.coarse, overshoots.release.coarse)
+            });
         Self {
             context,
             voltage_gain,
@@ -189,9 +196,9 @@ impl Device {
     /// Says which part does not fit the others, or that there are too few.
     pub fn conclude_reference_parts(&mut self) -> Result<Calibration, Misfit> {
         let accuracy = &self.context.accuracy;
-        let overshoots = self
-            .reference_parts
-            .overshoots(&self.certificates, accuracy, self.coarse)?;
+        let overshoots =
+            self.reference_parts
+                .overshoots(&self.certificates, accuracy, self.coarse)?;
         self.teach(overshoots);
         Ok(self.calibration().clone())
     }

@@ -13,7 +13,7 @@
 //! | which points a rig must have, and how acts and readings name them | [`points`], [`act`], [`readings`] |
 //! | how often coil and contacts are read | [`sampling`] |
 //! | what the instruments are known to do | [`calibration`], [`settings`] |
-//! | how the factors are found: board references, reference parts | [`reference`], [`golden`] |
+//! | how the factors are found: board references, reference parts | [`reference`], [`reference_part`] |
 //! | coil resistance | [`coil`] |
 //! | operate and release voltage | [`threshold`], [`overshoot`], [`supply`] |
 //! | times and bounce | [`timing`] |
@@ -33,17 +33,17 @@ pub mod device;
 pub mod evidence;
 pub mod feasible;
 pub mod finding;
-pub mod reference_part;
 pub mod keys;
-pub mod overshoot;
 pub mod made_up;
 pub mod measure;
+pub mod overshoot;
 pub mod parameter;
 pub mod points;
 pub mod probe_contact;
 pub mod readings;
 pub mod recipe;
 pub mod reference;
+pub mod reference_part;
 pub mod sampling;
 pub mod settings;
 pub mod strategy;

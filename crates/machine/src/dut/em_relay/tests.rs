@@ -4,11 +4,13 @@
 use crate::dut;
 use crate::dut::em_relay::Calibration;
 use crate::dut::em_relay::Device;
-use crate::dut::em_relay::calibration::{InputLine, Overshoot, Overshoots, OutputLine};
-use crate::dut::em_relay::overshoot::OvershootModel;
+use crate::dut::em_relay::calibration::{InputLine, OutputLine, Overshoot, Overshoots};
 use crate::dut::em_relay::measure::Context;
+use crate::dut::em_relay::overshoot::OvershootModel;
 use crate::dut::em_relay::points::Points;
-use crate::dut::em_relay::settings::{AccuracySettings, ReferencePart, ReferenceSet, ReferenceSettings};
+use crate::dut::em_relay::settings::{
+    AccuracySettings, ReferencePart, ReferenceSet, ReferenceSettings,
+};
 use crate::dut::recipe::{DeviceRecipe, Recipe};
 use crate::gauge::Factor;
 use crate::handling::tests::wiring;
@@ -59,7 +61,8 @@ pub fn device_of(context: Context) -> dut::Device {
 
 /// The golden parts of 12 V.
 pub fn golden_parts() -> Vec<ReferencePart> {
-    let set: ReferenceSet = toml::from_str(include_str!("../../../../../config/golden.toml")).unwrap();
+    let set: ReferenceSet =
+        toml::from_str(include_str!("../../../../../config/golden.toml")).unwrap();
     set.of_nominal(12.0).cloned().collect()
 }
 

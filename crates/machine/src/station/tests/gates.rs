@@ -3,8 +3,8 @@
 use super::golden_parts;
 use super::machine::{Machine, Specimen};
 use crate::dut::em_relay::Parameter;
-use crate::dut::em_relay::reference_part::check;
 use crate::dut::em_relay::measure::TestRecord;
+use crate::dut::em_relay::reference_part::check;
 use crate::dut::em_relay::settings::ReferencePart;
 use crate::gauge::budget::{Budget, Reading};
 use crate::handling::ledger::Kind;

@@ -51,7 +51,14 @@ pub(super) fn coarse_reading(
     let reference = context.reference_temperature();
     let own = overshoot.own_v(predicted.volts, direction);
     let as_fine = seen.indicated - Volt(predicted.volts);
-    let mut reading = quasi_static((as_fine, own), Second(0.0), overshoot, part, reference, doubt);
+    let mut reading = quasi_static(
+        (as_fine, own),
+        Second(0.0),
+        overshoot,
+        part,
+        reference,
+        doubt,
+    );
     reading.budget = reading.budget.with_random("strategy", own_v.sqrt());
     predicted.alike.then_some(reading)
 }
@@ -67,7 +74,14 @@ pub(super) fn fine_reading(
     let seen = ramps.fine.unwrap_or(Volt(f64::NAN));
     let reference = context.reference_temperature();
     let own = overshoot.own_v((ramps.coarse.indicated - seen).0, direction);
-    let mut reading = quasi_static((seen, own), gate, overshoot, part, reference, doubt(context));
+    let mut reading = quasi_static(
+        (seen, own),
+        gate,
+        overshoot,
+        part,
+        reference,
+        doubt(context),
+    );
     if context.strategy(parameter) == Strategy::TwoRates && ramps.coarse.indicated.0.is_finite() {
         let rates = [
             context.calibration.coarse_v_per_s.value,

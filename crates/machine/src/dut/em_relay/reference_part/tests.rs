@@ -2,10 +2,10 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::dut::em_relay::Parameter;
-use crate::dut::em_relay::reference_part::{ReferenceRun, interim};
-use crate::dut::em_relay::overshoot::Shown;
 use crate::dut::em_relay::measure::context::untaught;
 use crate::dut::em_relay::measure::{Ramp, TestRecord};
+use crate::dut::em_relay::overshoot::Shown;
+use crate::dut::em_relay::reference_part::{ReferenceRun, interim};
 use crate::dut::em_relay::settings::ReferencePart;
 use crate::dut::em_relay::tests::context;
 use crate::dut::em_relay::tests::golden_parts;
@@ -71,7 +71,9 @@ fn a_warm_golden_part_is_compared_with_its_certificate_at_its_own_temperature() 
         });
         run.learn(part, REFERENCE, &record, &record.own).unwrap();
     }
-    let overshoots = run.overshoots(&parts, &context().accuracy, untaught()).unwrap();
+    let overshoots = run
+        .overshoots(&parts, &context().accuracy, untaught())
+        .unwrap();
     assert!((overshoots.operate.fine_v.value - 0.012).abs() < 1e-9);
     assert!((overshoots.release.fine_v.value + 0.012).abs() < 1e-9);
 }
@@ -138,6 +140,9 @@ fn a_golden_part_that_was_not_fully_measured_is_refused_by_name() {
 #[test]
 fn while_golden_parts_run_the_fine_lag_proves_nothing() {
     let overshoot = interim(untaught().0, 0.0);
-    assert_eq!((overshoot.fine_v.value, overshoot.fine_v.u), (0.0, f64::INFINITY));
+    assert_eq!(
+        (overshoot.fine_v.value, overshoot.fine_v.u),
+        (0.0, f64::INFINITY)
+    );
     assert_eq!(overshoot.coarse, context().operate_overshoot().coarse);
 }

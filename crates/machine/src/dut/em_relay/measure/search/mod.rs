@@ -175,8 +175,13 @@ impl Search {
 /// Between the ends of what a coarse ramp may have overshot by, if there was one.
 fn overshot(context: &Context, record: &TestRecord, direction: Direction) -> Option<(Volt, Volt)> {
     let indicated = record.ramp(direction)?.coarse.indicated;
-    let overshoot_v = context.overshoot(direction).coarse.of(&Shown::NOTHING).volts;
-    let [near, end] = [MOST_OVERSHOOT, LEAST_OVERSHOOT].map(|overshoots| indicated - Volt(overshoots * overshoot_v));
+    let overshoot_v = context
+        .overshoot(direction)
+        .coarse
+        .of(&Shown::NOTHING)
+        .volts;
+    let [near, end] = [MOST_OVERSHOOT, LEAST_OVERSHOOT]
+        .map(|overshoots| indicated - Volt(overshoots * overshoot_v));
     (near.0.is_finite() && near.0 > 0.0).then_some((near, end))
 }
 

@@ -5,11 +5,11 @@ use super::{PULLED, RESTING, at_23_c, context, watched};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::calibration::{Calibration, Overshoots};
-use crate::dut::em_relay::reference_part::interim;
-use crate::dut::em_relay::overshoot::{OvershootModel, Shown};
 use crate::dut::em_relay::measure::pace::Pace;
 use crate::dut::em_relay::measure::ramp::Expected;
+use crate::dut::em_relay::overshoot::{OvershootModel, Shown};
 use crate::dut::em_relay::points::DigitalOut;
+use crate::dut::em_relay::reference_part::interim;
 
 use crate::dut::em_relay::tests::golden_parts;
 use crate::dut::em_relay::threshold::Direction;
