@@ -104,6 +104,22 @@ pub struct References {
     pub counter_clock_hz: f64,
 }
 
+/// References of a rig whose file has no `[reference]`: no test reads them, only the counter clock is used.
+impl Default for References {
+    fn default() -> Self {
+        Self {
+            coil_ohm: 400.0,
+            coil_tolerance_pct: 0.0,
+            contact_mohm: 50.0,
+            contact_tolerance_pct: 0.0,
+            voltage_v: 5.0,
+            voltage_tolerance_pct: 0.0,
+            gate_pulse_ms: 1.0,
+            counter_clock_hz: 50_000.0,
+        }
+    }
+}
+
 /// Content of `rig.toml` that the simulated rig needs.
 #[derive(Debug, Clone)]
 pub struct RigFile {
@@ -186,6 +202,7 @@ struct RawRig {
     temperature: BTreeMap<String, RawPoint>,
     axis: BTreeMap<String, RawStop>,
     bin: BTreeMap<String, RawStop>,
+    #[serde(default)]
     reference: References,
 }
 

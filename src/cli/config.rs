@@ -73,11 +73,13 @@ fn check(dir: &Path) -> anyhow::Result<String> {
         dir.join("scene.toml").display(),
         plant.scene.elements.len()
     ));
-    lines.push(format!(
-        "{}: {} golden parts",
-        dir.join(&plant.calibration.golden).display(),
-        plant.golden.parts.len()
-    ));
+    if let Some(file) = &plant.calibration.golden {
+        let count = plant.golden.parts.len();
+        lines.push(format!(
+            "{}: {count} golden parts",
+            dir.join(file).display()
+        ));
+    }
     for name in recipe_names(dir) {
         lines.push(describe_recipe(dir, &plant, &name)?);
     }

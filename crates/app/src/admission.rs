@@ -142,7 +142,7 @@ fn pass_gates(
         return Err(NotAdmitted::NoReferencePart {
             file: plant.dir.join("lot.toml"),
             nominal_v,
-            golden: plant.calibration.golden.clone(),
+            golden: plant.calibration.golden.clone().unwrap_or_default(),
         });
     }
     let standing = match db.exists() {

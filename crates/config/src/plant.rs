@@ -5,9 +5,8 @@ use super::error::ConfigError;
 use super::keys;
 use super::lot::load_lot;
 use super::tree::{Node, NotToml, not_toml};
-use machine::dut::em_relay::settings::{
-    AccuracySettings, CalibrationSettings, ReferenceSet, ReferenceSettings,
-};
+use machine::dut::accuracy::AccuracySettings;
+use machine::dut::em_relay::settings::{CalibrationSettings, ReferenceSet, ReferenceSettings};
 use machine::dut::{self, Recipe};
 use machine::form::Key;
 use machine::guard::{Actuator, Guard, GuardSettings};
@@ -29,13 +28,13 @@ pub struct Plant {
     pub wiring: Arc<Wiring>,
     /// The bodies around the nest.
     pub scene: GuardSettings,
-    /// References on the interface board.
-    pub reference: ReferenceSettings,
+    /// References on the interface board, if it has any.
+    pub reference: Option<ReferenceSettings>,
     /// Accuracies promised before calibration.
     pub accuracy: AccuracySettings,
     /// How long a calibration holds.
     pub calibration: CalibrationSettings,
-    /// Golden parts.
+    /// Golden parts; none where `rig.toml` names no file of them.
     pub golden: ReferenceSet,
     /// Gates of a lot.
     pub lot: LotSettings,
@@ -46,7 +45,7 @@ pub struct Plant {
 /// The sections of `rig.toml` that belong to measuring.
 #[derive(Deserialize)]
 struct GaugeSections {
-    reference: ReferenceSettings,
+    reference: Option<ReferenceSettings>,
     accuracy: AccuracySettings,
     calibration: CalibrationSettings,
 }
@@ -62,7 +61,10 @@ impl Plant {
         let gauge: GaugeSections = rig.settings(keys::rig::FILE)?;
         let wiring =
             Wiring::resolve(&settings, dut::FIXTURES).map_err(|fault| rig.locate(&fault))?;
-        let golden = load_reference_parts(&dir.join(&gauge.calibration.golden))?;
+        let golden = match &gauge.calibration.golden {
+            Some(name) => load_reference_parts(&dir.join(name))?,
+            None => ReferenceSet::default(),
+        };
         let scene = load_scene(&dir.join("scene.toml"))?;
         check_axis(&wiring, &scene, &rig)?;
         Ok(Self {
@@ -80,13 +82,14 @@ impl Plant {
 }
 
 impl Plant {
-    /// Refuses a recipe that the modules of this plant cannot measure.
+    /// Refuses a recipe that this plant lacks references for, or that its modules cannot measure.
     ///
     /// # Errors
     /// The first fault, with file, line, key and the module that stands against it.
     pub fn admit(&self, recipe: &Recipe) -> Result<(), ConfigError> {
         recipe
-            .feasible(&self.wiring, &self.accuracy)
+            .referenced(self.reference.as_ref(), &self.golden)
+            .and_then(|()| recipe.feasible(&self.wiring, &self.accuracy))
             .or_else(|fault| {
                 let path = self
                     .dir

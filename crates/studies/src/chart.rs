@@ -4,7 +4,7 @@
 //! viewer and on paper.
 
 use super::figure::shown;
-use std::fmt::Write;
+use history::report::svg::Svg;
 
 /// What to draw.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -50,63 +50,29 @@ impl Chart {
 
     /// The file.
     pub fn svg(&self) -> String {
-        let (width, bottom) = (LABEL + PLOT + NUMBER, TOP + ROW * self.bars.len() as f64);
-        let height = bottom + 28.0;
-        let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-             viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" font-size=\"13\">\n\
-             <rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n\
-             <text x=\"12\" y=\"22\" font-size=\"15\">{}</text>\n",
-            escaped(&self.title)
-        );
+        let bottom = TOP + ROW * self.bars.len() as f64;
+        let mut svg = Svg::new([LABEL + PLOT + NUMBER, bottom + 28.0]);
         for (place, (label, value)) in self.bars.iter().enumerate() {
             self.bar(&mut svg, TOP + ROW * place as f64, label, *value);
         }
         for mark in &self.marks {
             let x = self.x(*mark);
-            let _ = writeln!(
-                svg,
-                "<line x1=\"{x:.1}\" y1=\"{TOP}\" x2=\"{x:.1}\" y2=\"{bottom}\" stroke=\"#b00\" stroke-dasharray=\"4 3\"/>\n\
-                 <text x=\"{x:.1}\" y=\"{:.1}\" fill=\"#b00\" text-anchor=\"middle\">{}</text>",
-                bottom + 16.0,
-                shown(*mark)
-            );
+            let dashed = "stroke=\"#b00\" stroke-dasharray=\"4 3\"";
+            svg.line([x, TOP], [x, bottom], dashed);
+            let middle = "fill=\"#b00\" text-anchor=\"middle\"";
+            svg.text([x, bottom + 16.0], middle, &shown(*mark));
         }
-        let _ = writeln!(
-            svg,
-            "<text x=\"{LABEL}\" y=\"{:.1}\">{}</text>\n</svg>",
-            bottom + 16.0,
-            shown(self.from)
-        );
-        svg
+        svg.text([LABEL, bottom + 16.0], "", &shown(self.from));
+        svg.file(&self.title)
     }
 
-    fn bar(&self, svg: &mut String, top: f64, label: &str, value: Option<f64>) {
+    fn bar(&self, svg: &mut Svg, top: f64, label: &str, value: Option<f64>) {
         let line = top + 16.0;
-        let _ = writeln!(
-            svg,
-            "<text x=\"{}\" y=\"{line}\" text-anchor=\"end\">{}</text>",
-            LABEL - 8.0,
-            escaped(label)
-        );
+        svg.text([LABEL - 8.0, line], "text-anchor=\"end\"", label);
         let Some(value) = value else { return };
         let end = self.x(value);
-        let _ = writeln!(
-            svg,
-            "<rect x=\"{LABEL}\" y=\"{}\" width=\"{:.1}\" height=\"16\" fill=\"#4a7ba6\"/>\n\
-             <text x=\"{:.1}\" y=\"{line}\">{} {}</text>",
-            top + 4.0,
-            end - LABEL,
-            end + 6.0,
-            shown(value),
-            escaped(self.unit)
-        );
+        svg.rect([LABEL, top + 4.0], [end - LABEL, 16.0], "#4a7ba6");
+        let number = format!("{} {}", shown(value), self.unit);
+        svg.text([end + 6.0, line], "", &number);
     }
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-        .replace('"', "&quot;")
 }

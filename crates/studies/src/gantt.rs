@@ -6,10 +6,10 @@ use super::fleet::{Folder, Order};
 use super::journal::{self, Entry};
 use anyhow::Context;
 use config::Plant;
+use history::report::svg::Svg;
 use machine::dut::em_relay;
 use machine::rig::point::DigitalOut;
 use machine::rig::wiring::Wiring;
-use std::fmt::Write;
 
 /// Parts of the lot; the one that is followed has one before it and one behind.
 const SCRIPT: &str = "# A chart of one part\nparts 8\n";
@@ -113,42 +113,28 @@ fn drawn(rows: &[Vec<Interval>; 8], followed: &[Interval; 8]) -> String {
     let (from, to) = (followed[0].0 - 0.2, followed[7].1 + 0.2);
     let x = |at: f64| LABEL + PLOT * (at.clamp(from, to) - from) / (to - from);
     let height = TOP + ROW * rows.len() as f64 + 30.0;
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0}\" height=\"{height:.0}\" font-family=\"sans-serif\" \
-         font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n\
-         <text x=\"10\" y=\"22\">one part through all stations, seconds; its neighbours are light</text>\n",
-        LABEL + PLOT + 20.0
-    );
+    let mut svg = Svg::new([LABEL + PLOT + 20.0, height]);
     let mut second = 0.0;
     while from + second <= to {
-        let _ = writeln!(
-            svg,
-            "<line x1=\"{0:.1}\" x2=\"{0:.1}\" y1=\"{TOP}\" y2=\"{1:.0}\" stroke=\"#ccc\"/><text x=\"{0:.1}\" y=\"{2:.0}\">{second:.1}</text>",
-            x(from + second),
-            height - 26.0,
-            height - 10.0
-        );
+        let x = x(from + second);
+        svg.line([x, TOP], [x, height - 26.0], "stroke=\"#ccc\"");
+        svg.text([x, height - 10.0], "", &format!("{second:.1}"));
         second += 0.5;
     }
     for (place, ((label, _), intervals)) in ROWS.iter().zip(rows).enumerate() {
         let y = TOP + ROW * place as f64;
-        let _ = writeln!(svg, "<text x=\"10\" y=\"{:.0}\">{label}</text>", y + 16.0);
+        svg.text([10.0, y + 16.0], "", label);
         for it in intervals.iter().filter(|it| it.1 > from && it.0 < to) {
             let own = match place {
                 COIL => it.0 >= followed[COIL].0 && it.1 <= followed[COIL].1,
                 _ => *it == followed[place],
             };
             let fill = if own { "#1f4e79" } else { "#b8cce4" };
-            let _ = writeln!(
-                svg,
-                "<rect x=\"{:.1}\" y=\"{:.0}\" width=\"{:.1}\" height=\"18\" fill=\"{fill}\"/>",
-                x(it.0),
-                y + 3.0,
-                (x(it.1) - x(it.0)).max(1.0)
-            );
+            let size = [(x(it.1) - x(it.0)).max(1.0), 18.0];
+            svg.rect([x(it.0), y + 3.0], size, fill);
         }
     }
-    svg + "</svg>\n"
+    svg.file("one part through all stations, seconds; its neighbours are light")
 }
 
 #[cfg(test)]

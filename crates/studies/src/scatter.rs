@@ -3,7 +3,7 @@
 //! Lengths in px. A point whose error is zero, or below the lowest line, stands on the bottom line, which
 //! says so; a method with wrong verdicts is drawn hollow and says how many.
 
-use std::fmt::Write;
+use history::report::svg::Svg;
 
 /// A method.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,20 +48,12 @@ const LINE: f64 = 15.0;
 impl Scatter {
     /// The file.
     pub fn svg(&self) -> String {
-        let (width, height) = (LEFT + WIDE + RIGHT, TOP + HIGH + BELOW);
-        let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-             viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" font-size=\"12\">\n\
-             <rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n\
-             <text x=\"12\" y=\"24\" font-size=\"15\">{}</text>\n",
-            escaped(&self.title)
-        );
+        let mut svg = Svg::new([LEFT + WIDE + RIGHT, TOP + HIGH + BELOW]);
         let (xs, ys) = (self.x_axis(), self.y_axis());
         self.grid(&mut svg, &xs, &ys);
         self.joined(&mut svg, &xs, &ys);
         self.labelled(&mut svg, &xs, &ys);
-        svg.push_str("</svg>\n");
-        svg
+        svg.file(&self.title)
     }
 
     fn x_axis(&self) -> Axis {
@@ -74,62 +66,40 @@ impl Scatter {
         Axis::over(values.chain([LEAST]), TOP + HIGH, TOP)
     }
 
-    fn grid(&self, svg: &mut String, xs: &Axis, ys: &Axis) {
+    fn grid(&self, svg: &mut Svg, xs: &Axis, ys: &Axis) {
         let (bottom, right) = (TOP + HIGH, LEFT + WIDE);
+        let (grey, middle) = ("stroke=\"#ddd\"", "text-anchor=\"middle\"");
         for decade in xs.low..=xs.high {
             let x = xs.place(10f64.powi(decade));
-            let _ = writeln!(
-                svg,
-                "<line x1=\"{x:.1}\" y1=\"{TOP}\" x2=\"{x:.1}\" y2=\"{bottom}\" stroke=\"#ddd\"/>\n\
-                 <text x=\"{x:.1}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-                bottom + 18.0,
-                power(decade)
-            );
+            svg.line([x, TOP], [x, bottom], grey);
+            svg.text([x, bottom + 18.0], middle, &power(decade));
         }
         for decade in ys.low..=ys.high {
             let y = ys.place(10f64.powi(decade));
-            let text = if decade == ys.low {
-                "less".to_owned()
-            } else {
-                power(decade)
+            let text = match decade == ys.low {
+                true => "less".to_owned(),
+                false => power(decade),
             };
-            let _ = writeln!(
-                svg,
-                "<line x1=\"{LEFT}\" y1=\"{y:.1}\" x2=\"{right}\" y2=\"{y:.1}\" stroke=\"#ddd\"/>\n\
-                 <text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{text}</text>",
-                LEFT - 8.0,
-                y + 4.0
-            );
+            svg.line([LEFT, y], [right, y], grey);
+            svg.text([LEFT - 8.0, y + 4.0], "text-anchor=\"end\"", &text);
         }
-        let _ = writeln!(
-            svg,
-            "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n\
-             <text transform=\"translate(20 {}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
-            LEFT + WIDE / 2.0,
-            bottom + 46.0,
-            escaped(&self.x_title),
-            TOP + HIGH / 2.0,
-            escaped(&self.y_title)
-        );
+        let below = [LEFT + WIDE / 2.0, bottom + 46.0];
+        svg.text(below, middle, &self.x_title);
+        let (turned, centre) = ("transform=\"rotate(-90)\"", -TOP - HIGH / 2.0);
+        svg.text([centre, 20.0], &format!("{turned} {middle}"), &self.y_title);
     }
 
-    fn joined(&self, svg: &mut String, xs: &Axis, ys: &Axis) {
+    fn joined(&self, svg: &mut Svg, xs: &Axis, ys: &Axis) {
+        let at = |it: &Point| [xs.place(it.x), ys.place(it.y.max(LEAST))];
         for (a, b) in self.points.iter().zip(self.points.iter().skip(1)) {
             if a.series == b.series {
-                let _ = writeln!(
-                    svg,
-                    "<line x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\" stroke=\"{}\" stroke-dasharray=\"3 3\"/>",
-                    xs.place(a.x),
-                    ys.place(a.y.max(LEAST)),
-                    xs.place(b.x),
-                    ys.place(b.y.max(LEAST)),
-                    colour(a)
-                );
+                let style = format!("stroke=\"{}\" stroke-dasharray=\"3 3\"", colour(a));
+                svg.line(at(a), at(b), &style);
             }
         }
     }
 
-    fn labelled(&self, svg: &mut String, xs: &Axis, ys: &Axis) {
+    fn labelled(&self, svg: &mut Svg, xs: &Axis, ys: &Axis) {
         let mut taken: Vec<(f64, f64)> = Vec::new();
         for point in &self.points {
             let (x, y) = (xs.place(point.x), ys.place(point.y.max(LEAST)));
@@ -157,14 +127,11 @@ impl Scatter {
                 1 => ", 1 wrong".to_owned(),
                 some => format!(", {some} wrong"),
             };
-            let _ = writeln!(
-                svg,
-                "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"5\" fill=\"{fill}\" stroke=\"{}\" stroke-width=\"2\"/>\n\
-                 <text x=\"{:.1}\" y=\"{line:.1}\" text-anchor=\"{anchor}\">{}{wrong}</text>",
-                colour(point),
-                x + aside,
-                escaped(&point.name)
-            );
+            let stroke = colour(point);
+            let style = format!("fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"2\"");
+            svg.circle([x, y], 5.0, &style);
+            let style = format!("text-anchor=\"{anchor}\"");
+            svg.text([x + aside, line], &style, &format!("{}{wrong}", point.name));
         }
     }
 }
@@ -216,10 +183,4 @@ fn power(decade: i32) -> String {
         1..=5 => format!("{:.0}", 10f64.powi(decade)),
         _ => format!("1e{decade}"),
     }
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
 }

@@ -51,7 +51,7 @@ pub(super) fn cycle(
     let calibrated = calibration.is_some();
     let rig = Rig {
         wiring: &wiring,
-        reference: &plant.reference,
+        reference: plant.reference.as_ref(),
         accuracy: &plant.accuracy,
         reference_parts: &plant.golden,
     };

@@ -147,11 +147,11 @@ pub const FILE: &[Key] = &[
         "rig, station",
         "bins by name",
     ),
-    key(
+    optional(
         "reference",
         Form::Table(REFERENCE),
         "gauge",
-        "references on the interface board; tolerances are half widths",
+        "references on the interface board, for recipes that need them; tolerances are half widths",
     ),
     key(
         "accuracy",

@@ -89,6 +89,36 @@ fn a_rig_without_the_coil_board_refuses_each_of_its_recipes() {
 }
 
 #[test]
+fn a_rig_without_references_refuses_relays_and_takes_resistors() {
+    let rig: Table = toml::from_str(RIG).unwrap();
+    let mut no_board = rig.clone();
+    no_board.remove("reference");
+    let mut no_parts = rig;
+    no_parts["calibration"]
+        .as_table_mut()
+        .unwrap()
+        .remove("golden");
+    let cases = [
+        (no_board, "references: rig.toml has no [reference]"),
+        (
+            no_parts,
+            "golden parts: rig.toml names no file of them in [calibration].golden",
+        ),
+    ];
+    for (rig, lacks) in cases {
+        let refused = refused(&rig);
+        assert_eq!(refused.len(), 4);
+        for message in refused {
+            let why = format!("kind: found \"em_relay\", expected a rig with {lacks}");
+            assert!(message.ends_with(&why), "{message}");
+        }
+        let copy = folder(&rig);
+        let recipe = load_recipe(copy.path(), "resistor-390").unwrap();
+        Plant::load(copy.path()).unwrap().admit(&recipe).unwrap();
+    }
+}
+
+#[test]
 fn a_resistor_is_refused_by_the_first_point_it_misses() {
     let copy = folder(&without_the_coil_board());
     let plant = Plant::load(copy.path()).unwrap();

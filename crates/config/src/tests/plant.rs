@@ -39,7 +39,7 @@ fn the_whole_plant_is_loaded_from_its_folder() {
     let copy = Copy::with("", str::to_owned);
     let plant = Plant::load(copy.0.path()).unwrap();
     assert_eq!(plant.golden.of_nominal(12.0).count(), 5);
-    assert_eq!(plant.reference.coil_ohm, 400.0);
+    assert_eq!(plant.reference.unwrap().coil_ohm, 400.0);
     assert_eq!(plant.accuracy.conversions_per_s, 75.0);
     assert_eq!(
         load_recipe(copy.0.path(), "jzc-22f-012").unwrap().rated_v(),

@@ -1,6 +1,6 @@
 //! Control charts and histograms as SVG.
 
-use super::svg::{LIMIT, LINE, Plot, QUIET, escaped, ticked};
+use super::plot::{LIMIT, LINE, Plot, QUIET, ticked};
 use super::words::figure;
 use quality::chart::Chart;
 use quality::ordered::{Histogram, round_step};
@@ -27,7 +27,7 @@ pub(super) fn control(chart: &Chart, shown: usize, names: &[String]) -> String {
         .enumerate()
         .map(|(at, it)| format!("{:.1},{:.1}", plot.at_x(at as f64), plot.at_y(it.value)))
         .collect();
-    plot.add(format_args!(
+    plot.svg.add(format_args!(
         "<polyline points=\"{}\" fill=\"none\" stroke=\"{LINE}\" stroke-width=\"1.1\"/>",
         path.join(" ")
     ));
@@ -55,9 +55,8 @@ fn limits(plot: &mut Plot, chart: &Chart, first: usize) {
         let (from, to) = (plot.at_x(at as f64 - 0.5), plot.at_x(at as f64 + 0.5));
         for limit in [it.low, it.high] {
             let y = plot.at_y(limit);
-            plot.add(format_args!(
-                "<line x1=\"{from:.1}\" y1=\"{y:.1}\" x2=\"{to:.1}\" y2=\"{y:.1}\" stroke=\"{LIMIT}\"/>"
-            ));
+            let style = format!("stroke=\"{LIMIT}\"");
+            plot.svg.line([from, y], [to, y], &style);
         }
     }
 }
@@ -71,17 +70,14 @@ fn point(plot: &mut Plot, chart: &Chart, first: usize, at: usize, value: f64, ra
         .map(|it| it.rule.to_string())
         .collect();
     if rules.is_empty() {
-        plot.add(format_args!(
-            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{LINE}\"/>"
-        ));
+        let style = format!("fill=\"{LINE}\"");
+        plot.svg.circle([x, y], radius, &style);
         return;
     }
-    plot.add(format_args!(
-        "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3.6\" fill=\"{LIMIT}\"/>\n\
-         <text x=\"{x:.1}\" y=\"{:.1}\" fill=\"{LIMIT}\" font-size=\"9\" text-anchor=\"middle\">{}</text>",
-        y - 6.0,
-        escaped(&rules.join(","))
-    ));
+    let style = format!("fill=\"{LIMIT}\"");
+    plot.svg.circle([x, y], 3.6, &style);
+    let style = format!("{style} font-size=\"9\" text-anchor=\"middle\"");
+    plot.svg.text([x, y - 6.0], &style, &rules.join(","));
 }
 
 /// As many names as have room; numbers from 1 where there are none.
@@ -134,12 +130,8 @@ fn columns(plot: &mut Plot, it: &Histogram) {
         let from = plot.at_x(it.from + at as f64 * it.width);
         let to = plot.at_x(it.from + (at + 1) as f64 * it.width);
         let top = plot.at_y(count as f64);
-        plot.add(format_args!(
-            "<rect x=\"{:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"{LINE}\"/>",
-            from + 0.4,
-            to - from - 0.8,
-            bottom - top
-        ));
+        let size = [to - from - 0.8, bottom - top];
+        plot.svg.rect([from + 0.4, top], size, LINE);
     }
 }
 

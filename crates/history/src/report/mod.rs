@@ -19,9 +19,10 @@ pub mod certificate;
 mod charts;
 pub mod lot;
 mod page;
+mod plot;
 pub mod sheet;
 pub mod spc;
-mod svg;
+pub mod svg;
 mod words;
 
 pub use texts::Lang;

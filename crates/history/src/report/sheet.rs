@@ -173,7 +173,7 @@ fn counted(
 
 /// Every class by its lower edge.
 fn classes(it: &Histogram) -> Vec<(String, u64)> {
-    let edge = |at: usize| super::svg::ticked(it.from + at as f64 * it.width, it.width);
+    let edge = |at: usize| super::plot::ticked(it.from + at as f64 * it.width, it.width);
     it.counts
         .iter()
         .enumerate()

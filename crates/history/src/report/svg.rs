@@ -1,150 +1,79 @@
-//! A drawing area with axes: values to places, round ticks, lines and marks. Lengths in px of the view box.
+//! A picture as SVG text. Lengths in px of the view box; `style` holds further attributes of an element.
 
-use quality::ordered::round_step;
 use std::fmt::Write;
 
-/// Room for numbers at the left and under the plot.
-const LEFT: f64 = 58.0;
-const BELOW: f64 = 24.0;
-const ABOVE: f64 = 10.0;
-const RIGHT: f64 = 64.0;
-
-/// Colours that are told apart in grey, too.
-pub(super) const LINE: &str = "#1f5f99";
-pub(super) const LIMIT: &str = "#a11212";
-pub(super) const QUIET: &str = "#8a97a5";
-pub(super) const GRID: &str = "#e3e8ed";
-
-/// A plot under construction.
-pub(super) struct Plot {
+/// A picture under construction.
+pub struct Svg {
     text: String,
-    width: f64,
-    height: f64,
-    x: [f64; 2],
-    y: [f64; 2],
+    size: [f64; 2],
 }
 
-impl Plot {
-    /// An empty plot of this size over these ranges; a range without extent gets some.
-    pub fn new([width, height]: [f64; 2], x: [f64; 2], y: [f64; 2]) -> Self {
-        let mut plot = Self {
-            text: String::new(),
-            width,
-            height,
-            x: opened(x),
-            y: opened(y),
-        };
-        plot.ticks();
-        plot
-    }
-
-    /// Place of a value along x.
-    pub fn at_x(&self, value: f64) -> f64 {
-        LEFT + (self.width - LEFT - RIGHT) * (value - self.x[0]) / (self.x[1] - self.x[0])
-    }
-
-    /// Place of a value along y.
-    pub fn at_y(&self, value: f64) -> f64 {
-        let bottom = self.height - BELOW;
-        bottom - (bottom - ABOVE) * (value - self.y[0]) / (self.y[1] - self.y[0])
+impl Svg {
+    /// An empty picture of this width and height.
+    pub fn new(size: [f64; 2]) -> Self {
+        let text = String::new();
+        Self { text, size }
     }
 
     /// Adds an element.
     pub fn add(&mut self, element: std::fmt::Arguments<'_>) {
-        // Writing to a string cannot fail.
-        let _ = self.text.write_fmt(element);
-        self.text.push('\n');
+        writeln!(self.text, "{element}").expect("a String takes every text");
     }
 
-    /// A text centred under the plot at a value of x.
-    pub fn under(&mut self, x: f64, text: &str) {
-        let (x, y) = (self.at_x(x), self.height - 8.0);
+    /// Adds a line.
+    pub fn line(&mut self, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2], style: &str) {
         self.add(format_args!(
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\">{}</text>",
-            escaped(text)
+            "<line x1=\"{x1:.1}\" y1=\"{y1:.1}\" x2=\"{x2:.1}\" y2=\"{y2:.1}\" {style}/>"
         ));
     }
 
-    /// A line across at a value of y, named at the right.
-    pub fn across(&mut self, y: f64, colour: &str, dashes: &str, name: &str) {
-        let (at, end) = (self.at_y(y), self.width - RIGHT);
+    /// Adds a text, escaped.
+    pub fn text(&mut self, [x, y]: [f64; 2], style: &str, text: &str) {
+        let text = escaped(text);
         self.add(format_args!(
-            "<line x1=\"{LEFT}\" y1=\"{at:.1}\" x2=\"{end}\" y2=\"{at:.1}\" stroke=\"{colour}\" \
-             stroke-dasharray=\"{dashes}\"/>\n<text x=\"{:.1}\" y=\"{:.1}\" fill=\"{colour}\">{}</text>",
-            end + 3.0,
-            at + 4.0,
-            escaped(name)
+            "<text x=\"{x:.1}\" y=\"{y:.1}\" {style}>{text}</text>"
         ));
     }
 
-    /// A line upwards at a value of x, named at its top.
-    pub fn upright(&mut self, x: f64, colour: &str, name: &str) {
-        let (at, bottom) = (self.at_x(x), self.height - BELOW);
+    /// Adds a filled rectangle.
+    pub fn rect(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], fill: &str) {
         self.add(format_args!(
-            "<line x1=\"{at:.1}\" y1=\"{ABOVE}\" x2=\"{at:.1}\" y2=\"{bottom}\" stroke=\"{colour}\" \
-             stroke-width=\"1.5\" stroke-dasharray=\"5 3\"/>\n\
-             <text x=\"{:.1}\" y=\"{:.1}\" fill=\"{colour}\">{}</text>",
-            at + 3.0,
-            ABOVE + 9.0,
-            escaped(name)
+            "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{fill}\"/>"
         ));
     }
 
-    /// The finished picture.
-    pub fn finish(self) -> String {
-        let Self {
-            text,
-            width,
-            height,
-            ..
-        } = self;
+    /// Adds a circle.
+    pub fn circle(&mut self, [x, y]: [f64; 2], radius: f64, style: &str) {
+        self.add(format_args!(
+            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" {style}/>"
+        ));
+    }
+
+    /// Returns the picture for a page that gives it its size.
+    pub fn inline(self) -> String {
+        let Self { text, size } = self;
+        let [width, height] = size;
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
              font-family=\"sans-serif\" font-size=\"11\" role=\"img\">\n{text}</svg>"
         )
     }
 
-    /// Round values of y with thin lines across, and the frame.
-    fn ticks(&mut self) {
-        let [low, high] = self.y;
-        let step = round_step((high - low) / 5.0).unwrap_or(1.0);
-        let mut tick = (low / step).ceil();
-        while tick * step <= high {
-            let (value, at) = (tick * step, self.at_y(tick * step));
-            self.add(format_args!(
-                "<line x1=\"{LEFT}\" y1=\"{at:.1}\" x2=\"{}\" y2=\"{at:.1}\" stroke=\"{GRID}\"/>\n\
-                 <text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
-                self.width - RIGHT,
-                LEFT - 4.0,
-                at + 4.0,
-                ticked(value, step)
-            ));
-            tick += 1.0;
-        }
-        let (right, bottom) = (self.width - RIGHT, self.height - BELOW);
-        self.add(format_args!(
-            "<path d=\"M{LEFT} {ABOVE}V{bottom}H{right}\" fill=\"none\" stroke=\"{QUIET}\"/>"
-        ));
-    }
-}
-
-/// As many decimals as the step needs.
-pub(super) fn ticked(value: f64, step: f64) -> String {
-    let decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
-    // Not a negative zero.
-    format!("{:.decimals$}", value + 0.0)
-}
-
-fn opened([low, high]: [f64; 2]) -> [f64; 2] {
-    if high > low {
-        [low, high]
-    } else {
-        [low - 0.5, high + 0.5]
+    /// Returns the picture as a file of its own, on white and under a title.
+    pub fn file(self, title: &str) -> String {
+        let Self { text, size } = self;
+        let ([width, height], title) = (size, escaped(title));
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+             viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" font-size=\"13\">\n\
+             <rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n\
+             <text x=\"12\" y=\"22\" font-size=\"15\">{title}</text>\n{text}</svg>\n"
+        )
     }
 }
 
 /// Text that stays text.
-pub(super) fn escaped(text: &str) -> String {
+pub fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")

@@ -1,8 +1,9 @@
 //! The kind under test as the station holds it: recipe, calibration, and what parts have taught.
 
+use super::accuracy::AccuracySettings;
 use super::calibration::Calibration;
 use super::em_relay;
-use super::em_relay::settings::{AccuracySettings, ReferenceSet, ReferenceSettings};
+use super::em_relay::settings::{ReferenceSet, ReferenceSettings};
 use super::procedure::Procedure;
 use super::recipe::{DeviceRecipe, Recipe};
 use super::record::TestRecord;
@@ -31,8 +32,8 @@ pub struct Made {
 pub struct Rig<'a> {
     /// Points, modules and lines.
     pub wiring: &'a Wiring,
-    /// References on the interface board.
-    pub reference: &'a ReferenceSettings,
+    /// References on the interface board, if it has any.
+    pub reference: Option<&'a ReferenceSettings>,
     /// What the makers promise.
     pub accuracy: &'a AccuracySettings,
     /// Parts with a certificate.

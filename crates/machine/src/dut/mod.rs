@@ -3,6 +3,7 @@
 //! A kind of device is one folder. The rest of the program knows [`Recipe`], [`Characteristic`], [`Judgement`], [`Reason`]
 //! and [`Verdict`], never a kind.
 
+pub mod accuracy;
 pub mod calibration;
 pub mod card;
 pub mod characteristic;

@@ -4,10 +4,11 @@
 //! a lot can store the very recipe it was judged by.
 
 use super::Kind;
+use super::accuracy::AccuracySettings;
 use super::characteristic::Characteristic;
 use super::em_relay;
 use super::em_relay::recipe::RelayRecipe;
-use super::em_relay::settings::AccuracySettings;
+use super::em_relay::settings::{ReferenceSet, ReferenceSettings};
 use super::resistor::recipe::ResistorRecipe;
 use crate::gauge::{Limit, Rule};
 use crate::rig::fault::Fault;
@@ -146,6 +147,21 @@ impl Recipe {
         }
         match &self.device {
             DeviceRecipe::EmRelay(relay) => relay.check(),
+            DeviceRecipe::Resistor(_) => Ok(()),
+        }
+    }
+
+    /// Checks that the rig has the references and reference parts of the kind.
+    ///
+    /// # Errors
+    /// Names the section or the key of `rig.toml` that is missing.
+    pub fn referenced(
+        &self,
+        board: Option<&ReferenceSettings>,
+        parts: &ReferenceSet,
+    ) -> Result<(), Fault> {
+        match &self.device {
+            DeviceRecipe::EmRelay(_) => em_relay::feasible::check_references(board, parts),
             DeviceRecipe::Resistor(_) => Ok(()),
         }
     }

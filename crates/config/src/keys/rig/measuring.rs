@@ -75,10 +75,10 @@ pub(super) const CALIBRATION: &[Key] = &[
         "gauge",
         "age at which a calibration no longer holds",
     ),
-    key(
+    optional(
         "golden",
         Form::Text,
         "config",
-        "file of the golden parts, beside rig.toml",
+        "file of the golden parts, beside rig.toml, for recipes that need them",
     ),
 ];

@@ -42,7 +42,7 @@ impl Device {
     /// Puts the recipe on a rig. Reference parts of its nominal voltage serve it.
     ///
     /// # Errors
-    /// Names the first point that the rig does not have.
+    /// Names the first point that the rig does not have, or the section of its references.
     pub fn new(
         recipe: Arc<Recipe>,
         relay: Arc<RelayRecipe>,
@@ -50,6 +50,10 @@ impl Device {
         stored: Option<Calibration>,
     ) -> Result<Self, MissingPoint> {
         let points = Points::resolve(rig.wiring)?;
+        let reference = rig.reference.copied().ok_or(MissingPoint {
+            section: "reference",
+            name: "coil_ohm",
+        })?;
         let nominal_v = relay.part.nominal_v;
         let calibration = stored.unwrap_or_else(|| Calibration::unknown(nominal_v));
         let voltage = points.analog(AnalogIn::CoilVoltageFine);
@@ -58,7 +62,7 @@ impl Device {
             recipe,
             relay,
             calibration: Arc::new(calibration),
-            reference: *rig.reference,
+            reference,
             accuracy: *rig.accuracy,
             nominal_v_per_s: [AnalogOut::SupplyCoarse, AnalogOut::SupplyFine]
                 .map(|output| nominal_v_per_s(rig.wiring, points.source(output))),

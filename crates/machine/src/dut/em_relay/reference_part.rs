@@ -5,12 +5,13 @@
 
 use super::measure::{Ramp, Seen};
 use crate::dut::TestRecord;
+use crate::dut::accuracy::AccuracySettings;
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::calibration::{Overshoot, Overshoots};
 use crate::dut::em_relay::coil::{relative_per_kelvin, to_reference};
 use crate::dut::em_relay::overshoot::OvershootModel;
 use crate::dut::em_relay::probe_contact::Trend;
-use crate::dut::em_relay::settings::{AccuracySettings, Certified, ReferencePart};
+use crate::dut::em_relay::settings::{Certified, ReferencePart};
 use crate::gauge::Factor;
 use crate::gauge::Reading;
 use thiserror::Error;

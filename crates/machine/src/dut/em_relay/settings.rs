@@ -1,4 +1,4 @@
-//! What measuring relies on: references, promised accuracies, how long a calibration holds, golden parts.
+//! What measuring relies on: references, how long a calibration holds, golden parts.
 //! From `config/rig.toml` and `config/golden.toml`.
 
 use super::Parameter;
@@ -28,59 +28,13 @@ pub struct ReferenceSettings {
     pub counter_clock_tolerance_ppm: f64,
 }
 
-/// What the makers promise before calibration: half widths, unless said otherwise.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-pub struct AccuracySettings {
-    /// Gain of analog inputs, % of reading.
-    pub ai_gain_pct: f64,
-    /// Offset of analog inputs, % of range.
-    pub ai_offset_pct_of_range: f64,
-    /// Noise of analog inputs, LSB (standard deviation).
-    pub ai_noise_lsb: f64,
-    /// Gain of analog outputs, %.
-    pub ao_gain_pct: f64,
-    /// Offset of analog outputs, mV at the terminal.
-    pub ao_offset_mv: f64,
-    /// Slope of analog outputs, %.
-    pub ao_slope_pct: f64,
-    /// Time between two steps of an analog output while it ramps, ms.
-    #[serde(default = "AccuracySettings::usual_refresh_ms")]
-    pub ao_refresh_ms: f64,
-    /// Delay of the counter gates, us.
-    pub gate_delay_us: f64,
-    /// Thermometers, K (standard deviation).
-    pub rtd_k: f64,
-    /// Part against track, K (standard deviation).
-    pub part_minus_track_k: f64,
-    /// Threshold of a coil of [`SCATTERING_COIL_V`] from operation to operation, mV (standard deviation).
-    pub operation_scatter_mv: f64,
-    /// Conversions of an I-7017F in fast mode, all enabled channels together, per second.
-    pub conversions_per_s: f64,
-}
-
-/// Nominal voltage of the coils whose scatter a rig's file states. Whatever makes a threshold scatter acts on the current, so
-/// that in volts it goes with the coil.
-const SCATTERING_COIL_V: f64 = 12.0;
-
-impl AccuracySettings {
-    /// Standard deviation of a threshold from operation to operation, volts, of a coil of this nominal voltage.
-    pub fn operation_v(&self, nominal_v: f64) -> f64 {
-        self.operation_scatter_mv / 1e3 * nominal_v / SCATTERING_COIL_V
-    }
-
-    /// Of an I-7021P that nobody has looked at.
-    fn usual_refresh_ms() -> f64 {
-        1.0
-    }
-}
-
 /// How long a calibration holds.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct CalibrationSettings {
     /// Age at which a lot is refused, hours.
     pub valid_h: f64,
-    /// File of the golden parts, beside `rig.toml`.
-    pub golden: String,
+    /// File of the golden parts, beside `rig.toml`; none where no recipe needs them.
+    pub golden: Option<String>,
 }
 
 /// A certified value.
@@ -119,7 +73,7 @@ impl ReferencePart {
 }
 
 /// All golden parts of the plant.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ReferenceSet {
     /// Temperature of the certified values, degrees Celsius.
     pub reference_temperature_c: f64,
@@ -139,30 +93,5 @@ impl ReferenceSet {
         self.parts
             .iter()
             .filter(move |part| (part.nominal_v - nominal_v).abs() < 1e-6)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_threshold_of_a_coil_of_half_the_voltage_scatters_by_half_as_many_volts() {
-        let accuracy = AccuracySettings {
-            ai_gain_pct: 0.1,
-            ai_offset_pct_of_range: 0.05,
-            ai_noise_lsb: 0.5,
-            ao_gain_pct: 0.05,
-            ao_offset_mv: 2.0,
-            ao_slope_pct: 0.2,
-            ao_refresh_ms: 1.0,
-            gate_delay_us: 10.0,
-            rtd_k: 0.1,
-            part_minus_track_k: 0.15,
-            operation_scatter_mv: 2.0,
-            conversions_per_s: 75.0,
-        };
-        let volts = [24.0, 12.0, 6.0].map(|nominal_v| accuracy.operation_v(nominal_v));
-        assert_eq!(volts, [0.004, 0.002, 0.001]);
     }
 }

@@ -2,15 +2,14 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::dut;
+use crate::dut::accuracy::AccuracySettings;
 use crate::dut::em_relay::Calibration;
 use crate::dut::em_relay::Device;
 use crate::dut::em_relay::calibration::{InputLine, OutputLine, Overshoot, Overshoots};
 use crate::dut::em_relay::measure::Context;
 use crate::dut::em_relay::overshoot::OvershootModel;
 use crate::dut::em_relay::points::Points;
-use crate::dut::em_relay::settings::{
-    AccuracySettings, ReferencePart, ReferenceSet, ReferenceSettings,
-};
+use crate::dut::em_relay::settings::{ReferencePart, ReferenceSet, ReferenceSettings};
 use crate::dut::recipe::{DeviceRecipe, Recipe};
 use crate::gauge::Factor;
 use crate::handling::tests::wiring;

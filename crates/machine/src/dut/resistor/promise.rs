@@ -1,7 +1,7 @@
 //! How well resistance is known from what the makers promise: the kind has no calibration.
 
 use super::recipe::ResistorRecipe;
-use crate::dut::em_relay::settings::AccuracySettings;
+use crate::dut::accuracy::AccuracySettings;
 use crate::gauge::Budget;
 use crate::gauge::budget::{rectangular, resolution};
 

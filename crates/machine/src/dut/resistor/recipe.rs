@@ -3,7 +3,7 @@
 use super::parameter::{BIN, Parameter};
 use super::points::Points;
 use super::promise::Promise;
-use crate::dut::em_relay::settings::AccuracySettings;
+use crate::dut::accuracy::AccuracySettings;
 use crate::dut::recipe::{Body, Limits};
 use crate::gauge::Limit;
 use crate::rig::fault::Fault;

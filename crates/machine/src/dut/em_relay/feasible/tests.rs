@@ -2,10 +2,10 @@
 #![allow(clippy::unwrap_used)]
 
 use super::super::bins;
-use super::super::settings::AccuracySettings;
 use super::super::{Parameter, Strategy};
 use super::{hindrance, nominal_v_per_s};
 use crate::dut::Recipe;
+use crate::dut::accuracy::AccuracySettings;
 use crate::dut::em_relay::points::{AnalogOut, Points};
 use crate::dut::recipe::DeviceRecipe;
 use crate::rig::settings::RigSettings;

@@ -1,6 +1,7 @@
 //! Context of a test: recipe, calibration, and what the makers of the instruments promise.
 
 use crate::dut::Recipe;
+use crate::dut::accuracy::AccuracySettings;
 use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::calibration::{Calibration, Overshoot};
 use crate::dut::em_relay::coil::ScanDoubt;
@@ -8,7 +9,7 @@ use crate::dut::em_relay::overshoot::OvershootModel;
 use crate::dut::em_relay::points::{AnalogIn, Points};
 use crate::dut::em_relay::recipe::{CoilChannels, RelayRecipe};
 use crate::dut::em_relay::reference_part::interim;
-use crate::dut::em_relay::settings::{AccuracySettings, ReferencePart, ReferenceSettings};
+use crate::dut::em_relay::settings::{ReferencePart, ReferenceSettings};
 use crate::dut::em_relay::threshold::Direction;
 use crate::dut::em_relay::timing::Clock;
 use crate::dut::em_relay::{Parameter, Strategy};
