@@ -42,7 +42,44 @@ pub(super) fn insert(
     Ok(())
 }
 
-/// Gives every part of before schema 8 its codes: the one time that texts of a history are read.
+/// Texts of reasons before schema 8, one a line: `code|parameter|side|text`, where `*` stands for the detail. A migration
+/// reads a file of then the same way whatever the catalogue says now.
+const TEXTS: &str = include_str!("schema/reason_texts.txt");
+
+/// Reads a text as programs before schema 8 wrote it; one without a code stays [`Code::Unclassified`](machine::dut::reason::Code).
+fn read_text(text: &str) -> Reason {
+    let known = TEXTS.lines().find_map(|line| read_as(line, text));
+    let known = known.or_else(|| of_a_limit(text));
+    known.unwrap_or_else(|| Reason::unclassified(text))
+}
+
+/// The reason of one line of [`TEXTS`], when the text is its text.
+fn read_as(line: &str, text: &str) -> Option<Reason> {
+    let [code, key, side, form] = line.splitn(4, '|').collect::<Vec<_>>().try_into().ok()?;
+    let detail = match form.split_once('*') {
+        Some((before, after)) => text.strip_prefix(before)?.strip_suffix(after)?,
+        None if form == text => "",
+        None => return None,
+    };
+    let about = Characteristic::from_key(key);
+    Reason::stored(code, about, Side::from_name(side), detail)
+}
+
+/// A text that begins with the key of a characteristic and speaks of its limit.
+fn of_a_limit(text: &str) -> Option<Reason> {
+    let (key, rest) = text.split_once(' ')?;
+    let (code, side) = match rest {
+        "low" => ("outside_limit", Some(Side::Low)),
+        "high" => ("outside_limit", Some(Side::High)),
+        "low not proven" => ("not_proven", Some(Side::Low)),
+        "high not proven" => ("not_proven", Some(Side::High)),
+        "not measured" => ("not_measured", None),
+        _ => return None,
+    };
+    Reason::stored(code, Characteristic::from_key(key), side, "")
+}
+
+/// Gives every part of before schema 8 its codes.
 pub(super) fn read_texts(connection: &Connection) -> rusqlite::Result<()> {
     let mut after = 0;
     loop {
@@ -52,7 +89,7 @@ pub(super) fn read_texts(connection: &Connection) -> rusqlite::Result<()> {
         };
         after = *last;
         for (part, stored) in &batch {
-            let reasons: Vec<Reason> = texts(stored).map(Reason::from_text).collect();
+            let reasons: Vec<Reason> = texts(stored).map(read_text).collect();
             insert(connection, *part, 1, &reasons)?;
         }
     }
@@ -101,4 +138,18 @@ fn read(row: &Row<'_>) -> rusqlite::Result<Option<Reason>> {
     let about = key.as_deref().and_then(Characteristic::from_key);
     let side = side.as_deref().and_then(Side::from_name);
     Ok(Reason::stored(&code, about, side, &detail))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_text_of_old_is_read_as_its_code() {
+        for line in TEXTS.lines() {
+            let code = line.split('|').next().unwrap_or_default();
+            let text = line.rsplit('|').next().unwrap_or_default();
+            assert_eq!(read_text(&text.replace('*', "COM")).code.name(), code);
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! `/api/history/...`: the command `history` over HTTP, with the same filter in the query string.
 //!
 //! The filter is [`Filter`]: `lot`, `run`, `recipe`, `since`, `until` (RFC 3339), `verdict`, `bin`, `kind`
-//! (`lot` when absent, `golden`, `all`), `param`, `min`, `max`, and of an ordered answer the page: `limit`,
+//! (`lot` when absent, `golden`, `all`), `suspect`, `param`, `min`, `max`, and of an ordered answer the page: `limit`,
 //! `offset`.
 //!
 //! | route | members of the filter | others | answer |

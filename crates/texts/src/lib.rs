@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use texts::{Lang, Message};
-//! assert_eq!(Lang::Zh.text("bin-coil"), "线圈");
+//! assert_eq!(Lang::Zh.text("bin-coil"), "线圈不良箱");
 //! let full = Message::new("alarm", "bin_full").with("bin", "coil");
 //! assert!(full.say(Lang::En).starts_with("The beam of bin coil stays dark."));
 //! ```

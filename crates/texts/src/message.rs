@@ -14,9 +14,12 @@ use std::collections::BTreeMap;
 pub struct Args(BTreeMap<Cow<'static, str>, String>);
 
 /// Arguments that name a thing of the catalogue: `bin` = `coil` is said as `bin-coil`, `needed_role` by the family `role`.
-const NAMES: [&str; 8] = [
+const NAMES: [&str; 11] = [
     "alarm",
     "bin",
+    "characteristic",
+    "fault",
+    "interruption",
     "place",
     "motion",
     "side",

@@ -24,7 +24,7 @@ pub(super) fn table(paper: &Paper, alarms: &[Alarm]) -> Markup {
         } @else {
             table {
                 thead { tr {
-                    th { (say("paper-raised")) } th.n { (say("paper-stood")) }
+                    th { (say("paper-raised")) } th.n { (say("paper-duration")) }
                     th { (say("paper-state")) } th { (say("paper-lot")) }
                     th { (say("paper-code")) } th { (say("paper-message")) }
                 } }
@@ -32,7 +32,7 @@ pub(super) fn table(paper: &Paper, alarms: &[Alarm]) -> Markup {
                     td { (paper.time(it.raised)) }
                     td.n { @match it.cleared {
                         Some(at) => { (span((at.0 - it.raised.0) as f64 / 1e6)) }
-                        None => { (say("paper-end")) }
+                        None => { (say("paper-to_the_end")) }
                     } }
                     td.state { (state(paper, it)) }
                     td.text { (it.lot.as_deref().unwrap_or("–")) @if let Some(run) = it.run { " / " (run) } }
@@ -67,7 +67,7 @@ fn state(paper: &Paper, alarm: &Alarm) -> Markup {
     html! {
         (name)
         @if let Some(at) = alarm.acknowledged {
-            br; (say("paper-seen")) " " (paper.time(at))
+            br; (say("paper-acknowledged_at")) " " (paper.time(at))
             @if let Some(by) = &alarm.acknowledged_by { ", " (by) }
         }
         @if let Some(shelf) = &alarm.shelf {

@@ -20,12 +20,12 @@ pub fn certificate(paper: &Paper, part: &Part, run: &LotSummary) -> String {
     };
     let number = format!("{}-{}-{:06}", part.lot, part.run, part.seq);
     let body = html! {
-        (head(title, &format!("{} {number}", language.text("paper-no"))))
+        (head(title, &format!("{} {number}", language.text("paper-number"))))
         (facts(&about(paper, part, run)))
         div class={ "verdict " (part.verdict) } { (language.name("paper_verdict", &part.verdict)) }
         @for reason in &part.reason_codes { p { (words::reason(language, reason)) } }
         (results(language, part))
-        p.note { (language.text("paper-u_expanded_uncertainty_k_2")) }
+        p.note { (language.text("paper-uncertainty_note")) }
         p.remark { (language.text("paper-not_tested")) }
         (sign_off(language))
     };
@@ -68,7 +68,7 @@ fn about(paper: &Paper, part: &Part, run: &LotSummary) -> Vec<(&'static str, Str
                 .map_or_else(none, |bin| language.name("bin", bin).to_owned()),
         ),
         (
-            say("paper-seen_bin"),
+            say("paper-landed_bin"),
             part.landed_bin
                 .as_deref()
                 .map_or_else(none, |bin| language.name("bin", bin).to_owned()),

@@ -51,7 +51,7 @@ impl LotReport<'_> {
             (self.counts(language))
             h2 { (language.text("paper-parameters")) }
             (self.table(language))
-            p.note { (language.text("paper-cpk_from_mean_moving_range_ppk")) }
+            p.note { (language.text("paper-capability_note")) }
             (self.histograms(language))
             @if let Some(it) = &self.effectiveness { (use_of_time(language, it)) }
             h2 { (language.text("paper-alarms")) }
@@ -110,7 +110,7 @@ impl LotReport<'_> {
                 all(&|it| source(language, &it.source).to_owned()),
             ),
             (
-                say("paper-golden_parts"),
+                say("paper-reference_parts"),
                 self.runs
                     .iter()
                     .map(|it| it.golden)
@@ -257,7 +257,7 @@ fn use_of_time(language: Lang, it: &Effectiveness) -> Markup {
     let say = |id| language.text(id);
     let share = |part: f64| format!("{:.1} %", 100.0 * part);
     html! {
-        h2 { (say("paper-use_time_oee")) }
+        h2 { (say("paper-oee")) }
         table {
             thead { tr {
                 th.n { "OEE" } th.n { (say("paper-availability")) }

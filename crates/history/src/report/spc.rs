@@ -63,9 +63,9 @@ fn kind(language: Lang, kind: &str) -> &str {
     match kind {
         "individuals" => language.text("paper-individuals"),
         "moving range" => language.text("paper-moving_range"),
-        "means" => language.text("paper-means_subgroups"),
-        "ranges" => language.text("paper-ranges_subgroups"),
-        "share" => language.text("paper-share_parts_p"),
+        "means" => language.text("paper-means"),
+        "ranges" => language.text("paper-ranges"),
+        "share" => language.text("paper-shares"),
         other => other,
     }
 }
@@ -83,7 +83,7 @@ fn legend(language: Lang, charts: &[Named<'_>]) -> Markup {
                 td.text { (told(language, &it.chart.signals)) }
             } } }
         }
-        p.note { (language.text("paper-limits_at_three_deviations_from")) }
+        p.note { (language.text("paper-chart_note")) }
     } }
 }
 
