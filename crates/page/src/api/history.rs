@@ -27,9 +27,7 @@ const LAST: Member = may("last", "Only the last so many points; 200 without it."
 
 const RUNS: [Member; 3] = [LOT, RUN, RECIPE];
 const PAGE: [Member; 2] = [LIMIT, OFFSET];
-const FILTER: [Member; 9] = [
-    LOT, RUN, RECIPE, SINCE, UNTIL, VERDICT, BIN, KIND, SUSPECT,
-];
+const FILTER: [Member; 9] = [LOT, RUN, RECIPE, SINCE, UNTIL, VERDICT, BIN, KIND, SUSPECT];
 const RANGE: [Member; 3] = [PARAM, MIN, MAX];
 const CHART: [Member; 3] = [SUBGROUP, RULES, LAST];
 

@@ -84,9 +84,9 @@ impl ReferenceFault {
             Self::Reads { name, raw } => of("reads").with("name", name).with("raw", raw),
             Self::NotEnabled { name } => of("not_enabled").with("name", name),
             Self::NotRead { name } => of("not_read").with("name", name),
-            Self::Scans { found, expected } => of("scans")
-                .with("found", found)
-                .with("expected", expected),
+            Self::Scans { found, expected } => {
+                of("scans").with("found", found).with("expected", expected)
+            }
             Self::Gain {
                 off_pct,
                 promised_pct,
