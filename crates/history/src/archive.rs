@@ -124,11 +124,11 @@ impl Archive {
     }
 
     /// The latest test of the golden part with this serial number.
-    pub fn golden_part(&self, serial: &str) -> Result<Option<Part>> {
+    pub fn reference_part(&self, serial: &str) -> Result<Option<Part>> {
         const DOING: &str = "reading a golden part";
         let mut statement = self
             .connection
-            .prepare(&filter::golden_part())
+            .prepare(&filter::reference_part())
             .doing(DOING)?;
         let mut rows = statement.query([serial]).doing(DOING)?;
         let row = rows.next().doing(DOING)?;

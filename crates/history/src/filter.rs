@@ -4,9 +4,9 @@
 //! one, `measurement_value` (parameter, population, run, verdict, value) is entered once per run and
 //! verdict at the first value of the range, and gives the row numbers of the parts. These are gone through in
 //! ascending order, so that only parts that match are touched, neighbours together, and a page ends early.
-//! What stands beside the parts (runs, alarms, orders) is asked for in `filter/beside.rs`.
+//! What stands beside the parts (runs, alarms, orders) is asked for in `filter/related.rs`.
 
-mod beside;
+mod related;
 
 use super::Moment;
 use super::gates::SUSPECT;
@@ -68,7 +68,7 @@ const COLUMNS: &str = "part.id, part.run_id, part.kind, part.seq, part.serial, p
     part.landed_at_us";
 
 /// The latest test of one golden part.
-pub(super) fn golden_part() -> String {
+pub(super) fn reference_part() -> String {
     format!(
         "SELECT {COLUMNS} FROM part WHERE part.serial = ?1 AND part.kind = 'golden'
          ORDER BY part.judged_at_us DESC LIMIT 1"

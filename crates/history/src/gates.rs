@@ -12,7 +12,7 @@
 //! in every run.
 
 use super::error::{Doing, Result};
-use super::store::{Known, source};
+use super::store::{RowIds, source};
 use super::{Archive, Filter, Moment, Store};
 use rusqlite::{Connection, OptionalExtension, Transaction, params, params_from_iter};
 use serde::{Deserialize, Serialize};
@@ -79,7 +79,7 @@ pub struct ReferenceCheckRecord {
 
 /// Where a lot stands.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct LotStanding {
+pub struct LotStatus {
     /// Its state.
     pub state: LotState,
     /// Why it is held.
@@ -139,9 +139,9 @@ pub(super) fn state(connection: &Connection, record: &LotStateRecord) -> rusqlit
 }
 
 /// A check; the same one again changes nothing.
-pub(super) fn golden_check(
+pub(super) fn reference_check(
     tx: &Transaction<'_>,
-    known: &Known,
+    known: &RowIds,
     it: &ReferenceCheckRecord,
 ) -> Result<()> {
     let run = known.run(&it.lot)?;
@@ -178,7 +178,7 @@ impl Store {
 
 impl Archive {
     /// Where a lot stands; none when nobody has run it.
-    pub fn standing(&self, lot: &str) -> Result<Option<LotStanding>> {
+    pub fn standing(&self, lot: &str) -> Result<Option<LotStatus>> {
         self.connection
             .query_row(
                 "SELECT ifnull(lot_state.state, 'open'), lot_state.why,
@@ -188,7 +188,7 @@ impl Archive {
                  WHERE lot.name = ?1 ORDER BY run.number DESC LIMIT 1",
                 [lot],
                 |row| {
-                    Ok(LotStanding {
+                    Ok(LotStatus {
                         state: LotState::named(&row.get::<_, String>(0)?),
                         why: row.get(1)?,
                         since: Moment(row.get(2)?),

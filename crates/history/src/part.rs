@@ -98,14 +98,14 @@ pub struct Sample {
 #[cfg(any(test, feature = "fixture"))]
 impl Part {
     /// The same part, failed for these reasons.
-    pub fn because(mut self, reasons: Vec<Reason>) -> Self {
+    pub fn with_reasons(mut self, reasons: Vec<Reason>) -> Self {
         self.reasons = reasons.iter().map(Reason::to_string).collect();
         self.reason_codes = reasons;
         self
     }
 
     /// A part of run 1 with nothing measured.
-    pub fn of_paper(lot: &str, seq: u64, verdict: &str) -> Self {
+    pub fn fixture(lot: &str, seq: u64, verdict: &str) -> Self {
         Self {
             tag: "part",
             lot: lot.to_owned(),

@@ -1,4 +1,4 @@
-//! Why a part did not pass, as codes: a row of `reason` for each text of `part.reasons`, in its order.
+//! Codes of the reasons why a part did not pass: the table `reason` has a row for each text of `part.reasons`.
 
 use super::Archive;
 use super::insert::parameter_row;
@@ -6,14 +6,14 @@ use machine::dut::{Characteristic, Reason};
 use machine::gauge::Side;
 use rusqlite::{Connection, Row, params};
 
-/// Reasons of one part.
+/// Selects the reasons of one part in order.
 pub(super) const REASONS: &str = "SELECT code, parameter.key, side, detail FROM reason
     LEFT JOIN parameter ON parameter.id = reason.parameter_id WHERE part_id = ?1 ORDER BY n";
 
-/// Parts of a batch whose texts are read together.
+/// Parts that one step of the migration reads.
 const BATCH: usize = 1_000;
 
-/// Keeps the reasons of the part in row `part`, the first one at place `n`, counted from 1.
+/// Inserts reasons of the part in row `part`; the first one gets number `n`, at least 1.
 pub(super) fn insert(
     connection: &Connection,
     part: i64,
@@ -42,8 +42,8 @@ pub(super) fn insert(
     Ok(())
 }
 
-/// Texts of reasons before schema 8, one a line: `code|parameter|side|text`, where `*` stands for the detail. A migration
-/// reads a file of then the same way whatever the catalogue says now.
+/// Texts of reasons before schema 8, one a line: `code|parameter|side|text`, with `*` for the detail. The table is frozen:
+/// later edits of the catalogue do not change how old files are migrated.
 const TEXTS: &str = include_str!("schema/reason_texts.txt");
 
 /// Reads a text as programs before schema 8 wrote it; one without a code stays [`Code::Unclassified`](machine::dut::reason::Code).
@@ -79,7 +79,7 @@ fn of_a_limit(text: &str) -> Option<Reason> {
     Reason::stored(code, Characteristic::from_key(key), side, "")
 }
 
-/// Gives every part of before schema 8 its codes.
+/// Inserts the codes of every part that was recorded before schema 8.
 pub(super) fn read_texts(connection: &Connection) -> rusqlite::Result<()> {
     let mut after = 0;
     loop {
@@ -95,7 +95,7 @@ pub(super) fn read_texts(connection: &Connection) -> rusqlite::Result<()> {
     }
 }
 
-/// The next parts that have reasons, with them.
+/// Returns the next parts with reasons, after row `after`, with their stored texts.
 fn with_texts(
     connection: &Connection,
     after: i64,
@@ -110,14 +110,14 @@ fn with_texts(
         .collect()
 }
 
-/// Texts of a stored list.
+/// Returns the texts of a stored JSON list.
 pub(super) fn texts(stored: &serde_json::Value) -> impl Iterator<Item = &str> {
     let list = stored.as_array().map(Vec::as_slice).unwrap_or_default();
     list.iter().filter_map(serde_json::Value::as_str)
 }
 
 impl Archive {
-    /// Codes beside the texts of a part. A code that this program does not know is kept as its text.
+    /// Returns a reason for each text; one whose code this program does not know is unclassified.
     pub(super) fn reasons(&self, part: i64, texts: &[String]) -> rusqlite::Result<Vec<Reason>> {
         if texts.is_empty() {
             return Ok(Vec::new());

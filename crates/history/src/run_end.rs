@@ -1,7 +1,7 @@
 //! How a run ended, and the cause when it ended in trouble.
 
 use super::error::{Doing, Result};
-use super::store::Known;
+use super::store::RowIds;
 use machine::station::wants::Ending;
 use rusqlite::{Transaction, params};
 
@@ -17,7 +17,7 @@ pub struct RunEndRecord {
 }
 
 /// Keeps the end of a run; the last one counts.
-pub(super) fn insert(tx: &Transaction<'_>, known: &Known, it: &RunEndRecord) -> Result<()> {
+pub(super) fn insert(tx: &Transaction<'_>, known: &RowIds, it: &RunEndRecord) -> Result<()> {
     assert!(
         it.cause.is_none() || it.ended == Ending::Alarm,
         "trouble of a run that ended well"

@@ -47,7 +47,7 @@ pub(super) fn write(orders: &[Ordered], format: Format, out: &mut Output) -> any
         Format::Csv => {
             csv::write(out, HEADER)?;
             for it in orders {
-                csv::write(out, cells(it).iter().map(|cell| csv::harmless(cell)))?;
+                csv::write(out, cells(it).iter().map(|cell| csv::escape_formula(cell)))?;
             }
         }
         Format::Table => {

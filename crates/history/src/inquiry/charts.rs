@@ -2,7 +2,7 @@
 
 use super::{InquiryError, Result, checks};
 use crate::report::Paper;
-use crate::report::spc::{Named, spc};
+use crate::report::spc::{NamedChart, spc};
 use crate::{Archive, Filter, LotSummary};
 use quality::chart::{Chart, individuals, shares, subgroups};
 use quality::rules::Rules;
@@ -53,9 +53,9 @@ pub fn charts(
 
 /// The page for the wall; of every chart the last `shown` points are drawn.
 pub fn page(paper: &Paper, about: &str, charts: &[Charted], shown: usize) -> String {
-    let named: Vec<Named<'_>> = charts
+    let named: Vec<NamedChart<'_>> = charts
         .iter()
-        .map(|it| Named {
+        .map(|it| NamedChart {
             of: &it.of,
             chart: &it.chart,
             names: &it.names,

@@ -9,7 +9,7 @@ pub const VERDICTS: [&str; 4] = ["pass", "fail", "void", "unjudged"];
 pub const KINDS: [&str; 3] = ["lot", "golden", "all"];
 
 /// Refuses words that do not exist and ranges that nothing can lie in.
-pub fn sensible(filter: &Filter) -> Result<()> {
+pub fn validate(filter: &Filter) -> Result<()> {
     one_of("verdict", filter.verdict.as_deref(), &VERDICTS)?;
     one_of("kind", filter.kind.as_deref(), &KINDS)?;
     for (field, value) in [("min", filter.min), ("max", filter.max)] {

@@ -20,7 +20,7 @@ pub fn csv_lines(
     csv::write(out, &header)?;
     archive.each(filter, |part| {
         let cells = columns::row(&part, parameters).map(|cell| match cell {
-            Cell::Text(text) => csv::harmless(&text).into_owned(),
+            Cell::Text(text) => csv::escape_formula(&text).into_owned(),
             figure => figure.to_string(),
         });
         csv::write(out, cells)

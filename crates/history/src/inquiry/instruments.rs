@@ -16,16 +16,16 @@ const K: f64 = 2.0;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Instruments {
     /// The calibration made last for each coil voltage.
-    pub calibrations: Vec<Held>,
+    pub calibrations: Vec<CalibrationStatus>,
     /// The golden parts of the plant.
-    pub golden: Vec<Golden>,
+    pub golden: Vec<ReferencePartStatus>,
     /// The golden check made last.
     pub check: Option<ReferenceCheck>,
 }
 
 /// A calibration and whether it holds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Held {
+pub struct CalibrationStatus {
     /// Nominal voltage whose golden parts it rests on, V.
     pub nominal_v: Option<f64>,
     /// When the factors were found.
@@ -39,12 +39,12 @@ pub struct Held {
     /// SHA-256, as runs name it.
     pub hash: String,
     /// Every factor that was measured; none when another program wrote them in a form that this one does not read.
-    pub factors: Vec<Told>,
+    pub factors: Vec<ShownFactor>,
 }
 
 /// A factor as it is told.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Told {
+pub struct ShownFactor {
     /// Its name.
     pub name: &'static str,
     /// Unit of the figures, `1` for a ratio.
@@ -57,7 +57,7 @@ pub struct Told {
 
 /// A golden part: what its certificate says and what was read last.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Golden {
+pub struct ReferencePartStatus {
     /// Serial number.
     pub serial: String,
     /// Nominal voltage of the recipes that it serves, V.
@@ -67,12 +67,12 @@ pub struct Golden {
     /// Lot and run in which.
     pub run: Option<(String, u32)>,
     /// Every certified quantity.
-    pub values: Vec<Against>,
+    pub values: Vec<CertifiedReading>,
 }
 
 /// One quantity of a golden part.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Against {
+pub struct CertifiedReading {
     /// What it is.
     pub parameter: Characteristic,
     /// Of the certificate.
@@ -97,7 +97,7 @@ pub fn instruments(
     let now_us = Timestamp::now().as_microsecond();
     let stored = archive.calibrations(simulated)?;
     let held = stored.into_iter().map(|it| held(it, now_us));
-    let golden = golden.iter().map(|part| of_reference_part(archive, part));
+    let golden = golden.iter().map(|part| reference_part(archive, part));
     Ok(Instruments {
         calibrations: held.collect(),
         golden: golden.collect::<Result<_>>()?,
@@ -105,16 +105,16 @@ pub fn instruments(
     })
 }
 
-fn held(record: CalibrationRecord, now_us: i64) -> Held {
+fn held(record: CalibrationRecord, now_us: i64) -> CalibrationStatus {
     let body: serde_json::Value = serde_json::from_str(&record.body).unwrap_or_default();
     let nominal_v = body["nominal_v"].as_f64();
-    let factors = factors(body).into_iter().map(|it| Told {
+    let factors = factors(body).into_iter().map(|it| ShownFactor {
         name: it.name,
         unit: it.unit,
         value: it.factor.value,
         uncertainty: K * it.factor.u,
     });
-    Held {
+    CalibrationStatus {
         nominal_v,
         made: Moment(record.made_at_us),
         due: Moment(record.due_at_us),
@@ -125,11 +125,11 @@ fn held(record: CalibrationRecord, now_us: i64) -> Held {
     }
 }
 
-fn of_reference_part(archive: &Archive, part: &Certificate) -> Result<Golden> {
-    let seen = archive.golden_part(&part.serial)?;
+fn reference_part(archive: &Archive, part: &Certificate) -> Result<ReferencePartStatus> {
+    let seen = archive.reference_part(&part.serial)?;
     let values = part.values.iter().map(|(parameter, certified)| {
         let read = seen.as_ref().and_then(|it| read(it, *parameter));
-        Against {
+        CertifiedReading {
             parameter: *parameter,
             certified: certified.value,
             certified_uncertainty: K * certified.u,
@@ -137,7 +137,7 @@ fn of_reference_part(archive: &Archive, part: &Certificate) -> Result<Golden> {
             uncertainty: read.map(|it| it.1),
         }
     });
-    Ok(Golden {
+    Ok(ReferencePartStatus {
         serial: part.serial.clone(),
         nominal_v: part.nominal_v,
         seen: seen.as_ref().map(|it| it.time),

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 /// A part, judged again.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Again {
+pub struct RejudgedPart {
     /// Always `part`.
     #[serde(rename = "type")]
     pub tag: &'static str,
@@ -33,7 +33,7 @@ pub struct Again {
     pub reason_codes: Vec<Reason>,
 }
 
-impl Again {
+impl RejudgedPart {
     /// Whether the verdicts differ.
     pub fn changes(&self) -> bool {
         self.verdict != self.verdict_was
@@ -112,7 +112,7 @@ impl Rejudging {
     pub fn each<E>(
         &self,
         archive: &Archive,
-        mut each: impl FnMut(Again) -> std::result::Result<(), E>,
+        mut each: impl FnMut(RejudgedPart) -> std::result::Result<(), E>,
     ) -> Result<std::result::Result<Changes, E>>
     where
         E: From<InquiryError>,
@@ -134,12 +134,12 @@ impl Rejudging {
         }))
     }
 
-    fn again(&self, archive: &Archive, part: Part) -> Result<Again> {
+    fn again(&self, archive: &Archive, part: Part) -> Result<RejudgedPart> {
         let basis = self.bases.get(&part.run).copied();
         let basis = basis.unwrap_or_else(|| Basis::of_recipe(&self.recipe));
         let curves = archive.curves(&part)?;
         let verdict = rejudged(&part, &curves, basis, &self.recipe);
-        Ok(Again {
+        Ok(RejudgedPart {
             tag: "part",
             lot: part.lot,
             run: part.run,

@@ -11,7 +11,7 @@ use texts::{Lang, Message};
 
 /// A chart with the names of its points, if they have any.
 #[derive(Debug, Clone)]
-pub struct Named<'a> {
+pub struct NamedChart<'a> {
     /// A parameter key, or a bin.
     pub of: &'a str,
     /// The chart.
@@ -21,7 +21,7 @@ pub struct Named<'a> {
 }
 
 /// The page; of every chart the last `shown` points are drawn.
-pub fn spc(paper: &Paper, about: &str, charts: &[Named<'_>], shown: usize) -> String {
+pub fn spc(paper: &Paper, about: &str, charts: &[NamedChart<'_>], shown: usize) -> String {
     let language = paper.language;
     let heading = language.text("paper-control_charts");
     let body = html! {
@@ -38,7 +38,7 @@ pub fn spc(paper: &Paper, about: &str, charts: &[Named<'_>], shown: usize) -> St
 }
 
 /// What the chart is of, and its kind.
-fn title(language: Lang, it: &Named<'_>) -> String {
+fn title(language: Lang, it: &NamedChart<'_>) -> String {
     let share = Message::new("paper", "bin_share").with("bin", it.of);
     let of = match it.chart.kind {
         "share" => share.say(language),
@@ -70,7 +70,7 @@ fn kind(language: Lang, kind: &str) -> &str {
     }
 }
 
-fn legend(language: Lang, charts: &[Named<'_>]) -> Markup {
+fn legend(language: Lang, charts: &[NamedChart<'_>]) -> Markup {
     html! { div.together {
         table {
             thead { tr {
