@@ -5,7 +5,7 @@
 use anyhow::{bail, ensure};
 use app::exit::Exit;
 use history::{
-    AlarmChange, AlarmChangeRecord, UnacknowledgedAlarm, Identity, Moment, OrderRecord, Row, Store,
+    AlarmChange, AlarmChangeRecord, Identity, Moment, OrderRecord, Row, Store, UnacknowledgedAlarm,
 };
 use machine::station::orders::shelf_minutes;
 use serde_json::json;

@@ -79,7 +79,7 @@ const SLIPS: &[Slip] = &[
 ];
 
 #[test]
-fn a_wrong_file_is_refused_with_file_and_line_before_anything_moves() {
+fn a_wrong_file_is_refused_with_its_line() {
     for (number, slip) in SLIPS.iter().enumerate() {
         let workshop = Workshop::new(&format!("slip-{number}"));
         let line = workshop.change(slip.file, slip.from, slip.to);
@@ -137,7 +137,7 @@ fn an_unknown_recipe_is_refused_with_those_there_are() {
 }
 
 #[test]
-fn a_word_the_program_does_not_know_is_bad_input() {
+fn an_unknown_word_is_bad_input() {
     let workshop = Workshop::new("unknown-words");
     for line in [
         "rum",
@@ -156,7 +156,7 @@ fn a_word_the_program_does_not_know_is_bad_input() {
 }
 
 #[test]
-fn a_study_that_runs_no_lot_refuses_what_belongs_to_lots() {
+fn studies_without_a_lot_refuse_lot_options() {
     let workshop = Workshop::new("studies-without-lots");
     for (option, name) in [
         ("--out figures", "transient --cases -"),
@@ -182,7 +182,7 @@ fn the_default_configuration_passes_its_check() {
 }
 
 #[test]
-fn a_recipe_is_refused_by_the_point_that_the_rig_lacks() {
+fn a_recipe_is_refused_by_its_missing_point() {
     let workshop = Workshop::new("no-latch");
     let latch = "latch             = { module = \"board_di\", channel = 8, active = \"low\" }\n";
     workshop.change(RIG, latch, "");
@@ -210,7 +210,7 @@ fn a_schema_is_json() {
 }
 
 #[test]
-fn a_history_that_was_never_written_is_named_and_not_made() {
+fn reading_a_missing_history_creates_no_file() {
     let workshop = Workshop::new("no-history");
     let said = workshop.run("history list").with_status(2);
     assert_eq!(said.stdout, "");

@@ -7,7 +7,7 @@ use crate::program::Workshop;
 const BLOCKS: u32 = 2400;
 
 #[test]
-fn a_history_that_may_not_grow_stops_feeding_and_loses_no_part_that_fell() {
+fn a_full_history_stops_feeding_and_loses_no_part() {
     let workshop = Workshop::new("full-disk");
     let lot = "run --sim --pace virtual --lot A --recipe jzc-22f-012 --count 400 --seed 1 --json";
     let said = workshop.run_with_little_room(BLOCKS, lot).with_status(3);

@@ -45,7 +45,7 @@ pub fn send(signal: &str, lot: &Child) {
 }
 
 #[test]
-fn ctrl_c_finishes_the_parts_inside_and_keeps_every_row() {
+fn ctrl_c_finishes_parts_inside_and_keeps_rows() {
     let workshop = Workshop::new("ctrl-c");
     let ended = interrupted(&workshop, "INT", 3);
     assert_eq!(ended.status, Some(4));
@@ -67,7 +67,7 @@ fn ctrl_c_finishes_the_parts_inside_and_keeps_every_row() {
 }
 
 #[test]
-fn a_part_that_was_told_has_its_rows_once_after_the_program_was_killed() {
+fn reported_parts_have_their_rows_once_after_a_kill() {
     let workshop = Workshop::new("killed");
     let ended = interrupted(&workshop, "KILL", 3);
     assert_eq!(ended.status, None);

@@ -141,7 +141,7 @@ fn killed_in_the_middle(workshop: &Workshop, attempt: usize, watched: usize) -> 
 }
 
 #[test]
-fn a_controller_that_is_killed_leaves_every_output_safe_within_the_watchdog_time() {
+fn a_killed_controller_leaves_outputs_safe_by_watchdog() {
     let workshop = Workshop::new("killed-in-real-time");
     let mut left = watched(&workshop);
     assert!(left.len() >= 4, "{left:?}");

@@ -5,7 +5,7 @@ use crate::program::Workshop;
 const LOT: &str = "run --sim --pace virtual --lot A --recipe jzc-22f-012 --count 6 --seed 1 --json";
 
 #[test]
-fn every_page_of_a_lot_is_written_in_both_languages() {
+fn every_page_of_a_lot_exists_in_both_languages() {
     let workshop = Workshop::new("paper");
     workshop.run(LOT).with_status(0);
     for (language, not_tested) in [("zh", "绝缘电阻"), ("en", "insulation")] {
@@ -30,7 +30,7 @@ fn every_page_of_a_lot_is_written_in_both_languages() {
 }
 
 #[test]
-fn a_part_that_did_not_pass_keeps_what_was_seen_of_it_and_one_that_passed_does_not() {
+fn only_parts_that_did_not_pass_keep_curves() {
     let workshop = Workshop::new("curves");
     workshop.run(LOT).with_status(0);
     let passed_with =
@@ -51,7 +51,7 @@ fn a_part_that_did_not_pass_keeps_what_was_seen_of_it_and_one_that_passed_does_n
 }
 
 #[test]
-fn another_recipe_is_asked_without_touching_the_old_verdicts() {
+fn rejudging_leaves_old_verdicts_untouched() {
     let workshop = Workshop::new("rejudge");
     workshop.run(LOT).with_status(0);
     let before = workshop.texts("SELECT verdict || bin || reasons FROM part ORDER BY id");

@@ -45,7 +45,7 @@ struct Flat {
 }
 
 #[test]
-fn the_readme_shows_the_line_as_the_scene_describes_it() {
+fn the_drawing_in_the_readme_matches_the_scene() {
     let picture = drawn(&flats());
     let readme = include_str!("../../README.md");
     assert!(

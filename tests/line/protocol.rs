@@ -41,7 +41,7 @@ fn meant(model: &str, request: &str) -> Vec<Command> {
 }
 
 #[test]
-fn every_command_of_every_module_is_written_answered_and_read() {
+fn every_module_answers_every_command() {
     let mut broken = Vec::new();
     for model in models() {
         // With INIT* grounded the newer ones take every command.
@@ -69,7 +69,7 @@ fn every_command_of_every_module_is_written_answered_and_read() {
 }
 
 #[test]
-fn every_command_that_can_be_written_down_stands_in_the_table() {
+fn the_table_holds_every_command_that_can_be_written() {
     let mut named = BTreeSet::new();
     for command in table().flat_map(|(request, _)| readings(request.as_bytes())) {
         let (family, ask) = match command {
@@ -117,7 +117,7 @@ fn every_command_that_can_be_written_down_stands_in_the_table() {
 }
 
 #[test]
-fn what_only_the_factory_may_do_cannot_be_written_down() {
+fn no_factory_command_can_be_written() {
     for (request, models) in table() {
         let never = models == [NEVER];
         assert_eq!(factory(request.as_bytes()).is_some(), never, "{request}");
@@ -179,7 +179,7 @@ fn told(modules: &str, checksum: bool, commands: &[Command]) -> Vec<(Answer, u64
 }
 
 #[test]
-fn a_setting_that_stands_is_not_written_to_the_eeprom_again() {
+fn an_unchanged_setting_is_not_written_to_the_eeprom() {
     let mut counted = 0;
     for model in models() {
         let module = format!("[[module]]\naddress = 1\nmodel = \"{model}\"");
@@ -208,7 +208,7 @@ fn a_setting_that_stands_is_not_written_to_the_eeprom_again() {
 }
 
 #[test]
-fn an_alarm_that_is_off_is_not_switched_off_again_and_one_that_is_on_is() {
+fn only_an_alarm_that_is_on_is_switched_off() {
     let zero = UpTo::new(0).unwrap();
     let asked = [
         Counter::EnableAlarmOf(zero),
@@ -223,7 +223,7 @@ fn an_alarm_that_is_off_is_not_switched_off_again_and_one_that_is_on_is() {
 }
 
 #[test]
-fn what_a_silent_module_is_set_to_is_not_guessed_and_not_written() {
+fn a_silent_module_is_never_configured() {
     let mask = AnalogIn::WriteMask(0x0F).to(Address(1));
     let told = told(
         "[[module]]\naddress = 2\nmodel = \"I-7017\"",

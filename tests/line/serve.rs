@@ -137,7 +137,7 @@ impl Served {
 }
 
 #[test]
-fn lots_are_started_at_the_page_one_after_the_other() {
+fn the_page_starts_one_lot_after_another() {
     let workshop = Workshop::new("serve-lots");
     let served = Served::start(&workshop, "--sim --speed 100");
     let view = served.until_state("Stopped");
@@ -183,7 +183,7 @@ fn lots_are_started_at_the_page_one_after_the_other() {
 }
 
 #[test]
-fn a_start_that_the_gates_refuse_says_why_and_a_lot_that_was_left_goes_on() {
+fn a_refused_start_names_the_gate_and_lots_continue() {
     let workshop = Workshop::new("serve-gates");
     let served = Served::start(&workshop, "--sim --speed 100");
     served.until_state("Stopped");
@@ -224,7 +224,7 @@ fn a_start_that_the_gates_refuse_says_why_and_a_lot_that_was_left_goes_on() {
 }
 
 #[test]
-fn after_an_alarm_the_lot_goes_on_and_is_closed_and_the_next_one_begins() {
+fn after_an_alarm_the_lot_continues_and_closes() {
     let workshop = Workshop::new("serve-alarm");
     let served = Served::start(&workshop, "--sim --speed 100 --fault fall=2");
     served.until_state("Stopped");
@@ -251,7 +251,7 @@ fn after_an_alarm_the_lot_goes_on_and_is_closed_and_the_next_one_begins() {
 }
 
 #[test]
-fn a_line_that_is_missing_at_the_start_is_named_and_used_once_it_is_there() {
+fn a_line_missing_at_start_is_named_and_awaited() {
     let workshop = Workshop::new("serve-unplugged");
     let served = Served::start(
         &workshop,
@@ -274,7 +274,7 @@ fn a_line_that_is_missing_at_the_start_is_named_and_used_once_it_is_there() {
 }
 
 #[test]
-fn a_line_that_is_not_wired_is_bad_input_before_any_file_is_made() {
+fn an_unwired_line_is_refused_before_any_file_exists() {
     let workshop = Workshop::new("serve_unwired");
     let said = workshop
         .run("--db day.db serve --listen 127.0.0.1:0 --line nope=/dev/null")

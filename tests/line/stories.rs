@@ -82,7 +82,7 @@ fn misplaced(name: &str, workshop: &Workshop) -> Vec<String> {
 const INSTANTS: [f64; 4] = [0.05, 0.4, 0.75, 1.1];
 
 #[test]
-fn after_a_module_restarts_at_any_instant_of_a_cycle_the_first_alarm_names_it_and_no_actuator() {
+fn the_first_alarm_names_a_module_that_restarts() {
     let workshop = Workshop::new("module-restarts");
     for (number, instant) in INSTANTS.into_iter().enumerate() {
         for module in ["mech_do_a", "mech_do_b"] {
@@ -104,8 +104,7 @@ fn after_a_module_restarts_at_any_instant_of_a_cycle_the_first_alarm_names_it_an
 
 /// Twelve instants of each here; `study stop` has as many as one likes.
 #[test]
-fn after_an_emergency_stop_at_any_instant_of_a_cycle_or_of_homing_outputs_are_off_in_time_and_the_lot_goes_on()
- {
+fn emergency_stop_at_any_instant_switches_off_in_time() {
     let workshop = Workshop::new("emergency-stops");
     let said = workshop
         .run("study stop --seeds 2 --parts 6 --json")

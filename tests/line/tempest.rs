@@ -10,7 +10,7 @@ fn figure(all: &[Value], name: &str) -> f64 {
 }
 
 #[test]
-fn in_two_hundred_storms_no_rule_is_broken_and_every_weather_has_struck() {
+fn two_hundred_storms_break_no_rule_under_every_fault() {
     let workshop = Workshop::new("tempest");
     let said = workshop.run("study storm --seeds 200 --json");
     assert_eq!(said.status, 0, "{}{}", said.stdout, said.stderr);
@@ -30,7 +30,7 @@ fn in_two_hundred_storms_no_rule_is_broken_and_every_weather_has_struck() {
 }
 
 #[test]
-fn a_storm_comes_back_by_its_seed_bit_for_bit() {
+fn a_seed_repeats_its_storm_bit_for_bit() {
     let workshop = Workshop::new("tempest-again");
     let digest = |seed: u64| {
         let said = workshop.run(&format!("study storm --seed {seed}"));
@@ -47,7 +47,7 @@ fn a_storm_comes_back_by_its_seed_bit_for_bit() {
 
 /// Voltages told wrong, parts that nobody declared, a restart that nobody knew of, a current that left its mark unread.
 #[test]
-fn storms_that_once_found_something_find_nothing_any_more() {
+fn storms_of_fixed_bugs_stay_clean() {
     let workshop = Workshop::new("tempest-known");
     for seed in [
         20_034, 20_546, 51_534, 52_802, 60_356, 60_488, 60_849, 61_519, 64_859, 65_014, 70_740,

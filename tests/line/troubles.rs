@@ -126,7 +126,7 @@ fn cause_otherwise(workshop: &Workshop, said: &Said) -> Option<String> {
 }
 
 #[test]
-fn a_part_with_a_dirty_probe_is_void_and_never_failed() {
+fn a_dirty_probe_makes_a_part_void() {
     let (_, said) = strike("dirty-probe", "probe_dirty=2");
     let parts = said.with_status(0).objects();
     assert_eq!(
@@ -136,7 +136,7 @@ fn a_part_with_a_dirty_probe_is_void_and_never_failed() {
 }
 
 #[test]
-fn a_silent_module_is_named_with_line_address_and_command() {
+fn a_silent_module_is_named_with_its_command() {
     for (module, line, address) in [("mech_di_b", "motion", "12"), ("board_di", "measure", "08")] {
         let fault = format!("silence={module}@10");
         let (workshop, said) = strike(&format!("silent-{module}"), &fault);
@@ -150,7 +150,7 @@ fn a_silent_module_is_named_with_line_address_and_command() {
 }
 
 #[test]
-fn a_module_of_another_type_is_refused_before_anything_moves() {
+fn a_module_of_another_type_is_refused() {
     let (workshop, said) = strike("wrong-type", "wrong_type=board_di");
     said.with_status(3);
     let alarms = workshop.texts("SELECT text FROM alarm");
@@ -172,7 +172,7 @@ fn a_fault_that_is_none_is_refused() {
 }
 
 #[test]
-fn every_fault_of_the_table_is_one_that_the_rig_lists() {
+fn the_fault_table_matches_the_list_of_the_rig() {
     let listed = Workshop::new("fault-list")
         .run("sim --faults")
         .with_status(0)

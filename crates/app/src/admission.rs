@@ -7,7 +7,7 @@ use super::order::LotOrder;
 use super::source::RigSource;
 use config::{ConfigError, Plant, load_recipe};
 use history::{
-    AlarmRecord, Archive, HistoryError, Identity, LOT_NAME, LotRecord, LotStatus, LotState, Row,
+    AlarmRecord, Archive, HistoryError, Identity, LOT_NAME, LotRecord, LotState, LotStatus, Row,
     RunEndRecord, Store, is_lot_name,
 };
 use machine::dut::Recipe;

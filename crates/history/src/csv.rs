@@ -190,7 +190,10 @@ mod tests {
             assert_eq!(unescape_formula(&shown), text);
         }
         for text in ["批次 7", "7-A", "", "'", "'quoted'", "A=1"] {
-            assert_eq!((escape_formula(text).as_ref(), unescape_formula(text)), (text, text));
+            assert_eq!(
+                (escape_formula(text).as_ref(), unescape_formula(text)),
+                (text, text)
+            );
         }
     }
 

@@ -58,7 +58,7 @@ pub use decision::Decision;
 pub use error::{HistoryError, Result};
 pub use filter::Filter;
 pub use gates::{
-    LotStatus, LotState, LotStateRecord, LotYield, ReferenceCheck, ReferenceCheckRecord,
+    LotState, LotStateRecord, LotStatus, LotYield, ReferenceCheck, ReferenceCheckRecord,
 };
 pub use import::{ImportError, ImportRow, parse_import, parse_records};
 pub use inside::InsideRecord;
@@ -67,7 +67,7 @@ pub use lot_name::{LOT_NAME, is_lot_name};
 pub use lots::{LotSummary, Passed, Yield};
 pub use moment::{Moment, MomentError};
 pub use open::{APPLICATION_ID, SCHEMA};
-pub use orders::{OrderRecord, OrderEntry};
+pub use orders::{OrderEntry, OrderRecord};
 pub use part::{Measurement, Part, Sample};
 pub use record::{
     AlarmRecord, CalibrationRecord, InterruptedRecord, LandingRecord, LotRecord, MeasurementRecord,

@@ -34,7 +34,7 @@ fn counted(source: &Source) -> (usize, usize) {
 }
 
 #[test]
-fn the_modules_around_the_machine_assert_what_they_rely_on() {
+fn modules_around_the_machine_have_assertions() {
     let sources = rust_files(&["src", "crates"]);
     let mut broken = Vec::new();
     for (module, least) in LEAST {

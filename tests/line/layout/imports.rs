@@ -80,7 +80,7 @@ fn dependencies(manifest: &str) -> Vec<String> {
 }
 
 #[test]
-fn a_module_of_the_machine_imports_what_the_table_allows() {
+fn machine_modules_import_only_what_the_table_allows() {
     let mut broken = Vec::new();
     for source in rust_files(&["crates/machine/src"]) {
         let module = source.room().unwrap().to_owned();

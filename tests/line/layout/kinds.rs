@@ -43,7 +43,7 @@ const ALLOWED: &[&str] = &[
 ];
 
 #[test]
-fn a_name_of_a_kind_stands_in_its_folder_only() {
+fn names_of_a_kind_stay_in_its_folder() {
     let broken: Vec<String> = sources().iter().flat_map(foreign).collect();
     assert_none(&broken);
 }
@@ -86,7 +86,7 @@ fn foreign(source: &Source) -> Vec<String> {
 }
 
 #[test]
-fn a_name_in_a_comment_a_test_or_its_own_folder_is_not_foreign() {
+fn comments_tests_and_own_folders_may_name_a_kind() {
     let text = "/// coil_a\nlet a = coil_a;\n\n#[cfg(test)]\nmod tests {\n    let a = coil_a;\n}\n";
     let source = |path: &str| Source {
         path: path.to_owned(),

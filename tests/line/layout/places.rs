@@ -42,7 +42,7 @@ const EMPTY_NAMES: &[&str] = &[
 ];
 
 #[test]
-fn the_top_level_holds_what_it_should_and_nothing_else() {
+fn the_top_level_holds_the_listed_entries_only() {
     let stray: Vec<String> = top_level()
         .into_iter()
         .filter(|name| !TOP.contains(&name.as_str()))
@@ -137,7 +137,7 @@ fn every_module_says_what_it_is() {
 
 /// Nothing of the place where it was written: no path of a home, no note to oneself.
 #[test]
-fn the_text_belongs_to_the_project_and_to_nobodys_desk() {
+fn documents_name_no_private_path_or_person() {
     let homes = ["root", "home", "Users", "work"].map(|home| format!("/{home}/"));
     let notes = [
         concat!("TO", "DO"),

@@ -53,7 +53,7 @@ const TOTAL: &[&str] = &[
 ];
 
 #[test]
-fn pure_modules_have_no_clock_no_file_no_socket_no_async_and_no_log() {
+fn pure_modules_use_neither_clock_nor_io_nor_async() {
     let mut broken = Vec::new();
     for source in rust_files(&["src", "crates"]) {
         let Some(module) = source.room().filter(|name| PURE.contains(name)) else {

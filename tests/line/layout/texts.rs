@@ -40,7 +40,7 @@ fn no_chinese_stands_in_the_code() {
 }
 
 #[test]
-fn no_text_of_an_alarm_or_a_refusal_stands_in_the_code() {
+fn no_alarm_or_refusal_text_stands_in_code() {
     let ours = |id: &&str| id.starts_with("alarm-") || id.starts_with("refusal-");
     let spoken: BTreeSet<&str> = texts::plain()
         .filter(|it| ours(&it.id))

@@ -115,7 +115,7 @@ pub fn assert_none(broken: &[String]) {
 }
 
 #[test]
-fn a_comment_is_no_code_and_an_address_is_no_comment() {
+fn comments_and_addresses_are_told_apart() {
     assert_eq!(without_comment("    /// uses std::fs"), "");
     assert_eq!(without_comment("let a = 1; // std::fs"), "let a = 1;");
     assert_eq!(

@@ -9,7 +9,7 @@ use std::time::Duration;
 const TRANSACTIONS: u64 = 20_000;
 
 #[test]
-fn in_a_storm_of_faults_no_value_is_taken_for_another_and_nothing_hangs() {
+fn faults_neither_swap_values_nor_hang_the_bus() {
     let weather = rage(1, TRANSACTIONS, &EVERY_FAULT);
     assert!(weather.is_honest(), "seed 1: {weather:#?}");
     assert_eq!(weather.transactions, TRANSACTIONS);
@@ -25,7 +25,7 @@ fn without_faults_every_transaction_is_believed() {
 }
 
 #[test]
-fn each_fault_alone_is_told_in_its_own_way() {
+fn each_fault_alone_is_reported_as_itself() {
     for fault in EVERY_FAULT {
         let (name, _) = fault.split_once('=').unwrap();
         let often = match name {
@@ -47,7 +47,7 @@ const RUNS: Duration = Duration::from_millis(7_301);
 const SLEEPS: Duration = Duration::from_millis(95_003);
 
 #[test]
-fn a_host_that_wakes_late_takes_no_module_for_silent() {
+fn a_late_host_takes_no_module_for_silent() {
     let weather = in_virtual_time(async {
         tokio::spawn(async {
             loop {

@@ -2,7 +2,7 @@
 
 use super::{LotContext, Purpose};
 use anyhow::Context;
-use history::{UnacknowledgedAlarm, Store};
+use history::{Store, UnacknowledgedAlarm};
 use machine::dut::Calibration;
 use machine::handling::inside::Inside;
 use machine::handling::wear::Uses;

@@ -189,7 +189,7 @@ fn a_chart_of_a_bin_bears_its_name_and_says_what_it_leaves_out() {
     };
     let page = spc(&paper(Lang::Zh), "", &[named], 2);
     assert!(
-        page.contains("料箱：线圈 – 占比图 (p)，共 3 点，图示最后 2 点"),
+        page.contains("料箱：线圈不良箱 – 占比图（p），共 3 点，图示最后 2 点"),
         "{page}"
     );
 }
@@ -207,7 +207,7 @@ fn a_certificate_shows_the_last_attempt_rounded_by_its_uncertainty() {
 #[test]
 fn a_simulated_lot_says_so() {
     assert!(lot_report(Lang::En).contains("SIMULATED RIG"));
-    assert!(lot_report(Lang::Zh).contains("仿真台"));
+    assert!(lot_report(Lang::Zh).contains("仿真测试机"));
 }
 
 #[test]

@@ -259,7 +259,10 @@ fn an_alarm_that_nobody_has_seen_is_left_over_until_somebody_has() {
         .map(|it| (it.code.as_str(), it.count, it.shelved_until_us))
         .collect();
     assert_eq!(seen, [("air_lost", 1, Some(99)), ("door_open", 2, None)]);
-    assert!(store.unacknowledged_alarms(false).unwrap().is_empty(), "another rig");
+    assert!(
+        store.unacknowledged_alarms(false).unwrap().is_empty(),
+        "another rig"
+    );
     let by = || AlarmChange::Acknowledged { by: "li".into() };
     store.record(&[change(Some("door_open"), by())]).unwrap();
     assert_eq!(store.unacknowledged_alarms(true).unwrap().len(), 1);
