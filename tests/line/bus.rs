@@ -1,4 +1,4 @@
-//! `relayrig bus` against modules on a bench, and the trace that an alarm leaves.
+//! `relayrig bus` on the modules of a bench file, and the trace that an alarm leaves.
 
 use crate::program::Workshop;
 use serde_json::Value;
@@ -25,7 +25,7 @@ model = "I-7021"
 init = true
 "#;
 
-/// Modules on a pseudo-terminal, until dropped.
+/// Modules on a pseudo-terminal; dropping ends them.
 struct Bench {
     shop: Workshop,
     sim: Child,
@@ -37,7 +37,7 @@ impl Bench {
         Self::with(name, "")
     }
 
-    /// `words` are further ones of the command.
+    /// Starts the modules; `words` are further arguments.
     fn with(name: &str, words: &str) -> Self {
         let shop = Workshop::new(name);
         std::fs::write(shop.folder.join("bench.toml"), BENCH).unwrap();
@@ -67,7 +67,7 @@ impl Drop for Bench {
     }
 }
 
-/// Milliseconds that a busy machine may keep the simulated modules from answering; a silent address costs twice that.
+/// Time-out for a busy machine, ms; a silent address costs twice as much.
 const ALLOWANCE: u32 = 400;
 
 #[test]
@@ -184,7 +184,7 @@ fn an_alarm_leaves_a_trace_named_in_the_log() {
     assert!(missing.status == 2 && missing.stderr.contains("nothing.trace"));
 }
 
-/// Ended when dropped.
+/// A process that dropping ends.
 struct Running(Child);
 
 impl Drop for Running {

@@ -1,8 +1,8 @@
-//! `relayrig calibrate`: factors are stored, verified, and a rig takes no lot on factors that do not hold.
+//! `relayrig calibrate`: stores and verifies factors; a rig refuses lots on invalid ones.
 
 use crate::program::Workshop;
 
-/// What the calibration in the history of `workshop` would be, had a rig made it.
+/// Marks the calibration in the history of `workshop` as made on a rig.
 fn as_if_of_a_rig(workshop: &Workshop, change: &str) {
     let history = rusqlite::Connection::open(workshop.folder.join("relayrig.db")).unwrap();
     let query = format!(

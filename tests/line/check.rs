@@ -1,4 +1,4 @@
-//! `relayrig check`: what it refuses, and that it answers nothing before everything was read.
+//! `relayrig check`: refusals, and no answer before all input is read.
 
 use crate::program::Workshop;
 
@@ -9,7 +9,7 @@ const SCENE: &str = r#"{"units": "mm",
 const GOOD: &str =
     r#"{"id":"m1","mover":"jaw","from":{"position":[-20,0,0]},"to":{"position":[20,0,0]}}"#;
 
-/// A change of the scene, and the path that the message must name.
+/// A change of the scene, with the path in the expected message.
 const SCENES: &[(&str, &str, &str)] = &[
     (
         "\"half\": [9, 8, 7]",
@@ -171,7 +171,7 @@ const SCENES: &[(&str, &str, &str)] = &[
     ("]}]}", "]}]", "not readable"),
 ];
 
-/// A second line of a move file, and what the message must say behind `line 2: `.
+/// A second line of a move file, with the expected message after `line 2: `.
 const MOVES: &[(&str, &str)] = &[
     (GOOD, "id: found \"m1\" again"),
     ("{", "not readable"),

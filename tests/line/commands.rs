@@ -1,14 +1,14 @@
-//! Commands given wrong files and simple orders: exit status, what stands where, and what does not happen.
+//! Commands with wrong files and simple orders: exit status, output, and absence of side effects.
 
 use crate::program::Workshop;
 use serde_json::Value;
 
 const RIG: &str = "config/rig.toml";
 const RECIPE: &str = "config/recipes/jzc-22f-012.toml";
-/// Both refuse alike; a lot on a rig would open its ports only after that.
+/// Commands that refuse a file before they open a port.
 const COMMANDS: [&str; 2] = ["config check", "run --lot A --recipe jzc-22f-012 --count 1"];
 
-/// A slip in a file, and what the message must say besides the file.
+/// A fault in a file, and the expected rest of the message.
 struct Slip {
     name: &'static str,
     file: &'static str,
@@ -291,7 +291,7 @@ fn a_move_is_answered_by_the_exit_status() {
     assert_eq!(bad.stdout, "");
 }
 
-/// Every command shows an example, or the one above it does; README.md lists none that does not exist.
+/// Checks that every command or its parent shows an example, and that README.md lists existing commands only.
 #[cfg(feature = "sim")]
 #[test]
 fn every_command_has_help_with_an_example() {
@@ -327,7 +327,7 @@ fn every_command_has_help_with_an_example() {
     }
 }
 
-/// Names under `Commands:` of a help text.
+/// Returns the names under `Commands:` of a help text.
 #[cfg(feature = "sim")]
 fn subcommands(help: &str) -> impl Iterator<Item = &str> {
     let lines = help.lines().skip_while(|line| *line != "Commands:").skip(1);

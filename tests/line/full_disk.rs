@@ -1,9 +1,9 @@
-//! A history that may not grow any more while a lot runs.
+//! A history file that reaches its size limit while a lot runs.
 
 use crate::program::Workshop;
 
-/// Largest file that the program may write, in blocks of the shell (512 or 1024 bytes): room for the
-/// golden parts and some dozens more.
+/// Largest file that the program may write, in blocks of the shell (512 or 1024 bytes): room for the reference parts and a
+/// few dozen parts.
 const BLOCKS: u32 = 2400;
 
 #[test]

@@ -1,8 +1,8 @@
-//! Gates of a lot: golden checks, suspect parts, discard limit, first articles, the frozen recipe, retests, wear.
+//! Gates of a lot: reference checks, suspect parts, reject-rate limit, first articles, fixed recipe, retests, wear.
 
 use crate::program::{Said, Workshop};
 
-/// A lot on the simulated rig, seed 1.
+/// Runs a lot on the simulated rig with seed 1.
 fn run(workshop: &Workshop, count: u64, more: &str) -> Said {
     workshop.run(&format!(
         "run --sim --pace virtual --lot A --recipe jzc-22f-012 --count {count} --seed 1 --json {more}"
@@ -35,7 +35,7 @@ fn reference_parts_are_measured_between_parts_without_counting() {
     );
     let slow = "SELECT min(attempt) FROM measurement JOIN part ON part.id = part_id
                 WHERE kind = 'golden' AND seq > 5 AND parameter_id = 2";
-    assert!(workshop.count(slow) > 1, "the slow strategy");
+    assert!(workshop.count(slow) > 1, "confirmation measurements");
     assert_eq!(state(&workshop), "complete");
     assert_eq!(workshop.read("t.jsonl").lines().count(), 8);
     let frozen = "SELECT count(*) FROM run JOIN calibration ON calibration.hash = calibration_hash";
@@ -156,7 +156,7 @@ fn worn_probes_alarm_once_and_the_counter_survives() {
     run(&workshop, 3, "").with_status(0);
     assert_eq!(workshop.texts("SELECT code FROM alarm"), ["probes_worn"]);
     let touches = || workshop.count("SELECT count FROM wear WHERE name = 'probe_touches'");
-    // References in the empty nest, five golden parts, three of the lot.
+    // References in the empty nest, five reference parts, three of the lot.
     assert_eq!(touches(), 9);
     run(&workshop, 1, "").with_status(0);
     assert_eq!(touches(), 16);

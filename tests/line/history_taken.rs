@@ -1,4 +1,4 @@
-//! Histories that may not be written: of another program, of a newer one, locked by another process while a lot runs.
+//! Histories that cannot be written: of another program, of a newer version, locked by another process.
 
 use crate::program::{Workshop, objects};
 use rusqlite::Connection;

@@ -1,22 +1,22 @@
-//! Lots that are stopped or cut off: what was told has its rows, once, and the history is whole.
+//! Stopped and killed lots: every part on stdout has its rows once, and the history is intact.
 
 use crate::program::Workshop;
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, Command};
 
-/// A lot without end.
+/// Command of a lot without end.
 const ENDLESS: &str = "run --sim --pace virtual --lot A --recipe jzc-22f-012 --seed 1 --json";
 
-/// How a lot ended.
+/// End of a lot.
 struct Ended {
-    /// Exit status; none when it was killed.
+    /// Exit status; `None` after a kill.
     status: Option<i32>,
-    /// Everything told on stdout.
+    /// Standard output.
     told: Vec<Value>,
 }
 
-/// Runs the endless lot and sends it `signal` when so many parts were told.
+/// Runs the endless lot and sends `signal` after `parts` parts on stdout.
 fn interrupted(workshop: &Workshop, signal: &str, after: usize) -> Ended {
     let mut lot = workshop.start(ENDLESS);
     let mut out = BufReader::new(lot.stdout.take().unwrap());
@@ -36,7 +36,7 @@ fn interrupted(workshop: &Workshop, signal: &str, after: usize) -> Ended {
     }
 }
 
-/// Sends a program a signal by its name.
+/// Sends a signal, by name, to a program.
 pub fn send(signal: &str, lot: &Child) {
     let sent = Command::new("kill")
         .args(["-s", signal, &lot.id().to_string()])

@@ -1,4 +1,4 @@
-//! Whole lots on the simulated rig in virtual time, held against what its world knows to be true.
+//! Whole lots on the simulated rig in virtual time, compared with the truth of its world.
 
 use crate::program::{Said, Workshop, objects};
 use serde_json::Value;
@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 const PARTS: u64 = 12;
 
-/// A lot that has run.
+/// A finished lot.
 struct Lot {
     workshop: Workshop,
     said: Said,
@@ -37,13 +37,13 @@ fn run_in(workshop: Workshop, recipe: &str, count: u64, more: &str) -> Lot {
     }
 }
 
-/// Twelve parts of the default recipe, run once for all the facts about them.
+/// Returns twelve parts of the default recipe; all tests share one run.
 fn twelve() -> &'static Lot {
     static LOT: OnceLock<Lot> = OnceLock::new();
     LOT.get_or_init(|| run("twelve", "jzc-22f-012", PARTS, "--seed 1"))
 }
 
-/// Three in four are defective: every kind of defect is in it.
+/// Returns a lot in which three parts in four are defective, with every kind of defect.
 fn spoiled() -> &'static Lot {
     static LOT: OnceLock<Lot> = OnceLock::new();
     LOT.get_or_init(|| {
@@ -173,7 +173,7 @@ fn no_defective_part_is_passed() {
     }
 }
 
-/// Defect and bin as the process wants it. A part that cannot be measured goes to retest, never to a fail bin.
+/// Defects with their bins. A part that cannot be measured goes to retest.
 const BIN_OF_DEFECT: &[(&str, &str)] = &[
     ("open", "coil"),
     ("shorted", "coil"),
@@ -189,7 +189,7 @@ const BIN_OF_DEFECT: &[(&str, &str)] = &[
     ("missing", "retest"),
 ];
 
-/// Some beginnings in the table stand for two kinds: stuck NC and NO.
+/// Returns the bin of a defect; some entries cover NC and NO.
 const KINDS_OF_DEFECT: usize = 13;
 
 #[test]
@@ -293,7 +293,7 @@ fn a_lot_writes_no_eeprom_and_touches_nothing() {
     }
 }
 
-/// Everything but the wall clock: rows, verdicts, values, and the fingerprint of the bytes on both lines.
+/// Returns rows, verdicts, values and the fingerprint of the bytes on both lines, without wall times.
 fn without_wall_clock(lot: &Lot) -> (Vec<Value>, Value) {
     let mut summary = lot.summary.clone();
     summary.as_object_mut().unwrap().remove("wall_s");

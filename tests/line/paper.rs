@@ -1,4 +1,4 @@
-//! What is printed, exported, judged again and pruned, from one lot of the simulated rig.
+//! Printing, export, rejudging and pruning of one lot of the simulated rig.
 
 use crate::program::Workshop;
 
@@ -38,7 +38,10 @@ fn only_parts_that_did_not_pass_keep_curves() {
     assert_eq!(workshop.count(passed_with), 0);
     let others = "SELECT count(*) FROM part WHERE verdict <> 'pass'";
     let with = "SELECT count(DISTINCT part_id) FROM curve";
-    assert!(workshop.count(others) > 0, "golden parts are never judged");
+    assert!(
+        workshop.count(others) > 0,
+        "reference parts are never judged"
+    );
     assert_eq!(workshop.count(with), workshop.count(others));
     let most = "SELECT max(n) FROM (SELECT sum(length(packed)) AS n FROM curve GROUP BY part_id)";
     let bytes = workshop.count(most);
@@ -93,11 +96,7 @@ fn only_what_a_backup_holds_is_pruned() {
         .run("history export --lot G1-00001 a.xlsx")
         .with_status(0);
     workshop.run(&format!("{prune} --yes")).with_status(0);
-    assert_eq!(
-        workshop.count(parts),
-        20,
-        "a golden part would not be in the sheet"
-    );
+    assert_eq!(workshop.count(parts), 20, "the sheet lacks reference parts");
     workshop.run("history backup copy.db").with_status(0);
     workshop.run(prune).with_status(0);
     assert_eq!(workshop.count(parts), 20, "nobody said --yes");

@@ -1,5 +1,5 @@
-//! The protocol on both sides: what the controller writes and reads, and what the simulated modules understand, were
-//! written apart from each other from the same manuals. Here they meet, command by command.
+//! The protocol on both sides, command by command. Controller and simulated modules implement the same manuals
+//! independently.
 
 use bus::{Answer, LineSettings, Pace, PortError, Ports, Request};
 use dcon::{
@@ -13,10 +13,10 @@ use tokio::sync::mpsc;
 
 const TABLE: &str = include_str!("protocol.txt");
 
-/// Stands in the place of a model where no rig may send the command.
+/// Mark of a command that no rig may send, instead of a model.
 const NEVER: &str = "never";
 
-/// Request and models of every row.
+/// Returns request and models of every row.
 fn table() -> impl Iterator<Item = (&'static str, Vec<&'static str>)> {
     let rows = TABLE
         .lines()
@@ -32,7 +32,7 @@ fn models() -> BTreeSet<&'static str> {
     all.filter(|model| *model != NEVER).collect()
 }
 
-/// What the controller could mean by `request` to this model.
+/// Returns the commands that `request` may be for this model.
 fn meant(model: &str, request: &str) -> Vec<Command> {
     let family = Family::of_name(model).unwrap();
     let mut meant = readings(request.as_bytes());
@@ -140,7 +140,7 @@ impl Ports for BenchPort {
     }
 }
 
-/// What came of the commands one after the other, and after each how many times an EEPROM has been written.
+/// Sends commands in order. Returns each result with the number of EEPROM writes so far.
 fn told(modules: &str, checksum: bool, commands: &[Command]) -> Vec<(Answer, u64)> {
     let talk = async {
         let rig = SharedRig::new(bench::build_text(&format!("baud = 9600\n{modules}")).unwrap());
@@ -249,7 +249,7 @@ fn set(at: u8, address: u8, config: Config) -> Command {
     Common::WriteConfig { address, config }.to(Address(at))
 }
 
-/// Stored: address 04, 115200 baud, checksum. On the line: address 00, 9600 baud, none.
+/// Module in INIT*: stored address 04, 115200 baud, checksum; on the line address 00, 9600 baud, no checksum.
 const GROUNDED: &str =
     "[[module]]\naddress = 4\nmodel = \"I-7017\"\nbaud = 115200\nchecksum = true\ninit = true";
 

@@ -1,4 +1,4 @@
-//! `serve`: lots started, refused and continued at the page, on a rig that stays under one program.
+//! `serve`: lots are started, refused and continued at the page while one program keeps the rig.
 
 use crate::killed::Rig;
 use crate::program::Workshop;
@@ -9,10 +9,10 @@ use std::process::{Child, Command};
 use std::time::{Duration, Instant};
 
 const RECIPE: &str = "jzc-22f-012";
-/// No state is waited for longer; far beyond what a busy machine takes.
+/// Longest wait for a state; far more than a busy computer needs.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// The program with its page, and somebody who may order anything.
+/// The program with its page, and a session of an engineer.
 struct Served {
     process: Child,
     address: String,
@@ -83,13 +83,13 @@ impl Served {
         self.ask(&format!("POST {path}"), &body.to_string())
     }
 
-    /// An order that is taken.
+    /// Gives an order and checks that it is accepted.
     fn order(&self, order: &Value) {
         let (status, body) = self.post("/api/orders", order);
         assert_eq!(status, 200, "{order}: {body}");
     }
 
-    /// The reason why an order is not.
+    /// Gives an order and returns the reason of its refusal.
     fn refused(&self, order: &Value) -> String {
         let (status, body) = self.post("/api/orders", order);
         assert_eq!(status, 409, "{order}: {body}");
@@ -101,7 +101,7 @@ impl Served {
         self.order(&json!({"order": "start", "lot": lot, "recipe": RECIPE, "count": count}));
     }
 
-    /// The first view of which `test` is true.
+    /// Waits for a view that passes `test`.
     fn until(&self, what: &str, test: impl Fn(&Value) -> bool) -> Value {
         let began = Instant::now();
         loop {
@@ -118,7 +118,7 @@ impl Served {
         self.until(state, |view| view["machine"]["state"] == state)
     }
 
-    /// The lot is over, and so many parts of it are judged.
+    /// Waits for the end of the lot and checks the number of judged parts.
     fn until_complete(&self, lot: &str, parts: u64) {
         let over = |view: &Value| view["lot"] == lot && view["under_way"] == false;
         let view = self.until("over", over);
@@ -128,7 +128,7 @@ impl Served {
         assert_eq!(landed, parts, "{view}");
     }
 
-    /// Ctrl-C; the exit status.
+    /// Sends Ctrl-C and returns the exit status.
     fn interrupted(mut self) -> i32 {
         let id = self.process.id().to_string();
         Command::new("kill").args(["-INT", &id]).status().unwrap();

@@ -3,7 +3,7 @@
 use crate::program::{Workshop, objects};
 use serde_json::Value;
 
-/// A figure of the study by its name.
+/// Returns a figure of the study by its name.
 fn figure(all: &[Value], name: &str) -> f64 {
     let own = all.iter().find(|it| it["figure"] == name).unwrap();
     own["value"].as_f64().unwrap()
@@ -45,7 +45,7 @@ fn a_seed_repeats_its_storm_bit_for_bit() {
     assert_ne!(digest(6), digest(7));
 }
 
-/// Voltages told wrong, parts that nobody declared, a restart that nobody knew of, a current that left its mark unread.
+/// Seeds of fixed bugs: wrong voltages, undeclared parts, an unnoticed restart, an unread current mark.
 #[test]
 fn storms_of_fixed_bugs_stay_clean() {
     let workshop = Workshop::new("tempest-known");

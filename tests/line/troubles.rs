@@ -2,7 +2,7 @@
 
 use crate::program::{Said, Workshop};
 
-/// One line of the table.
+/// A line of the table.
 struct Trouble {
     fault: &'static str,
     status: i32,
@@ -58,7 +58,7 @@ fn every_fault_ends_as_the_table_says() {
     assert!(broken.is_empty(), "\n{}", broken.join("\n"));
 }
 
-/// Every way in which a run under this fault differs from the table.
+/// Returns every difference between a run under this fault and the table.
 fn told_otherwise(trouble: &Trouble) -> Vec<String> {
     let (workshop, said) = strike(
         &format!("fault-{}", trouble.fault.replace('/', "-")),
@@ -77,7 +77,7 @@ fn told_otherwise(trouble: &Trouble) -> Vec<String> {
     broken
 }
 
-/// What was told on stdout stands in the history too, the summary is told whatever happens, nothing has touched.
+/// Checks that the history has every part of stdout, that there is a summary, and that nothing touched.
 fn lost_rows(fault: &str, workshop: &Workshop, said: &Said) -> Vec<String> {
     let mut lost = Vec::new();
     let told = said
@@ -108,7 +108,7 @@ fn lost_rows(fault: &str, workshop: &Workshop, said: &Said) -> Vec<String> {
     lost
 }
 
-/// A status of 3 has the same cause in the summary and in the history, an alarm of the run; no other status has one.
+/// Checks that status 3 has the same cause in summary and history, an alarm of the run, and other statuses none.
 fn cause_otherwise(workshop: &Workshop, said: &Said) -> Option<String> {
     let summary = said.objects().pop()?;
     let cause = summary["cause"]["code"].as_str().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! A converter that is unplugged while a lot runs, over real pseudo-terminals.
+//! A USB converter is unplugged while a lot runs, over real pseudo-terminals.
 
 use crate::killed::Rig;
 use crate::program::Workshop;

@@ -1,11 +1,11 @@
-//! A storm of line faults over the controller's line task. The full one: `cargo bench --bench line_storm`.
+//! A storm of line faults on the line task of the controller. `cargo bench --bench line_storm` runs the full one.
 
 mod rage;
 
 use rage::{EVERY_FAULT, in_virtual_time, rage, storm};
 use std::time::Duration;
 
-/// Enough for every fault to strike some two hundred times.
+/// Transactions of a storm: every fault occurs about two hundred times.
 const TRANSACTIONS: u64 = 20_000;
 
 #[test]
@@ -42,7 +42,7 @@ fn each_fault_alone_is_reported_as_itself() {
     }
 }
 
-/// A late host runs for so long, 7.3 ms of rig time, and then not at all for longer than any time-out, 95 ms.
+/// Run time and pause of a late host, rig time; the pause exceeds every time-out.
 const RUNS: Duration = Duration::from_millis(7_301);
 const SLEEPS: Duration = Duration::from_millis(95_003);
 

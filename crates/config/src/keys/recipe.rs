@@ -8,7 +8,7 @@ const DECISION: &[Key] = keys! {
     key("slow_repeats", whole(1, 100, ""), "station", "confirmation measurements of a result inside the guard band");
 };
 
-/// The whole file for a part of this kind.
+/// Returns the keys of a recipe of this kind.
 pub fn of(kind: Kind) -> [Key; 8] {
     let place = kind as usize;
     let sections = kind.sections();

@@ -12,7 +12,7 @@ use measuring::{ACCURACY, CALIBRATION};
 use modules::{BUS, LINE, MODULE, SAFETY};
 use points::{ACTUATOR, ACTUATORS, ANALOG_IN, ANALOG_OUT, BIN, CHANNEL, DIGITAL_IN, STATION};
 
-/// Points that only kinds of device declare.
+/// Form of points that only kinds of device declare.
 const fn of_kinds(may: fn() -> Vec<&'static str>, entry: &'static Form) -> Form {
     Form::Points(Points {
         must: &[],
@@ -22,7 +22,7 @@ const fn of_kinds(may: fn() -> Vec<&'static str>, entry: &'static Form) -> Form 
     })
 }
 
-/// What the kinds declare, each name once.
+/// Returns the names that the kinds declare, each once.
 fn declared(names: impl Fn(&Fixture) -> Vec<&'static str>) -> Vec<&'static str> {
     let mut all: Vec<&str> = Vec::new();
     for name in FIXTURES.iter().flat_map(names) {
@@ -57,7 +57,7 @@ fn counter() -> Vec<&'static str> {
     declared(|kind| kind.counter.to_vec())
 }
 
-/// The whole file.
+/// Keys of the whole file.
 pub const FILE: &[Key] = keys! {
     key("line", Form::Named(&Form::Table(LINE)), "bus", "RS-485 lines by name");
     key("bus", Form::Table(BUS), "bus, cycle", "times and counts of every line");

@@ -1,8 +1,7 @@
-//! The operation process card of a recipe: what is done to a part, with what, by which figures, in which
-//! time. The form is the customary one of machining (header, steps, tooling, parameters, time quota,
-//! sign-off), its columns for spindle and feed replaced by drive, limits and decision.
+//! The operation process card of a recipe: steps with tooling, drive, limits and time quota. The form is that of machining,
+//! with drive, limits and decision instead of spindle and feed.
 //!
-//! Steps, rating and drive come from the kind ([`Card`]), limits from the recipe, the plant's own figures from `card.toml`
+//! Steps, rating and drive come from the kind ([`Card`]), limits from the recipe, figures of the plant from `card.toml`
 //! ([`CardSettings`]).
 
 use super::page::{Format, page};
@@ -13,7 +12,7 @@ use machine::gauge::Rule;
 use maud::{Markup, html};
 use texts::Lang;
 
-/// The card as one page of HTML, A4 lengthwise.
+/// Returns the card as an HTML page, A4 landscape.
 pub fn card(language: Lang, recipe: &Recipe, plant: &CardSettings, made: &str) -> String {
     let title = language.text("paper-operation_process_card");
     let kind = Card::of(recipe);
@@ -79,7 +78,7 @@ fn title(language: Lang, recipe: &Recipe) -> &str {
     }
 }
 
-/// Sum of all quotas, s.
+/// Returns the sum of all quotas, s.
 fn total(plant: &CardSettings) -> f64 {
     plant
         .quota

@@ -1,4 +1,4 @@
-//! Control charts for the wall: one parameter's level and spread, or the share of a bin from lot to lot.
+//! Printable control charts of a parameter, or of the share of a bin.
 
 use super::Paper;
 use super::charts;
@@ -9,18 +9,18 @@ use quality::chart::Chart;
 use quality::rules::Signal;
 use texts::{Lang, Message};
 
-/// A chart with the names of its points, if they have any.
+/// A chart with names of its points.
 #[derive(Debug, Clone)]
 pub struct NamedChart<'a> {
-    /// A parameter key, or a bin.
+    /// Parameter key or name of a bin.
     pub of: &'a str,
     /// The chart.
     pub chart: &'a Chart,
-    /// Under the points; numbers from 1 where there are none.
+    /// Names of the points; empty for numbers from 1.
     pub names: &'a [String],
 }
 
-/// The page; of every chart the last `shown` points are drawn.
+/// Returns the page with the last `shown` points of every chart.
 pub fn spc(paper: &Paper, about: &str, charts: &[NamedChart<'_>], shown: usize) -> String {
     let language = paper.language;
     let heading = language.text("paper-control_charts");
@@ -37,7 +37,7 @@ pub fn spc(paper: &Paper, about: &str, charts: &[NamedChart<'_>], shown: usize) 
     page(language, Format::Landscape, heading, &paper.made, &body)
 }
 
-/// What the chart is of, and its kind.
+/// Returns subject and kind of a chart.
 fn title(language: Lang, it: &NamedChart<'_>) -> String {
     let share = Message::new("paper", "bin_share").with("bin", it.of);
     let of = match it.chart.kind {
@@ -47,7 +47,7 @@ fn title(language: Lang, it: &NamedChart<'_>) -> String {
     format!("{of} – {}", kind(language, it.chart.kind))
 }
 
-/// Says that there are more points than are drawn.
+/// Returns a remark when not all points are drawn.
 fn cut(language: Lang, points: usize, shown: usize) -> String {
     let cut = Message::new("paper", "last_points")
         .with("shown", shown)
@@ -58,7 +58,7 @@ fn cut(language: Lang, points: usize, shown: usize) -> String {
     }
 }
 
-/// Name of a kind of chart.
+/// Returns the name of a kind of chart.
 fn kind(language: Lang, kind: &str) -> &str {
     match kind {
         "individuals" => language.text("paper-individuals"),

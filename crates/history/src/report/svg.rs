@@ -1,15 +1,15 @@
-//! A drawing area with axes: values to places, round ticks, lines and marks. Lengths in px of the view box.
+//! A drawing area with axes, round ticks, lines and marks. Lengths in px of the view box.
 
 use quality::ordered::round_step;
 use std::fmt::Write;
 
-/// Room for numbers at the left and under the plot.
+/// Margins of the plot, px.
 const LEFT: f64 = 58.0;
 const BELOW: f64 = 24.0;
 const ABOVE: f64 = 10.0;
 const RIGHT: f64 = 64.0;
 
-/// Colours that are told apart in grey, too.
+/// Colours that differ in grey print, too.
 pub(super) const LINE: &str = "#1f5f99";
 pub(super) const LIMIT: &str = "#a11212";
 pub(super) const QUIET: &str = "#8a97a5";
@@ -25,7 +25,7 @@ pub(super) struct Plot {
 }
 
 impl Plot {
-    /// An empty plot of this size over these ranges; a range without extent gets some.
+    /// Makes an empty plot of this size over these ranges; an empty range is widened to 1.
     pub fn new([width, height]: [f64; 2], x: [f64; 2], y: [f64; 2]) -> Self {
         let mut plot = Self {
             text: String::new(),
@@ -38,12 +38,12 @@ impl Plot {
         plot
     }
 
-    /// Place of a value along x.
+    /// Returns the x coordinate of a value, px.
     pub fn at_x(&self, value: f64) -> f64 {
         LEFT + (self.width - LEFT - RIGHT) * (value - self.x[0]) / (self.x[1] - self.x[0])
     }
 
-    /// Place of a value along y.
+    /// Returns the y coordinate of a value, px.
     pub fn at_y(&self, value: f64) -> f64 {
         let bottom = self.height - BELOW;
         bottom - (bottom - ABOVE) * (value - self.y[0]) / (self.y[1] - self.y[0])
@@ -56,7 +56,7 @@ impl Plot {
         self.text.push('\n');
     }
 
-    /// A text centred under the plot at a value of x.
+    /// Writes a text below the plot, centred at a value of x.
     pub fn under(&mut self, x: f64, text: &str) {
         let (x, y) = (self.at_x(x), self.height - 8.0);
         self.add(format_args!(
@@ -65,7 +65,7 @@ impl Plot {
         ));
     }
 
-    /// A line across at a value of y, named at the right.
+    /// Draws a horizontal line at a value of y with its name at the right.
     pub fn across(&mut self, y: f64, colour: &str, dashes: &str, name: &str) {
         let (at, end) = (self.at_y(y), self.width - RIGHT);
         self.add(format_args!(
@@ -77,7 +77,7 @@ impl Plot {
         ));
     }
 
-    /// A line upwards at a value of x, named at its top.
+    /// Draws a vertical line at a value of x with its name at the top.
     pub fn upright(&mut self, x: f64, colour: &str, name: &str) {
         let (at, bottom) = (self.at_x(x), self.height - BELOW);
         self.add(format_args!(
@@ -90,7 +90,7 @@ impl Plot {
         ));
     }
 
-    /// The finished picture.
+    /// Returns the SVG.
     pub fn finish(self) -> String {
         let Self {
             text,
@@ -104,7 +104,7 @@ impl Plot {
         )
     }
 
-    /// Round values of y with thin lines across, and the frame.
+    /// Draws the frame and thin lines at round values of y.
     fn ticks(&mut self) {
         let [low, high] = self.y;
         let step = round_step((high - low) / 5.0).unwrap_or(1.0);
@@ -128,10 +128,10 @@ impl Plot {
     }
 }
 
-/// As many decimals as the step needs.
+/// Formats a value with as many decimals as the step needs.
 pub(super) fn ticked(value: f64, step: f64) -> String {
     let decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
-    // Not a negative zero.
+    // Adding 0 turns a negative zero into 0.
     format!("{:.decimals$}", value + 0.0)
 }
 
@@ -143,7 +143,7 @@ fn opened([low, high]: [f64; 2]) -> [f64; 2] {
     }
 }
 
-/// Text that stays text.
+/// Escapes a text for SVG.
 pub(super) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
