@@ -16,7 +16,7 @@ struct Ended {
     told: Vec<Value>,
 }
 
-/// Runs the endless lot and sends `signal` after `parts` parts on stdout.
+/// Runs the endless lot and sends `signal` once `after` parts are on stdout.
 fn interrupted(workshop: &Workshop, signal: &str, after: usize) -> Ended {
     let mut lot = workshop.start(ENDLESS);
     let mut out = BufReader::new(lot.stdout.take().unwrap());

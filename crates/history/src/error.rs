@@ -110,13 +110,13 @@ pub enum HistoryError {
     /// The target of a backup exists.
     #[error("{path} exists already; a backup never overwrites")]
     Exists {
-        /// The file in the way.
+        /// The existing file.
         path: PathBuf,
     },
     /// A finished copy could not get its name.
     #[error("putting the backup in place at {path}")]
     Place {
-        /// The file wanted.
+        /// Target of the backup.
         path: PathBuf,
         /// The cause.
         source: std::io::Error,

@@ -41,7 +41,7 @@ const OUTSIDE: &[&str] = &[
     "dbg",
 ];
 
-/// Files whose matches have no `_` arm, so that the compiler finds every place for a new state.
+/// Modules whose matches have no `_` arm, so that the compiler finds every place for a new state.
 const TOTAL: &[&str] = &[
     "handling",
     "station",
