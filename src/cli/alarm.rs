@@ -5,7 +5,7 @@
 use anyhow::{bail, ensure};
 use app::exit::Exit;
 use history::{
-    AlarmChange, AlarmChangeRecord, AlarmLeft, Identity, Moment, OrderRecord, Row, Store,
+    AlarmChange, AlarmChangeRecord, Identity, Moment, OrderRecord, Row, Store, UnacknowledgedAlarm,
 };
 use machine::station::orders::shelf_minutes;
 use serde_json::json;
@@ -67,7 +67,7 @@ enum Action {
 /// Runs the command.
 pub fn run(db: &Path, args: &AlarmArgs) -> anyhow::Result<Exit> {
     let mut store = Store::open(db, &Identity::of_this_program())?;
-    let left = store.alarms_left(args.sim)?;
+    let left = store.unacknowledged_alarms(args.sim)?;
     let now_us = jiff::Timestamp::now().as_microsecond();
     let (code, by, change, what) = match &args.action {
         Action::List { json } => {
@@ -132,7 +132,7 @@ pub fn run(db: &Path, args: &AlarmArgs) -> anyhow::Result<Exit> {
     Ok(Exit::Done)
 }
 
-fn list(left: &[AlarmLeft], as_json: bool) -> anyhow::Result<()> {
+fn list(left: &[UnacknowledgedAlarm], as_json: bool) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
     for it in left {
         let shelved = it.shelved_until_us.map(|us| Moment(us).to_string());

@@ -99,7 +99,7 @@ fn decide(db: &Path, it: &Decided, decision: Decision) -> anyhow::Result<()> {
     Ok(lot_decision::write(db, &order, &by, decision)?)
 }
 
-fn known(archive: &Archive, lot: &str) -> anyhow::Result<history::LotStanding> {
+fn known(archive: &Archive, lot: &str) -> anyhow::Result<history::LotStatus> {
     archive
         .standing(lot)?
         .with_context(|| format!("no lot {lot:?}; see `relayrig history list`"))

@@ -1,4 +1,4 @@
-//! `relayrig bus` against modules on a bench, and the trace that an alarm leaves.
+//! `relayrig bus` on the modules of a bench file, and the trace that an alarm leaves.
 
 use crate::program::Workshop;
 use serde_json::Value;
@@ -25,7 +25,7 @@ model = "I-7021"
 init = true
 "#;
 
-/// Modules on a pseudo-terminal, until dropped.
+/// Modules on a pseudo-terminal; dropping ends them.
 struct Bench {
     shop: Workshop,
     sim: Child,
@@ -37,7 +37,7 @@ impl Bench {
         Self::with(name, "")
     }
 
-    /// `words` are further ones of the command.
+    /// Starts the modules; `words` are further arguments.
     fn with(name: &str, words: &str) -> Self {
         let shop = Workshop::new(name);
         std::fs::write(shop.folder.join("bench.toml"), BENCH).unwrap();
@@ -67,11 +67,11 @@ impl Drop for Bench {
     }
 }
 
-/// Milliseconds that a busy machine may keep the simulated modules from answering; a silent address costs twice that.
+/// Time-out for a busy machine, ms; a silent address costs twice as much.
 const ALLOWANCE: u32 = 400;
 
 #[test]
-fn scan_finds_every_module_with_its_name_and_configuration_and_nobody_else() {
+fn scan_finds_exactly_the_modules_of_the_line() {
     let bench = Bench::new("bus_scan");
     let found = |addresses: &str| {
         let (status, out, err) = bench.bus(&format!(
@@ -96,7 +96,7 @@ fn scan_finds_every_module_with_its_name_and_configuration_and_nobody_else() {
 }
 
 #[test]
-fn scan_finds_modules_of_different_rates_with_and_without_checksum_on_one_port() {
+fn scan_finds_modules_at_any_rate_and_checksum() {
     let bench = Bench::with("bus_scan_rates", "--heed-baud");
     let (status, out, err) = bench.bus(&format!(
         "scan --baud 115200 --baud 9600 --addresses 00-01 --allowance {ALLOWANCE} --json"
@@ -122,7 +122,7 @@ fn scan_finds_modules_of_different_rates_with_and_without_checksum_on_one_port()
 }
 
 #[test]
-fn a_tool_whose_reader_has_seen_enough_ends_without_a_word() {
+fn a_closed_pipe_ends_a_tool_silently() {
     let bench = Bench::new("bus_unread");
     let send = format!(
         "bus send --port {} --allowance 900 --checksum $01M",
@@ -135,7 +135,7 @@ fn a_tool_whose_reader_has_seen_enough_ends_without_a_word() {
 }
 
 #[test]
-fn send_puts_a_reply_into_words_and_never_sends_what_only_the_factory_may() {
+fn send_decodes_replies_and_refuses_factory_commands() {
     let bench = Bench::new("bus_send");
     let (status, out, _) = bench.bus("send --allowance 900 --checksum #010 --model 7017");
     assert!(status == 0 && out.contains("ReadOne"), "{out}");
@@ -162,7 +162,7 @@ fn send_puts_a_reply_into_words_and_never_sends_what_only_the_factory_may() {
 }
 
 #[test]
-fn an_alarm_leaves_a_trace_that_monitor_reads_and_names_it_in_the_log() {
+fn an_alarm_leaves_a_trace_named_in_the_log() {
     let shop = Workshop::new("bus_trace");
     let said = shop
         .run("run --sim --lot T --recipe jzc-22f-012 --count 2 --fault silence=board_di@0 --json");
@@ -184,7 +184,7 @@ fn an_alarm_leaves_a_trace_that_monitor_reads_and_names_it_in_the_log() {
     assert!(missing.status == 2 && missing.stderr.contains("nothing.trace"));
 }
 
-/// Ended when dropped.
+/// A process that dropping ends.
 struct Running(Child);
 
 impl Drop for Running {
@@ -195,7 +195,7 @@ impl Drop for Running {
 }
 
 #[test]
-fn the_traffic_of_a_running_controller_is_told_in_another_shell() {
+fn another_shell_monitors_a_running_controller() {
     let shop = Workshop::new("bus_follow");
     let mut demo = Running(shop.start_logging("demo --listen 127.0.0.1:0 --speed 1"));
     // Held open to the end: the program must not find its log closed.

@@ -1,8 +1,8 @@
-//! `relayrig calibrate`: factors are stored, verified, and a rig takes no lot on factors that do not hold.
+//! `relayrig calibrate`: stores and verifies factors; a rig refuses lots on invalid ones.
 
 use crate::program::Workshop;
 
-/// What the calibration in the history of `workshop` would be, had a rig made it.
+/// Marks the calibration in the history of `workshop` as made on a rig.
 fn as_if_of_a_rig(workshop: &Workshop, change: &str) {
     let history = rusqlite::Connection::open(workshop.folder.join("relayrig.db")).unwrap();
     let query = format!(
@@ -33,7 +33,7 @@ fn a_rig_that_has_not_changed_is_verified() {
 }
 
 #[test]
-fn a_drifted_source_fails_the_verification_and_the_rig_takes_no_lot() {
+fn a_drifted_source_fails_verification_and_refuses_lots() {
     let workshop = Workshop::new("calibrate_drifted");
     workshop.run("calibrate --sim").with_status(0);
     workshop.change(
@@ -59,7 +59,7 @@ fn a_drifted_source_fails_the_verification_and_the_rig_takes_no_lot() {
 }
 
 #[test]
-fn a_rig_with_an_overdue_calibration_takes_no_lot_and_says_since_when() {
+fn an_overdue_calibration_refuses_lots_with_its_date() {
     let workshop = Workshop::new("calibrate_overdue");
     workshop.run("calibrate --sim").with_status(0);
     as_if_of_a_rig(&workshop, ", due_at_us = 1000000000000000");

@@ -1,4 +1,4 @@
-//! `relayrig check`: what it refuses, and that it answers nothing before everything was read.
+//! `relayrig check`: refusals, and no answer before all input is read.
 
 use crate::program::Workshop;
 
@@ -9,7 +9,7 @@ const SCENE: &str = r#"{"units": "mm",
 const GOOD: &str =
     r#"{"id":"m1","mover":"jaw","from":{"position":[-20,0,0]},"to":{"position":[20,0,0]}}"#;
 
-/// A change of the scene, and the path that the message must name.
+/// A change of the scene, with the path in the expected message.
 const SCENES: &[(&str, &str, &str)] = &[
     (
         "\"half\": [9, 8, 7]",
@@ -171,7 +171,7 @@ const SCENES: &[(&str, &str, &str)] = &[
     ("]}]}", "]}]", "not readable"),
 ];
 
-/// A second line of a move file, and what the message must say behind `line 2: `.
+/// A second line of a move file, with the expected message after `line 2: `.
 const MOVES: &[(&str, &str)] = &[
     (GOOD, "id: found \"m1\" again"),
     ("{", "not readable"),
@@ -245,7 +245,7 @@ fn refused(workshop: &Workshop, scene: &str, moves: &str, says: &[&str]) {
 }
 
 #[test]
-fn a_bad_scene_is_refused_with_the_path_of_the_field_and_no_answer() {
+fn a_bad_scene_is_refused_by_field_without_answers() {
     let workshop = Workshop::new("bad-scenes");
     for (from, to, says) in SCENES {
         let scene = SCENE.replacen(from, to, 1);
@@ -255,7 +255,7 @@ fn a_bad_scene_is_refused_with_the_path_of_the_field_and_no_answer() {
 }
 
 #[test]
-fn a_bad_move_is_refused_with_its_line_even_behind_good_ones() {
+fn a_bad_move_among_good_ones_is_refused() {
     let workshop = Workshop::new("bad-moves");
     for (line, says) in MOVES {
         let moves = format!("{GOOD}\n{line}\n");
@@ -292,7 +292,7 @@ fn a_bad_scene_in_toml_is_refused_alike() {
 }
 
 #[test]
-fn files_that_are_not_there_and_ranges_that_are_none_are_bad_input() {
+fn missing_files_and_empty_ranges_are_bad_input() {
     let workshop = Workshop::new("check-files");
     workshop.write("scene.json", SCENE);
     workshop.write("scene.yaml", SCENE);
@@ -376,7 +376,7 @@ fn the_examples_of_the_help_work_as_they_stand() {
 }
 
 #[test]
-fn the_scene_of_the_rig_is_taken_as_it_is_written() {
+fn check_accepts_the_scene_of_the_rig() {
     let workshop = Workshop::new("check-rig");
     let rig = include_str!("../../config/scene.toml");
     // The capitals and the mark come from editors of another world.

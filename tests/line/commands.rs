@@ -1,14 +1,14 @@
-//! Commands given wrong files and simple orders: exit status, what stands where, and what does not happen.
+//! Commands with wrong files and simple orders: exit status, output, and absence of side effects.
 
 use crate::program::Workshop;
 use serde_json::Value;
 
 const RIG: &str = "config/rig.toml";
 const RECIPE: &str = "config/recipes/jzc-22f-012.toml";
-/// Both refuse alike; a lot on a rig would open its ports only after that.
+/// Commands that refuse a file before they open a port.
 const COMMANDS: [&str; 2] = ["config check", "run --lot A --recipe jzc-22f-012 --count 1"];
 
-/// A slip in a file, and what the message must say besides the file.
+/// A fault in a file, and the expected rest of the message.
 struct Slip {
     name: &'static str,
     file: &'static str,
@@ -79,7 +79,7 @@ const SLIPS: &[Slip] = &[
 ];
 
 #[test]
-fn a_wrong_file_is_refused_with_file_and_line_before_anything_moves() {
+fn a_wrong_file_is_refused_with_its_line() {
     for (number, slip) in SLIPS.iter().enumerate() {
         let workshop = Workshop::new(&format!("slip-{number}"));
         let line = workshop.change(slip.file, slip.from, slip.to);
@@ -137,7 +137,7 @@ fn an_unknown_recipe_is_refused_with_those_there_are() {
 }
 
 #[test]
-fn a_word_the_program_does_not_know_is_bad_input() {
+fn an_unknown_word_is_bad_input() {
     let workshop = Workshop::new("unknown-words");
     for line in [
         "rum",
@@ -156,7 +156,7 @@ fn a_word_the_program_does_not_know_is_bad_input() {
 }
 
 #[test]
-fn a_study_that_runs_no_lot_refuses_what_belongs_to_lots() {
+fn studies_without_a_lot_refuse_lot_options() {
     let workshop = Workshop::new("studies-without-lots");
     for (option, name) in [
         ("--out figures", "transient --cases -"),
@@ -182,7 +182,7 @@ fn the_default_configuration_passes_its_check() {
 }
 
 #[test]
-fn a_recipe_is_refused_by_the_point_that_the_rig_lacks() {
+fn a_recipe_is_refused_by_its_missing_point() {
     let workshop = Workshop::new("no-latch");
     let latch = "latch             = { module = \"board_di\", channel = 8, active = \"low\" }\n";
     workshop.change(RIG, latch, "");
@@ -210,7 +210,7 @@ fn a_schema_is_json() {
 }
 
 #[test]
-fn a_history_that_was_never_written_is_named_and_not_made() {
+fn reading_a_missing_history_creates_no_file() {
     let workshop = Workshop::new("no-history");
     let said = workshop.run("history list").with_status(2);
     assert_eq!(said.stdout, "");
@@ -291,7 +291,7 @@ fn a_move_is_answered_by_the_exit_status() {
     assert_eq!(bad.stdout, "");
 }
 
-/// Every command shows an example, or the one above it does; README.md lists none that does not exist.
+/// Checks that every command or its parent shows an example, and that README.md lists existing commands only.
 #[cfg(feature = "sim")]
 #[test]
 fn every_command_has_help_with_an_example() {
@@ -327,7 +327,7 @@ fn every_command_has_help_with_an_example() {
     }
 }
 
-/// Names under `Commands:` of a help text.
+/// Returns the names under `Commands:` of a help text.
 #[cfg(feature = "sim")]
 fn subcommands(help: &str) -> impl Iterator<Item = &str> {
     let lines = help.lines().skip_while(|line| *line != "Commands:").skip(1);

@@ -1,8 +1,8 @@
-//! Gates of a lot: golden checks, suspect parts, discard limit, first articles, the frozen recipe, retests, wear.
+//! Gates of a lot: reference checks, suspect parts, reject-rate limit, first articles, fixed recipe, retests, wear.
 
 use crate::program::{Said, Workshop};
 
-/// A lot on the simulated rig, seed 1.
+/// Runs a lot on the simulated rig with seed 1.
 fn run(workshop: &Workshop, count: u64, more: &str) -> Said {
     workshop.run(&format!(
         "run --sim --pace virtual --lot A --recipe jzc-22f-012 --count {count} --seed 1 --json {more}"
@@ -22,7 +22,7 @@ fn state(workshop: &Workshop) -> String {
 }
 
 #[test]
-fn a_golden_part_is_measured_after_every_so_many_parts_and_counts_for_none() {
+fn reference_parts_are_measured_between_parts_without_counting() {
     let workshop = with_lot("gates_checked", "[golden_check]\nafter_parts = 3\n");
     let said = run(&workshop, 8, "--truth t.jsonl").with_status(0);
     assert_eq!(said.objects().last().unwrap()["parts"], 8, "{said}");
@@ -35,7 +35,7 @@ fn a_golden_part_is_measured_after_every_so_many_parts_and_counts_for_none() {
     );
     let slow = "SELECT min(attempt) FROM measurement JOIN part ON part.id = part_id
                 WHERE kind = 'golden' AND seq > 5 AND parameter_id = 2";
-    assert!(workshop.count(slow) > 1, "the slow strategy");
+    assert!(workshop.count(slow) > 1, "confirmation measurements");
     assert_eq!(state(&workshop), "complete");
     assert_eq!(workshop.read("t.jsonl").lines().count(), 8);
     let frozen = "SELECT count(*) FROM run JOIN calibration ON calibration.hash = calibration_hash";
@@ -43,8 +43,7 @@ fn a_golden_part_is_measured_after_every_so_many_parts_and_counts_for_none() {
 }
 
 #[test]
-fn a_check_that_fails_ends_the_run_holds_the_lot_and_makes_what_came_since_the_last_good_one_suspect()
- {
+fn a_failed_check_holds_the_lot_with_suspect_parts() {
     let workshop = with_lot("gates_drifted", "[golden_check]\nafter_parts = 4\n");
     run(&workshop, 9, "--fault drift=20").with_status(3);
     let alarms = workshop.texts("SELECT code FROM alarm");
@@ -80,7 +79,7 @@ fn a_check_that_fails_ends_the_run_holds_the_lot_and_makes_what_came_since_the_l
 }
 
 #[test]
-fn more_failed_parts_than_the_lot_may_have_hold_it() {
+fn too_many_failed_parts_hold_the_lot() {
     let workshop = with_lot("gates_discarded", "discard_limit_pct = 5.0\n");
     workshop.change("config/sim.toml", "rate_pct = 4.0", "rate_pct = 75.0");
     run(&workshop, 40, "").with_status(3);
@@ -93,7 +92,7 @@ fn more_failed_parts_than_the_lot_may_have_hold_it() {
 }
 
 #[test]
-fn the_first_articles_are_measured_by_the_slow_strategy_and_the_others_are_not() {
+fn only_first_articles_get_confirmation_measurements() {
     let workshop = with_lot("gates_first", "first_article_parts = 2\n");
     run(&workshop, 4, "").with_status(0);
     let attempts = |seq: u32| {
@@ -108,7 +107,7 @@ fn the_first_articles_are_measured_by_the_slow_strategy_and_the_others_are_not()
 }
 
 #[test]
-fn a_lot_goes_on_with_the_recipe_it_was_begun_with_until_it_is_closed() {
+fn an_open_lot_keeps_its_recipe() {
     let workshop = Workshop::new("gates_frozen");
     run(&workshop, 4, "--fault door").with_status(3);
     assert_eq!(state(&workshop), "open");
@@ -131,7 +130,7 @@ fn a_lot_goes_on_with_the_recipe_it_was_begun_with_until_it_is_closed() {
 }
 
 #[test]
-fn a_retest_keeps_the_first_result_and_names_who_agreed() {
+fn a_retest_keeps_first_results_and_names_its_person() {
     let workshop = Workshop::new("gates_retest");
     let early = run(&workshop, 1, "--retest li").with_status(2);
     assert!(early.stderr.contains("no run of lot"), "{early}");
@@ -152,12 +151,12 @@ fn a_retest_keeps_the_first_result_and_names_who_agreed() {
 }
 
 #[test]
-fn worn_probes_are_told_once_the_line_goes_on_and_the_counter_outlives_the_run() {
+fn worn_probes_alarm_once_and_the_counter_survives() {
     let workshop = with_lot("gates_worn", "[wear]\nprobe_touches = 8\n");
     run(&workshop, 3, "").with_status(0);
     assert_eq!(workshop.texts("SELECT code FROM alarm"), ["probes_worn"]);
     let touches = || workshop.count("SELECT count FROM wear WHERE name = 'probe_touches'");
-    // References in the empty nest, five golden parts, three of the lot.
+    // References in the empty nest, five reference parts, three of the lot.
     assert_eq!(touches(), 9);
     run(&workshop, 1, "").with_status(0);
     assert_eq!(touches(), 16);
@@ -172,7 +171,7 @@ fn worn_probes_are_told_once_the_line_goes_on_and_the_counter_outlives_the_run()
 }
 
 #[test]
-fn probes_that_foul_are_told_before_a_pin_counts_as_open_and_the_coil_reads_the_same() {
+fn fouling_probes_raise_an_alarm_before_a_pin_opens() {
     let workshop = with_lot("gates_fouled", "[wear]\nprobe_contact_ohm = 1.5\n");
     run(&workshop, 40, "").with_status(0);
     assert!(workshop.texts("SELECT code FROM alarm").is_empty());
@@ -200,7 +199,7 @@ fn probes_that_foul_are_told_before_a_pin_counts_as_open_and_the_coil_reads_the_
 }
 
 #[test]
-fn a_lot_without_gates_needs_no_file_and_a_wrong_key_is_named_with_its_line() {
+fn gates_are_optional_and_a_wrong_key_is_named() {
     let workshop = Workshop::new("gates_file");
     std::fs::remove_file(workshop.folder.join("config/lot.toml")).unwrap();
     workshop.run("config check").with_status(0);
@@ -216,7 +215,7 @@ fn a_lot_without_gates_needs_no_file_and_a_wrong_key_is_named_with_its_line() {
 }
 
 #[test]
-fn a_check_without_a_golden_part_of_the_voltage_is_refused_before_anything_moves() {
+fn a_check_without_a_reference_part_is_refused() {
     let workshop = with_lot("gates_no_golden", "[golden_check]\nafter_h = 1.0\n");
     let text = workshop
         .read("config/golden.toml")
@@ -230,7 +229,7 @@ fn a_check_without_a_golden_part_of_the_voltage_is_refused_before_anything_moves
 }
 
 #[test]
-fn an_alarm_that_ended_a_run_is_left_over_until_somebody_has_seen_it() {
+fn an_alarm_that_ended_a_run_waits_for_acknowledgement() {
     let workshop = Workshop::new("gates_alarms");
     run(&workshop, 4, "--fault door").with_status(3);
     let left = |workshop: &Workshop| workshop.run("alarm list --sim --json").objects();
@@ -255,7 +254,7 @@ fn an_alarm_that_ended_a_run_is_left_over_until_somebody_has_seen_it() {
 
 #[cfg(unix)]
 #[test]
-fn a_recipe_that_is_revised_while_a_lot_runs_reaches_the_next_lot_only() {
+fn a_revised_recipe_applies_to_the_next_lot_only() {
     use std::io::BufRead;
     let workshop = Workshop::new("revised");
     let lot = |name: &str, count: u32| {

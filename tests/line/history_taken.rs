@@ -1,4 +1,4 @@
-//! Histories that may not be written: of another program, of a newer one, locked by another process while a lot runs.
+//! Histories that cannot be written: of another program, of a newer version, locked by another process.
 
 use crate::program::{Workshop, objects};
 use rusqlite::Connection;
@@ -8,7 +8,7 @@ use std::time::Duration;
 const LOT: &str = "run --sim --pace virtual --lot A --recipe jzc-22f-012 --seed 1 --json";
 
 #[test]
-fn a_lot_does_not_begin_on_a_file_that_is_no_history_of_this_program_and_leaves_it_as_it_was() {
+fn a_lot_refuses_a_foreign_history_file_untouched() {
     let workshop = Workshop::new("no-history");
     let file = workshop.folder.join("relayrig.db");
     let foreign = || {
@@ -35,7 +35,7 @@ fn a_lot_does_not_begin_on_a_file_that_is_no_history_of_this_program_and_leaves_
 }
 
 #[test]
-fn a_lot_does_not_begin_on_the_history_of_a_newer_program() {
+fn a_lot_refuses_the_history_of_a_newer_program() {
     let workshop = Workshop::new("newer");
     workshop
         .run("history generate --parts 3 --until 2026-01-01T00:00:00Z")
@@ -56,7 +56,7 @@ fn a_lot_does_not_begin_on_the_history_of_a_newer_program() {
 }
 
 #[test]
-fn a_history_that_another_process_locks_stops_feeding_and_loses_no_part_that_fell() {
+fn a_locked_history_stops_feeding_and_loses_no_part() {
     let workshop = Workshop::new("locked");
     let mut lot = workshop.start_heard(LOT);
     let mut out = BufReader::new(lot.stdout.take().unwrap());

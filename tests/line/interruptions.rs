@@ -1,22 +1,22 @@
-//! Lots that are stopped or cut off: what was told has its rows, once, and the history is whole.
+//! Stopped and killed lots: every part on stdout has its rows once, and the history is intact.
 
 use crate::program::Workshop;
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, Command};
 
-/// A lot without end.
+/// Command of a lot without end.
 const ENDLESS: &str = "run --sim --pace virtual --lot A --recipe jzc-22f-012 --seed 1 --json";
 
-/// How a lot ended.
+/// End of a lot.
 struct Ended {
-    /// Exit status; none when it was killed.
+    /// Exit status; `None` after a kill.
     status: Option<i32>,
-    /// Everything told on stdout.
+    /// Standard output.
     told: Vec<Value>,
 }
 
-/// Runs the endless lot and sends it `signal` when so many parts were told.
+/// Runs the endless lot and sends `signal` once `after` parts are on stdout.
 fn interrupted(workshop: &Workshop, signal: &str, after: usize) -> Ended {
     let mut lot = workshop.start(ENDLESS);
     let mut out = BufReader::new(lot.stdout.take().unwrap());
@@ -36,7 +36,7 @@ fn interrupted(workshop: &Workshop, signal: &str, after: usize) -> Ended {
     }
 }
 
-/// Sends a program a signal by its name.
+/// Sends a signal, by name, to a program.
 pub fn send(signal: &str, lot: &Child) {
     let sent = Command::new("kill")
         .args(["-s", signal, &lot.id().to_string()])
@@ -45,7 +45,7 @@ pub fn send(signal: &str, lot: &Child) {
 }
 
 #[test]
-fn ctrl_c_finishes_the_parts_inside_and_keeps_every_row() {
+fn ctrl_c_finishes_parts_inside_and_keeps_rows() {
     let workshop = Workshop::new("ctrl-c");
     let ended = interrupted(&workshop, "INT", 3);
     assert_eq!(ended.status, Some(4));
@@ -67,7 +67,7 @@ fn ctrl_c_finishes_the_parts_inside_and_keeps_every_row() {
 }
 
 #[test]
-fn a_part_that_was_told_has_its_rows_once_after_the_program_was_killed() {
+fn reported_parts_have_their_rows_once_after_a_kill() {
     let workshop = Workshop::new("killed");
     let ended = interrupted(&workshop, "KILL", 3);
     assert_eq!(ended.status, None);

@@ -1,7 +1,6 @@
-//! The controller killed or stopped at once in the middle of its work, over real pseudo-terminals: outputs are safe.
+//! Controllers that are killed or stopped in the middle of a test, over real pseudo-terminals: outputs become safe.
 //!
-//! Judged by the simulated rig in rig time, which follows the wall clock: how long this machine takes to notice
-//! anything does not matter.
+//! The simulated rig judges in rig time, so that delays of this computer do not matter.
 
 use crate::interruptions::send;
 use crate::program::{Workshop, objects};
@@ -10,7 +9,7 @@ use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
 use std::process::{Child, ChildStdout, Command};
 
-/// The simulated rig on pseudo-terminals, telling what its outputs do; killed at the end.
+/// The simulated rig on pseudo-terminals, printing changes of its outputs; dropping kills it.
 pub struct Rig {
     process: Child,
     told: BufReader<ChildStdout>,
@@ -27,7 +26,7 @@ impl Drop for Rig {
 }
 
 impl Rig {
-    /// Links its ports in the folder `ports`; `faults` are further words of the command.
+    /// Starts the rig with its ports linked in `ports`; `faults` are further arguments.
     pub fn start(workshop: &Workshop, faults: &str) -> Self {
         // A rig that tells nothing any more would keep the test waiting for ever.
         let mut process = workshop.start_for(
@@ -41,14 +40,14 @@ impl Rig {
         rig
     }
 
-    /// None when it has ended.
+    /// Returns the next event; `None` after its end.
     fn next(&mut self) -> Option<Value> {
         let mut line = String::new();
         let count = self.told.read_line(&mut line).unwrap();
         (count > 0).then(|| serde_json::from_str(&line).unwrap())
     }
 
-    /// What each digital output module carries when the first watchdog expires.
+    /// Returns the outputs of each digital module when the first watchdog expires.
     fn left_by_its_host(&mut self) -> BTreeMap<String, f64> {
         let told = std::iter::from_fn(|| self.next());
         let outputs = told
@@ -62,7 +61,7 @@ impl Rig {
             .collect()
     }
 
-    /// The next so many watchdogs that expire; fewer when it ends before.
+    /// Returns the next `count` expiring watchdogs; fewer when the rig ends.
     fn expiries(&mut self, count: usize) -> Vec<Value> {
         let told = std::iter::from_fn(|| self.next());
         told.filter(|told| told["type"] == "expired")
@@ -70,7 +69,7 @@ impl Rig {
             .collect()
     }
 
-    /// Waits until the mechanism was driven, and then the coil is; false when a watchdog expires before, or the rig ends.
+    /// Waits for a motion and then for the coil drive. Returns false when a watchdog expires or the rig ends before.
     fn works(&mut self) -> bool {
         let moving = |told: &Value, module: &str| {
             told["type"] == "output" && told["module"] == module && told["bits"].as_u64() > Some(0)
@@ -113,12 +112,12 @@ fn number(value: &toml::Value) -> f64 {
     }
 }
 
-/// Starts of a lot: on a machine that is busy with other things the controller may come too late for a watchdog, or end
-/// by itself because a contact was not read in time. Either proves nothing.
+/// Most starts of a lot: on a busy computer the controller may be late for a watchdog or end with an alarm, which proves
+/// nothing.
 const TRIES: usize = 20;
 
-/// A lot is started, and its controller killed while the coil is driven: how the watchdogs expired then, if all of them
-/// did and none had before.
+/// Starts a lot and kills its controller while the coil is driven. Returns the expired watchdogs, provided that all expired
+/// after the kill.
 fn killed_in_the_middle(workshop: &Workshop, attempt: usize, watched: usize) -> Option<Vec<Value>> {
     let mut rig = Rig::start(workshop, "");
     // What an attempt leaves in its history is not to hinder the next.
@@ -141,7 +140,7 @@ fn killed_in_the_middle(workshop: &Workshop, attempt: usize, watched: usize) -> 
 }
 
 #[test]
-fn a_controller_that_is_killed_leaves_every_output_safe_within_the_watchdog_time() {
+fn a_killed_controller_leaves_outputs_safe_by_watchdog() {
     let workshop = Workshop::new("killed-in-real-time");
     let mut left = watched(&workshop);
     assert!(left.len() >= 4, "{left:?}");
@@ -163,8 +162,7 @@ fn a_controller_that_is_killed_leaves_every_output_safe_within_the_watchdog_time
     }
 }
 
-/// A lot that is told to stop, and to stop at once, while the coil is driven: rig, status and what it said. None when it
-/// did not come so far, or ended with an alarm before it was told.
+/// Stops a lot twice while the coil is driven. Returns rig, status and output; `None` when the lot ended before.
 fn stopped_twice(workshop: &Workshop) -> Option<(Rig, i32, String)> {
     let mut rig = Rig::start(workshop, "");
     let mut controller = workshop.start_heard(

@@ -1,4 +1,4 @@
-//! Whole lots on the simulated rig in virtual time, held against what its world knows to be true.
+//! Whole lots on the simulated rig in virtual time, compared with the truth of its world.
 
 use crate::program::{Said, Workshop, objects};
 use serde_json::Value;
@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 const PARTS: u64 = 12;
 
-/// A lot that has run.
+/// A finished lot.
 struct Lot {
     workshop: Workshop,
     said: Said,
@@ -37,13 +37,13 @@ fn run_in(workshop: Workshop, recipe: &str, count: u64, more: &str) -> Lot {
     }
 }
 
-/// Twelve parts of the default recipe, run once for all the facts about them.
+/// Returns twelve parts of the default recipe; all tests share one run.
 fn twelve() -> &'static Lot {
     static LOT: OnceLock<Lot> = OnceLock::new();
     LOT.get_or_init(|| run("twelve", "jzc-22f-012", PARTS, "--seed 1"))
 }
 
-/// Three in four are defective: every kind of defect is in it.
+/// Returns a lot in which three parts in four are defective, with every kind of defect.
 fn spoiled() -> &'static Lot {
     static LOT: OnceLock<Lot> = OnceLock::new();
     LOT.get_or_init(|| {
@@ -58,7 +58,7 @@ fn text<'a>(object: &'a Value, key: &str) -> &'a str {
 }
 
 #[test]
-fn every_part_of_a_lot_is_told_in_order_and_summed_up() {
+fn every_part_is_printed_in_order_with_a_summary() {
     let lot = twelve();
     let seqs: Vec<u64> = lot
         .parts
@@ -93,7 +93,7 @@ fn every_part_of_a_lot_is_told_in_order_and_summed_up() {
 }
 
 #[test]
-fn a_passed_part_has_nine_values_each_with_its_uncertainty() {
+fn a_passed_part_has_nine_values_with_uncertainty() {
     for part in twelve()
         .parts
         .iter()
@@ -115,7 +115,7 @@ fn a_passed_part_has_nine_values_each_with_its_uncertainty() {
 }
 
 #[test]
-fn no_value_of_a_good_part_is_off_by_three_times_its_uncertainty() {
+fn values_of_good_parts_err_below_three_uncertainties() {
     let lot = twelve();
     for (part, truth) in lot
         .parts
@@ -136,7 +136,7 @@ fn no_value_of_a_good_part_is_off_by_three_times_its_uncertainty() {
 }
 
 #[test]
-fn every_body_lies_in_the_bin_of_its_row() {
+fn every_part_lies_in_the_bin_of_its_row() {
     for lot in [twelve(), spoiled()] {
         assert_eq!(lot.truth.len(), lot.parts.len());
         for (part, truth) in lot.parts.iter().zip(&lot.truth) {
@@ -173,7 +173,7 @@ fn no_defective_part_is_passed() {
     }
 }
 
-/// Defect and bin as the process wants it. A part that cannot be measured goes to retest, never to a fail bin.
+/// Defects with their bins. A part that cannot be measured goes to retest.
 const BIN_OF_DEFECT: &[(&str, &str)] = &[
     ("open", "coil"),
     ("shorted", "coil"),
@@ -189,7 +189,7 @@ const BIN_OF_DEFECT: &[(&str, &str)] = &[
     ("missing", "retest"),
 ];
 
-/// Some beginnings in the table stand for two kinds: stuck NC and NO.
+/// Returns the bin of a defect; some entries cover NC and NO.
 const KINDS_OF_DEFECT: usize = 13;
 
 #[test]
@@ -236,7 +236,7 @@ fn a_void_part_says_why() {
 }
 
 #[test]
-fn every_part_has_its_rows_down_to_the_raw_replies() {
+fn every_part_has_rows_down_to_raw_replies() {
     let workshop = &twelve().workshop;
     assert_eq!(
         workshop.count("SELECT count(*) FROM part WHERE kind = 'lot'"),
@@ -286,14 +286,14 @@ fn golden_parts_come_first_and_end_in_retest() {
 }
 
 #[test]
-fn a_lot_writes_nothing_to_an_eeprom_and_touches_nothing() {
+fn a_lot_writes_no_eeprom_and_touches_nothing() {
     for lot in [twelve(), spoiled()] {
         assert_eq!(lot.summary["eeprom_writes"].as_u64(), Some(0));
         assert!(!lot.said.stderr.contains("touched"), "{}", lot.said.stderr);
     }
 }
 
-/// Everything but the wall clock: rows, verdicts, values, and the fingerprint of the bytes on both lines.
+/// Returns rows, verdicts, values and the fingerprint of the bytes on both lines, without wall times.
 fn without_wall_clock(lot: &Lot) -> (Vec<Value>, Value) {
     let mut summary = lot.summary.clone();
     summary.as_object_mut().unwrap().remove("wall_s");
@@ -302,7 +302,7 @@ fn without_wall_clock(lot: &Lot) -> (Vec<Value>, Value) {
 }
 
 #[test]
-fn the_same_seed_gives_the_same_rows_and_the_same_bytes_on_both_lines() {
+fn the_same_seed_gives_the_same_rows_and_bytes() {
     let again = run("twelve-again", "jzc-22f-012", PARTS, "--seed 1");
     assert_eq!(without_wall_clock(twelve()), without_wall_clock(&again));
     assert_eq!(twelve().truth, again.truth);
@@ -362,7 +362,7 @@ fn the_history_tells_of_the_lot() {
 }
 
 #[test]
-fn conditioning_operates_the_relay_as_often_as_the_recipe_says() {
+fn conditioning_operates_the_relay_by_the_recipe() {
     let operations = |name: &str, count: u64| {
         let workshop = Workshop::new(name);
         workshop.change(

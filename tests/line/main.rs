@@ -1,26 +1,25 @@
-//! The whole line from outside, and the rules of the house.
+//! Tests of the built program, and rules about the source tree.
 //!
-//! - [`layout`]: what the source tree must look like: who imports whom, what a pure module may not name,
-//!   which files stand where, and that the documents speak of things that exist.
-//! - `bus`: the tools of a line against modules on a bench, and the traces of alarms.
-//! - `calibrate`: factors stored, verified, and a rig that takes no lot without them.
-//! - [`commands`]: the built program given wrong files and simple orders.
-//! - `full_disk`: a history that may not grow any more while a lot runs.
-//! - `gates`: golden checks, suspect parts, discard limit, first articles, retests, wear.
-//! - `history_taken`: files of other programs, of a newer one, and one that another process locks while a lot runs.
-//! - `interruptions`: lots that are stopped or killed, and what is left of them.
-//! - `killed`: the controller killed over pseudo-terminals, and outputs safe in time.
-//! - [`lots`]: whole lots on the simulated rig in virtual time, held against the truth of the world.
-//! - `paper`: pages, sheets, another recipe, retention, parts fed again.
-//! - [`picture`]: the picture in README.md is that of `config/scene.toml`.
+//! - [`layout`]: rules about imports, pure modules, places of files, and references in documents.
+//! - `bus`: the bus tools on the modules of a bench file, and traces of alarms.
+//! - `calibrate`: storing and verifying factors, and refusing lots without them.
+//! - [`commands`]: wrong files and simple orders.
+//! - `full_disk`: a history file that reaches its size limit.
+//! - `gates`: reference checks, suspect parts, reject-rate limit, first articles, retests, wear.
+//! - `history_taken`: histories of other or newer programs, and one that another process locks.
+//! - `interruptions`: rows of stopped and killed lots.
+//! - `killed`: outputs become safe in time after a kill.
+//! - [`lots`]: whole lots on the simulated rig in virtual time, compared with the truth of its world.
+//! - `paper`: printing, export, rejudging, retention.
+//! - [`picture`]: the drawing in README.md matches `config/scene.toml`.
 //! - `protocol`: every command of every module, written, answered and read; settings, INIT*.
-//! - `stories`: scripts of troubles and orders, and what happened, as a mechanic would tell it.
+//! - `stories`: scripts of troubles and orders with their expected course.
 //! - `storm`: random transactions under every fault of a line at once, judged by the fingerprint of each value.
-//! - `tempest`: the whole program under faults of world and line, orders and kills, judged by the simulated rig.
-//! - `unplugged`: a port that vanishes over pseudo-terminals.
+//! - `tempest`: the whole program under faults, orders and kills, judged by the simulated rig.
+//! - `unplugged`: a port that vanishes while a lot runs.
 //! - [`rows`]: four recipes, five seeds, forty parts each, compared with what was recorded.
 //! - `serve`: lots started, refused and continued at the page.
-//! - [`troubles`]: faults of the rig by name, and the alarm each must end in.
+//! - [`troubles`]: faults of the rig by name, with the alarm of each.
 
 #![allow(clippy::unwrap_used)]
 

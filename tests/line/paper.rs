@@ -1,11 +1,11 @@
-//! What is printed, exported, judged again and pruned, from one lot of the simulated rig.
+//! Printing, export, rejudging and pruning of one lot of the simulated rig.
 
 use crate::program::Workshop;
 
 const LOT: &str = "run --sim --pace virtual --lot A --recipe jzc-22f-012 --count 6 --seed 1 --json";
 
 #[test]
-fn every_page_of_a_lot_is_written_in_both_languages() {
+fn every_page_of_a_lot_exists_in_both_languages() {
     let workshop = Workshop::new("paper");
     workshop.run(LOT).with_status(0);
     for (language, not_tested) in [("zh", "绝缘电阻"), ("en", "insulation")] {
@@ -30,7 +30,7 @@ fn every_page_of_a_lot_is_written_in_both_languages() {
 }
 
 #[test]
-fn a_part_that_did_not_pass_keeps_what_was_seen_of_it_and_one_that_passed_does_not() {
+fn only_parts_that_did_not_pass_keep_curves() {
     let workshop = Workshop::new("curves");
     workshop.run(LOT).with_status(0);
     let passed_with =
@@ -38,7 +38,10 @@ fn a_part_that_did_not_pass_keeps_what_was_seen_of_it_and_one_that_passed_does_n
     assert_eq!(workshop.count(passed_with), 0);
     let others = "SELECT count(*) FROM part WHERE verdict <> 'pass'";
     let with = "SELECT count(DISTINCT part_id) FROM curve";
-    assert!(workshop.count(others) > 0, "golden parts are never judged");
+    assert!(
+        workshop.count(others) > 0,
+        "reference parts are never judged"
+    );
     assert_eq!(workshop.count(with), workshop.count(others));
     let most = "SELECT max(n) FROM (SELECT sum(length(packed)) AS n FROM curve GROUP BY part_id)";
     let bytes = workshop.count(most);
@@ -51,7 +54,7 @@ fn a_part_that_did_not_pass_keeps_what_was_seen_of_it_and_one_that_passed_does_n
 }
 
 #[test]
-fn another_recipe_is_asked_without_touching_the_old_verdicts() {
+fn rejudging_leaves_old_verdicts_untouched() {
     let workshop = Workshop::new("rejudge");
     workshop.run(LOT).with_status(0);
     let before = workshop.texts("SELECT verdict || bin || reasons FROM part ORDER BY id");
@@ -93,11 +96,7 @@ fn only_what_a_backup_holds_is_pruned() {
         .run("history export --lot G1-00001 a.xlsx")
         .with_status(0);
     workshop.run(&format!("{prune} --yes")).with_status(0);
-    assert_eq!(
-        workshop.count(parts),
-        20,
-        "a golden part would not be in the sheet"
-    );
+    assert_eq!(workshop.count(parts), 20, "the sheet lacks reference parts");
     workshop.run("history backup copy.db").with_status(0);
     workshop.run(prune).with_status(0);
     assert_eq!(workshop.count(parts), 20, "nobody said --yes");

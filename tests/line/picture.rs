@@ -1,17 +1,17 @@
-//! The picture of the line in README.md is drawn from `config/scene.toml`: side view, one character 8 mm by 8 mm.
+//! The drawing of the line in README.md shows `config/scene.toml`: side view, one character for 8 mm by 8 mm.
 //!
-//! Every actuator stands at its rest end; a part of the default recipe lies in the pocket and one in the nest.
+//! All actuators are at rest; a part of the default recipe lies in the pocket and one in the nest.
 
 use std::fs;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// Millimetres per character, both ways.
+/// Size of a character in both directions, mm.
 const CELL_MM: f64 = 8.0;
 const X_MM: [f64; 2] = [-240.0, 440.0];
 const Z_MM: [f64; 2] = [-24.0, 152.0];
 
-/// Beginning of an element's id and its mark, from the back of the picture to the front.
+/// Prefixes of element ids with their marks, from back to front.
 const MARKS: &[(&str, char)] = &[
     ("baseplate_", '='),
     ("axis_beam", '-'),
@@ -37,7 +37,7 @@ const MARKS: &[(&str, char)] = &[
     ("finger_", 'F'),
 ];
 
-/// A box along the axes, seen from the side: middle and half width in x and z.
+/// An axis-aligned box from the side: centre and half width in x and z, mm.
 struct Flat {
     id: String,
     middle: [f64; 2],
@@ -45,7 +45,7 @@ struct Flat {
 }
 
 #[test]
-fn the_readme_shows_the_line_as_the_scene_describes_it() {
+fn the_drawing_in_the_readme_matches_the_scene() {
     let picture = drawn(&flats());
     let readme = include_str!("../../README.md");
     assert!(
@@ -76,7 +76,7 @@ fn drawn(flats: &[Flat]) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// The middle of the cell lies in the box; a box thinner than a cell fills the one its middle is in.
+/// Returns true when the centre of the cell lies in the box; a thinner box fills the cell of its centre.
 fn covers(flat: &Flat, axis: usize, from: f64, cell: usize) -> bool {
     let off = from + CELL_MM * (cell as f64 + 0.5) - flat.middle[axis];
     let half = flat.half[axis].max(CELL_MM / 2.0);

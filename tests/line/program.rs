@@ -1,4 +1,4 @@
-//! The built program in a folder of its own, with its own copy of the configuration.
+//! The built program in a folder with its own copy of the configuration.
 
 #![cfg_attr(
     not(feature = "sim"),
@@ -12,13 +12,13 @@ use std::process::Command;
 #[cfg(all(feature = "sim", unix))]
 use std::process::{Child, Stdio};
 
-/// A fresh folder that holds `config/` and whatever a command leaves; kept after the test for a look.
+/// A fresh folder with `config/` and the files of commands; it stays after the test.
 pub struct Workshop {
-    /// Where the program is started.
+    /// Working directory of the program.
     pub folder: PathBuf,
 }
 
-/// What a command left behind.
+/// Result of a command.
 #[derive(Debug)]
 pub struct Said {
     /// Exit status.
@@ -30,7 +30,7 @@ pub struct Said {
 }
 
 impl Workshop {
-    /// An empty one but for the configuration; `name` is used by one test only.
+    /// Makes a folder with the configuration; each test has its own `name`.
     pub fn new(name: &str) -> Self {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
             .join("line")
@@ -45,12 +45,12 @@ impl Workshop {
         Self { folder }
     }
 
-    /// Runs `relayrig` with the words of `line`, which are separated by blanks.
+    /// Runs `relayrig` with the words of `line`, separated by spaces.
     pub fn run(&self, line: &str) -> Said {
         said(&self.command(line).output().unwrap())
     }
 
-    /// As [`Self::run`], but nobody reads what it tells.
+    /// As [`Self::run`], with stdout closed.
     #[cfg(all(feature = "sim", unix))]
     pub fn run_unread(&self, line: &str) -> Said {
         let (reader, writer) = std::io::pipe().unwrap();
@@ -63,7 +63,7 @@ impl Workshop {
         said(&started.unwrap().wait_with_output().unwrap())
     }
 
-    /// As [`Self::run`], but no file may become larger than so many blocks of the shell.
+    /// As [`Self::run`], with a limit on the size of files, in blocks of the shell.
     #[cfg(all(feature = "sim", unix))]
     pub fn run_with_little_room(&self, blocks: u32, line: &str) -> Said {
         // Without the trap the system would kill the program instead of refusing the write.
@@ -74,19 +74,19 @@ impl Workshop {
         said(&self.worded(shell, line).output().unwrap())
     }
 
-    /// Starts `relayrig` and lets it run; what it logs is thrown away.
+    /// Starts `relayrig` without its log.
     #[cfg(all(feature = "sim", unix))]
     pub fn start(&self, line: &str) -> Child {
         self.started(line, Stdio::piped(), Stdio::null())
     }
 
-    /// The same; what it logs can be read, its data is thrown away.
+    /// Starts `relayrig` with its log but without its data.
     #[cfg(all(feature = "sim", unix))]
     pub fn start_logging(&self, line: &str) -> Child {
         self.started(line, Stdio::null(), Stdio::piped())
     }
 
-    /// The same; data and what it logs can be read.
+    /// Starts `relayrig` with data and log.
     #[cfg(all(feature = "sim", unix))]
     pub fn start_heard(&self, line: &str) -> Child {
         self.started(line, Stdio::piped(), Stdio::piped())
@@ -98,7 +98,7 @@ impl Workshop {
         command.stdout(data).stderr(logs).spawn().unwrap()
     }
 
-    /// As [`Self::start`], ended by force after so many seconds.
+    /// As [`Self::start`], with a time limit, s.
     #[cfg(all(feature = "sim", unix))]
     pub fn start_for(&self, seconds: &str, line: &str) -> Child {
         let mut command = Command::new("timeout");
@@ -122,7 +122,7 @@ impl Workshop {
         command
     }
 
-    /// Text of a file.
+    /// Reads a file.
     pub fn read(&self, file: &str) -> String {
         fs::read_to_string(self.folder.join(file)).unwrap()
     }
@@ -132,12 +132,12 @@ impl Workshop {
         fs::write(self.folder.join(file), text).unwrap();
     }
 
-    /// True when the file is there.
+    /// Returns true when the file exists.
     pub fn has(&self, file: &str) -> bool {
         self.folder.join(file).exists()
     }
 
-    /// Puts `to` in the one place where `file` says `from`; gives the line of that place.
+    /// Replaces the only `from` in `file` by `to` and returns its line.
     pub fn change(&self, file: &str, from: &str, to: &str) -> usize {
         let text = self.read(file);
         let found: Vec<usize> = text.match_indices(from).map(|(at, _)| at).collect();
@@ -146,13 +146,13 @@ impl Workshop {
         text[..found[0]].matches('\n').count() + 1
     }
 
-    /// One number from the history.
+    /// Returns a number from the history.
     pub fn count(&self, query: &str) -> i64 {
         let history = rusqlite::Connection::open(self.folder.join("relayrig.db")).unwrap();
         history.query_row(query, [], |row| row.get(0)).unwrap()
     }
 
-    /// One column of texts from the history.
+    /// Returns a column of texts from the history.
     pub fn texts(&self, query: &str) -> Vec<String> {
         let history = rusqlite::Connection::open(self.folder.join("relayrig.db")).unwrap();
         let mut rows = history.prepare(query).unwrap();
@@ -170,13 +170,13 @@ fn said(output: &std::process::Output) -> Said {
 }
 
 impl Said {
-    /// The same, after a look at the exit status.
+    /// Checks the exit status and returns the result.
     pub fn with_status(self, expected: i32) -> Self {
         assert_eq!(self.status, expected, "{self}");
         self
     }
 
-    /// Standard output as one JSON object per line.
+    /// Parses standard output as JSON lines.
     pub fn objects(&self) -> Vec<Value> {
         objects(&self.stdout)
     }
@@ -192,7 +192,7 @@ impl std::fmt::Display for Said {
     }
 }
 
-/// One JSON object per line.
+/// Parses JSON lines.
 pub fn objects(text: &str) -> Vec<Value> {
     text.lines()
         .map(|line| serde_json::from_str(line).unwrap())

@@ -1,5 +1,5 @@
-//! The protocol on both sides: what the controller writes and reads, and what the simulated modules understand, were
-//! written apart from each other from the same manuals. Here they meet, command by command.
+//! The protocol on both sides, command by command. Controller and simulated modules implement the same manuals
+//! independently.
 
 use bus::{Answer, LineSettings, Pace, PortError, Ports, Request};
 use dcon::{
@@ -13,10 +13,10 @@ use tokio::sync::mpsc;
 
 const TABLE: &str = include_str!("protocol.txt");
 
-/// Stands in the place of a model where no rig may send the command.
+/// Mark of a command that no rig may send, instead of a model.
 const NEVER: &str = "never";
 
-/// Request and models of every row.
+/// Returns request and models of every row.
 fn table() -> impl Iterator<Item = (&'static str, Vec<&'static str>)> {
     let rows = TABLE
         .lines()
@@ -32,7 +32,7 @@ fn models() -> BTreeSet<&'static str> {
     all.filter(|model| *model != NEVER).collect()
 }
 
-/// What the controller could mean by `request` to this model.
+/// Returns the commands that `request` may be for this model.
 fn meant(model: &str, request: &str) -> Vec<Command> {
     let family = Family::of_name(model).unwrap();
     let mut meant = readings(request.as_bytes());
@@ -41,7 +41,7 @@ fn meant(model: &str, request: &str) -> Vec<Command> {
 }
 
 #[test]
-fn every_command_of_every_module_is_written_answered_and_read() {
+fn every_module_answers_every_command() {
     let mut broken = Vec::new();
     for model in models() {
         // With INIT* grounded the newer ones take every command.
@@ -69,7 +69,7 @@ fn every_command_of_every_module_is_written_answered_and_read() {
 }
 
 #[test]
-fn every_command_that_can_be_written_down_stands_in_the_table() {
+fn the_table_holds_every_command_that_can_be_written() {
     let mut named = BTreeSet::new();
     for command in table().flat_map(|(request, _)| readings(request.as_bytes())) {
         let (family, ask) = match command {
@@ -117,7 +117,7 @@ fn every_command_that_can_be_written_down_stands_in_the_table() {
 }
 
 #[test]
-fn what_only_the_factory_may_do_cannot_be_written_down() {
+fn no_factory_command_can_be_written() {
     for (request, models) in table() {
         let never = models == [NEVER];
         assert_eq!(factory(request.as_bytes()).is_some(), never, "{request}");
@@ -140,7 +140,7 @@ impl Ports for BenchPort {
     }
 }
 
-/// What came of the commands one after the other, and after each how many times an EEPROM has been written.
+/// Sends commands in order. Returns each result with the number of EEPROM writes so far.
 fn told(modules: &str, checksum: bool, commands: &[Command]) -> Vec<(Answer, u64)> {
     let talk = async {
         let rig = SharedRig::new(bench::build_text(&format!("baud = 9600\n{modules}")).unwrap());
@@ -179,7 +179,7 @@ fn told(modules: &str, checksum: bool, commands: &[Command]) -> Vec<(Answer, u64
 }
 
 #[test]
-fn a_setting_that_stands_is_not_written_to_the_eeprom_again() {
+fn an_unchanged_setting_is_not_written_to_the_eeprom() {
     let mut counted = 0;
     for model in models() {
         let module = format!("[[module]]\naddress = 1\nmodel = \"{model}\"");
@@ -208,7 +208,7 @@ fn a_setting_that_stands_is_not_written_to_the_eeprom_again() {
 }
 
 #[test]
-fn an_alarm_that_is_off_is_not_switched_off_again_and_one_that_is_on_is() {
+fn only_an_alarm_that_is_on_is_switched_off() {
     let zero = UpTo::new(0).unwrap();
     let asked = [
         Counter::EnableAlarmOf(zero),
@@ -223,7 +223,7 @@ fn an_alarm_that_is_off_is_not_switched_off_again_and_one_that_is_on_is() {
 }
 
 #[test]
-fn what_a_silent_module_is_set_to_is_not_guessed_and_not_written() {
+fn a_silent_module_is_never_configured() {
     let mask = AnalogIn::WriteMask(0x0F).to(Address(1));
     let told = told(
         "[[module]]\naddress = 2\nmodel = \"I-7017\"",
@@ -249,7 +249,7 @@ fn set(at: u8, address: u8, config: Config) -> Command {
     Common::WriteConfig { address, config }.to(Address(at))
 }
 
-/// Stored: address 04, 115200 baud, checksum. On the line: address 00, 9600 baud, none.
+/// Module in INIT*: stored address 04, 115200 baud, checksum; on the line address 00, 9600 baud, no checksum.
 const GROUNDED: &str =
     "[[module]]\naddress = 4\nmodel = \"I-7017\"\nbaud = 115200\nchecksum = true\ninit = true";
 

@@ -1,10 +1,10 @@
-//! The rows of a release, recorded: four recipes, five seeds, forty parts each.
+//! Recorded rows: four recipes, five seeds, forty parts each.
 //!
-//! A change that only moves code leaves every value, uncertainty, verdict, bin and time as it was. A change that means to
-//! alter the measurement records them anew, with `RECORD_ROWS=1 cargo test --test line rows`, and its commit says why.
+//! A change that only moves code leaves every value, uncertainty, verdict, bin and time unchanged. A change of the
+//! measurement records the rows again with `RECORD_ROWS=1 cargo test --test line rows`, and its commit gives the reason.
 //!
-//! A recorded file names the arithmetic it was made with, by a digest of what the machine's elementary functions return.
-//! The same arithmetic must give the same rows bit for bit; another one may differ by 1e-9 of a number.
+//! A recorded file has a digest of the elementary functions of the computer that made it. With the same digest rows must be
+//! equal bit for bit, with another one numbers may differ by 1e-9.
 
 use crate::program::Workshop;
 use rusqlite::{Connection, Row};
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 const SEEDS: u64 = 5;
 const PARTS: u64 = 40;
-/// Relative difference that another arithmetic may make.
+/// Allowed relative difference with another digest.
 const ELSEWHERE: f64 = 1e-9;
 
 #[test]
@@ -65,7 +65,7 @@ fn recorded_file(recipe: &str) -> PathBuf {
     rows.join(format!("{recipe}.txt"))
 }
 
-/// All rows of a recipe as text, a line per part, numbers in the shortest form that reads back the same.
+/// Returns all rows of a recipe as text, a line per part, with round-trip numbers.
 fn measured(recipe: &str) -> String {
     let workshop = Workshop::new(&format!("rows-{recipe}"));
     let mut text = format!("arithmetic {:016x}\n", arithmetic());
@@ -120,7 +120,7 @@ fn cell(value: rusqlite::types::ValueRef) -> String {
     }
 }
 
-/// Digest (FNV-1a) of the bits that this machine's elementary functions return.
+/// Returns the digest (FNV-1a) of results of elementary functions on this computer.
 fn arithmetic() -> u64 {
     let mut digest = 0xcbf2_9ce4_8422_2325_u64;
     for step in 1..=2000_u32 {

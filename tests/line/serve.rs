@@ -1,4 +1,4 @@
-//! `serve`: lots started, refused and continued at the page, on a rig that stays under one program.
+//! `serve`: lots are started, refused and continued at the page while one program keeps the rig.
 
 use crate::killed::Rig;
 use crate::program::Workshop;
@@ -9,10 +9,10 @@ use std::process::{Child, Command};
 use std::time::{Duration, Instant};
 
 const RECIPE: &str = "jzc-22f-012";
-/// No state is waited for longer; far beyond what a busy machine takes.
+/// Longest wait for a state; far more than a busy computer needs.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// The program with its page, and somebody who may order anything.
+/// The program with its page, and a session of an engineer.
 struct Served {
     process: Child,
     address: String,
@@ -83,13 +83,13 @@ impl Served {
         self.ask(&format!("POST {path}"), &body.to_string())
     }
 
-    /// An order that is taken.
+    /// Gives an order and checks that it is accepted.
     fn order(&self, order: &Value) {
         let (status, body) = self.post("/api/orders", order);
         assert_eq!(status, 200, "{order}: {body}");
     }
 
-    /// The reason why an order is not.
+    /// Gives an order and returns the reason of its refusal.
     fn refused(&self, order: &Value) -> String {
         let (status, body) = self.post("/api/orders", order);
         assert_eq!(status, 409, "{order}: {body}");
@@ -101,7 +101,7 @@ impl Served {
         self.order(&json!({"order": "start", "lot": lot, "recipe": RECIPE, "count": count}));
     }
 
-    /// The first view of which `test` is true.
+    /// Waits for a view that passes `test`.
     fn until(&self, what: &str, test: impl Fn(&Value) -> bool) -> Value {
         let began = Instant::now();
         loop {
@@ -118,7 +118,7 @@ impl Served {
         self.until(state, |view| view["machine"]["state"] == state)
     }
 
-    /// The lot is over, and so many parts of it are judged.
+    /// Waits for the end of the lot and checks the number of judged parts.
     fn until_complete(&self, lot: &str, parts: u64) {
         let over = |view: &Value| view["lot"] == lot && view["under_way"] == false;
         let view = self.until("over", over);
@@ -128,7 +128,7 @@ impl Served {
         assert_eq!(landed, parts, "{view}");
     }
 
-    /// Ctrl-C; the exit status.
+    /// Sends Ctrl-C and returns the exit status.
     fn interrupted(mut self) -> i32 {
         let id = self.process.id().to_string();
         Command::new("kill").args(["-INT", &id]).status().unwrap();
@@ -137,7 +137,7 @@ impl Served {
 }
 
 #[test]
-fn lots_are_started_at_the_page_one_after_the_other() {
+fn the_page_starts_one_lot_after_another() {
     let workshop = Workshop::new("serve-lots");
     let served = Served::start(&workshop, "--sim --speed 100");
     let view = served.until_state("Stopped");
@@ -183,7 +183,7 @@ fn lots_are_started_at_the_page_one_after_the_other() {
 }
 
 #[test]
-fn a_start_that_the_gates_refuse_says_why_and_a_lot_that_was_left_goes_on() {
+fn a_refused_start_names_the_gate_and_lots_continue() {
     let workshop = Workshop::new("serve-gates");
     let served = Served::start(&workshop, "--sim --speed 100");
     served.until_state("Stopped");
@@ -224,7 +224,7 @@ fn a_start_that_the_gates_refuse_says_why_and_a_lot_that_was_left_goes_on() {
 }
 
 #[test]
-fn after_an_alarm_the_lot_goes_on_and_is_closed_and_the_next_one_begins() {
+fn after_an_alarm_the_lot_continues_and_closes() {
     let workshop = Workshop::new("serve-alarm");
     let served = Served::start(&workshop, "--sim --speed 100 --fault fall=2");
     served.until_state("Stopped");
@@ -251,7 +251,7 @@ fn after_an_alarm_the_lot_goes_on_and_is_closed_and_the_next_one_begins() {
 }
 
 #[test]
-fn a_line_that_is_missing_at_the_start_is_named_and_used_once_it_is_there() {
+fn a_line_missing_at_start_is_named_and_awaited() {
     let workshop = Workshop::new("serve-unplugged");
     let served = Served::start(
         &workshop,
@@ -274,7 +274,7 @@ fn a_line_that_is_missing_at_the_start_is_named_and_used_once_it_is_there() {
 }
 
 #[test]
-fn a_line_that_is_not_wired_is_bad_input_before_any_file_is_made() {
+fn an_unwired_line_is_refused_before_any_file_exists() {
     let workshop = Workshop::new("serve_unwired");
     let said = workshop
         .run("--db day.db serve --listen 127.0.0.1:0 --line nope=/dev/null")

@@ -1,15 +1,15 @@
-//! Troubles as stories that a mechanic could read: a script in `stories/NAME.txt`, what happened in `NAME.told`.
+//! Stories of troubles: a script in `stories/NAME.txt`, the expected course in `NAME.told`.
 //!
-//! Every story is compared byte for byte, its script played to the end; and whatever happens, nothing touches, no
-//! body lies elsewhere than its row says, and no part that was judged lacks its row. With `RELAYRIG_RENEW=1` in the
-//! environment the told files are written anew: read the difference before it is committed.
+//! The course must match byte for byte. In every story nothing touches, every body lies where its row says, and every judged
+//! part has its row. `RELAYRIG_RENEW=1` in the environment rewrites the expected courses: read the difference before
+//! committing it.
 
 use crate::program::{Workshop, objects};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-/// Stories at once: each is a process of its own.
+/// Stories that run at the same time, each in a process of its own.
 const AT_ONCE: usize = 2;
 
 fn scripts() -> Vec<PathBuf> {
@@ -38,7 +38,7 @@ fn every_trouble_goes_as_its_story_says() {
     assert!(broken.is_empty(), "\n{}", broken.join("\n"));
 }
 
-/// Every way in which the story of a script is not the one that was told before, or is none.
+/// Plays a script and returns every difference from the expected course.
 fn told_otherwise(script: &Path) -> Vec<String> {
     let name = script.file_stem().unwrap().to_string_lossy();
     let workshop = Workshop::new(&format!("story-{name}"));
@@ -61,7 +61,7 @@ fn told_otherwise(script: &Path) -> Vec<String> {
     broken
 }
 
-/// Bodies that lie elsewhere than their row says, or have no row.
+/// Returns bodies that lie elsewhere than their row says, or have no row.
 fn misplaced(name: &str, workshop: &Workshop) -> Vec<String> {
     let landed = |body: &serde_json::Value| {
         let bin = body["landed_in"].as_str()?.to_owned();
@@ -78,11 +78,11 @@ fn misplaced(name: &str, workshop: &Workshop) -> Vec<String> {
         .collect()
 }
 
-/// Seconds after a part has left the nest, in a cycle of 1.4 s.
+/// Instants after a nest exit, s, in a cycle of 1.4 s.
 const INSTANTS: [f64; 4] = [0.05, 0.4, 0.75, 1.1];
 
 #[test]
-fn after_a_module_restarts_at_any_instant_of_a_cycle_the_first_alarm_names_it_and_no_actuator() {
+fn the_first_alarm_names_a_module_that_restarts() {
     let workshop = Workshop::new("module-restarts");
     for (number, instant) in INSTANTS.into_iter().enumerate() {
         for module in ["mech_do_a", "mech_do_b"] {
@@ -102,10 +102,9 @@ fn after_a_module_restarts_at_any_instant_of_a_cycle_the_first_alarm_names_it_an
     }
 }
 
-/// Twelve instants of each here; `study stop` has as many as one likes.
+/// Checks twelve instants of each; `study stop` takes any number.
 #[test]
-fn after_an_emergency_stop_at_any_instant_of_a_cycle_or_of_homing_outputs_are_off_in_time_and_the_lot_goes_on()
- {
+fn emergency_stop_at_any_instant_switches_off_in_time() {
     let workshop = Workshop::new("emergency-stops");
     let said = workshop
         .run("study stop --seeds 2 --parts 6 --json")

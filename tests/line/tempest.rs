@@ -3,14 +3,14 @@
 use crate::program::{Workshop, objects};
 use serde_json::Value;
 
-/// A figure of the study by its name.
+/// Returns a figure of the study by its name.
 fn figure(all: &[Value], name: &str) -> f64 {
     let own = all.iter().find(|it| it["figure"] == name).unwrap();
     own["value"].as_f64().unwrap()
 }
 
 #[test]
-fn in_two_hundred_storms_no_rule_is_broken_and_every_weather_has_struck() {
+fn two_hundred_storms_break_no_rule_under_every_fault() {
     let workshop = Workshop::new("tempest");
     let said = workshop.run("study storm --seeds 200 --json");
     assert_eq!(said.status, 0, "{}{}", said.stdout, said.stderr);
@@ -30,7 +30,7 @@ fn in_two_hundred_storms_no_rule_is_broken_and_every_weather_has_struck() {
 }
 
 #[test]
-fn a_storm_comes_back_by_its_seed_bit_for_bit() {
+fn a_seed_repeats_its_storm_bit_for_bit() {
     let workshop = Workshop::new("tempest-again");
     let digest = |seed: u64| {
         let said = workshop.run(&format!("study storm --seed {seed}"));
@@ -45,9 +45,9 @@ fn a_storm_comes_back_by_its_seed_bit_for_bit() {
     assert_ne!(digest(6), digest(7));
 }
 
-/// Voltages told wrong, parts that nobody declared, a restart that nobody knew of, a current that left its mark unread.
+/// Seeds of fixed bugs: wrong voltages, undeclared parts, an unnoticed restart, an unread current mark.
 #[test]
-fn storms_that_once_found_something_find_nothing_any_more() {
+fn storms_of_fixed_bugs_stay_clean() {
     let workshop = Workshop::new("tempest-known");
     for seed in [
         20_034, 20_546, 51_534, 52_802, 60_356, 60_488, 60_849, 61_519, 64_859, 65_014, 70_740,

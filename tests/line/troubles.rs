@@ -2,7 +2,7 @@
 
 use crate::program::{Said, Workshop};
 
-/// One line of the table.
+/// A line of the table.
 struct Trouble {
     fault: &'static str,
     status: i32,
@@ -58,7 +58,7 @@ fn every_fault_ends_as_the_table_says() {
     assert!(broken.is_empty(), "\n{}", broken.join("\n"));
 }
 
-/// Every way in which a run under this fault differs from the table.
+/// Returns every difference between a run under this fault and the table.
 fn told_otherwise(trouble: &Trouble) -> Vec<String> {
     let (workshop, said) = strike(
         &format!("fault-{}", trouble.fault.replace('/', "-")),
@@ -77,7 +77,7 @@ fn told_otherwise(trouble: &Trouble) -> Vec<String> {
     broken
 }
 
-/// What was told on stdout stands in the history too, the summary is told whatever happens, nothing has touched.
+/// Checks that the history has every part of stdout, that there is a summary, and that nothing touched.
 fn lost_rows(fault: &str, workshop: &Workshop, said: &Said) -> Vec<String> {
     let mut lost = Vec::new();
     let told = said
@@ -108,7 +108,7 @@ fn lost_rows(fault: &str, workshop: &Workshop, said: &Said) -> Vec<String> {
     lost
 }
 
-/// A status of 3 has the same cause in the summary and in the history, an alarm of the run; no other status has one.
+/// Checks that status 3 has the same cause in summary and history, an alarm of the run, and other statuses none.
 fn cause_otherwise(workshop: &Workshop, said: &Said) -> Option<String> {
     let summary = said.objects().pop()?;
     let cause = summary["cause"]["code"].as_str().unwrap_or_default();
@@ -126,7 +126,7 @@ fn cause_otherwise(workshop: &Workshop, said: &Said) -> Option<String> {
 }
 
 #[test]
-fn a_part_with_a_dirty_probe_is_void_and_never_failed() {
+fn a_dirty_probe_makes_a_part_void() {
     let (_, said) = strike("dirty-probe", "probe_dirty=2");
     let parts = said.with_status(0).objects();
     assert_eq!(
@@ -136,7 +136,7 @@ fn a_part_with_a_dirty_probe_is_void_and_never_failed() {
 }
 
 #[test]
-fn a_silent_module_is_named_with_line_address_and_command() {
+fn a_silent_module_is_named_with_its_command() {
     for (module, line, address) in [("mech_di_b", "motion", "12"), ("board_di", "measure", "08")] {
         let fault = format!("silence={module}@10");
         let (workshop, said) = strike(&format!("silent-{module}"), &fault);
@@ -150,7 +150,7 @@ fn a_silent_module_is_named_with_line_address_and_command() {
 }
 
 #[test]
-fn a_module_of_another_type_is_refused_before_anything_moves() {
+fn a_module_of_another_type_is_refused() {
     let (workshop, said) = strike("wrong-type", "wrong_type=board_di");
     said.with_status(3);
     let alarms = workshop.texts("SELECT text FROM alarm");
@@ -172,7 +172,7 @@ fn a_fault_that_is_none_is_refused() {
 }
 
 #[test]
-fn every_fault_of_the_table_is_one_that_the_rig_lists() {
+fn the_fault_table_matches_the_list_of_the_rig() {
     let listed = Workshop::new("fault-list")
         .run("sim --faults")
         .with_status(0)

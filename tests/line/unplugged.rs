@@ -1,10 +1,10 @@
-//! A converter that is unplugged while a lot runs, over real pseudo-terminals.
+//! A USB converter is unplugged while a lot runs, over real pseudo-terminals.
 
 use crate::killed::Rig;
 use crate::program::Workshop;
 
 #[test]
-fn a_port_that_vanishes_ends_the_lot_with_an_alarm_that_names_the_line() {
+fn a_vanished_port_ends_the_lot_naming_the_line() {
     let workshop = Workshop::new("unplugged-in-real-time");
     // However late the controller starts on this machine, the port is gone while it works, or before.
     let _rig = Rig::start(&workshop, "--fault port_lost=motion@3..600");

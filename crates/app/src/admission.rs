@@ -7,7 +7,7 @@ use super::order::LotOrder;
 use super::source::RigSource;
 use config::{ConfigError, Plant, load_recipe};
 use history::{
-    AlarmRecord, Archive, HistoryError, Identity, LOT_NAME, LotRecord, LotStanding, LotState, Row,
+    AlarmRecord, Archive, HistoryError, Identity, LOT_NAME, LotRecord, LotState, LotStatus, Row,
     RunEndRecord, Store, is_lot_name,
 };
 use machine::dut::Recipe;
@@ -61,7 +61,7 @@ pub enum NotAdmitted {
         /// The lot.
         lot: String,
         /// Since when, and why.
-        standing: Box<LotStanding>,
+        standing: Box<LotStatus>,
     },
     /// A lot that is not complete goes on with its own recipe.
     #[error(
@@ -75,7 +75,7 @@ pub enum NotAdmitted {
         /// Name and hash of the recipe given.
         found: String,
         /// What it was begun with.
-        standing: Box<LotStanding>,
+        standing: Box<LotStatus>,
     },
     /// The history cannot be read.
     #[error(transparent)]

@@ -1,7 +1,7 @@
-//! Compares a file with its [`Form`]: every key known and present, every value of its type and range.
+//! Checks a file against its [`Form`]: all keys are known and present, all values have their type and range.
 //!
-//! What one value must be in the light of another (an address used twice, low above high) is not
-//! decided here but by the module that owns the setting, which answers with a [`Fault`].
+//! Rules between values (an address used twice, low above high) belong to the module that owns the settings, which reports
+//! a [`Fault`].
 
 use super::error::ConfigError;
 use super::nearest::nearest;
@@ -10,24 +10,24 @@ use machine::form::{Form, Key, Points, Range};
 use machine::rig::fault::Fault;
 use std::path::PathBuf;
 
-/// One file, read and parsed.
+/// A parsed file.
 #[derive(Debug)]
 pub struct File {
-    /// Path as shown in messages.
+    /// Path in messages.
     pub path: PathBuf,
     /// The whole text.
     pub text: String,
-    /// The text as a tree with lines.
+    /// Parsed text.
     pub root: Node,
 }
 
 impl File {
-    /// Refuses the first key of the file that `keys` does not allow, or the first that is missing.
+    /// Fails for the first key that `keys` does not allow or that is missing.
     pub fn check(&self, keys: &[Key]) -> Result<(), ConfigError> {
         self.table("", &self.root, keys)
     }
 
-    /// Gives a fault found by another module its file and line.
+    /// Adds file and line to a fault that another module has found.
     pub fn locate(&self, fault: &Fault) -> ConfigError {
         if let Some((path, name)) = fault
             .key
@@ -58,7 +58,7 @@ impl File {
         }
     }
 
-    /// A path as the file writes it: `[module.rtd].type`, `golden[1].serial`, `[part].body_mm[2]`.
+    /// Returns a path in the notation of the file: `[module.rtd].type`, `golden[1].serial`, `[part].body_mm[2]`.
     pub(super) fn label(&self, path: &str) -> String {
         let names: Vec<&str> = path.split('.').collect();
         let header = header_length(&self.root, &names);
@@ -122,7 +122,7 @@ impl File {
         }
     }
 
-    /// Entries of one form: all of `needed`, and others as well if the names are `free`.
+    /// Checks entries of one form: all of `needed` must exist, others may when names are `free`.
     fn named(
         &self,
         path: &str,
@@ -159,7 +159,7 @@ impl File {
         let Some(missing) = must.find(|name| node.get(name).is_none()) else {
             return Ok(());
         };
-        // A free name next to a missing one is a slip.
+        // A free name that resembles a missing one is a typing error.
         let mut others = self.entries(path, node)?.iter().map(|(name, _)| name);
         let slip = others
             .find(|name| !names.contains(&name.as_str()) && nearest(name, &[missing]).is_some());
@@ -241,7 +241,7 @@ impl File {
     }
 }
 
-/// How many leading names stand in the header of a table: two in `[module.rtd]`, one in `[bus]`.
+/// Returns how many leading names belong to the header of a table: two in `[module.rtd]`, one in `[bus]`.
 fn header_length(root: &Node, names: &[&str]) -> usize {
     let depth = if matches!(names.first(), Some(&"line" | &"module")) {
         2

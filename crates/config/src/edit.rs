@@ -1,4 +1,4 @@
-//! Values of a TOML text changed in place: comments, order and everything else stay as they were.
+//! Changes values of a TOML text in place; comments and order stay.
 
 use super::check::File;
 use super::error::ConfigError;
@@ -9,11 +9,10 @@ use serde_json::Value as Wanted;
 use std::collections::BTreeMap;
 use toml_edit::{Array, DocumentMut, Item, Value};
 
-/// The text of a recipe with `values` by path of their key; null leaves a key out. What a value may be is for the check of the
-/// new text to say.
+/// Returns the text of a recipe with new `values` by path; null removes a key. The caller checks the new text.
 ///
 /// # Errors
-/// A kind that is none, a path that no recipe of the kind has, a value that TOML has not.
+/// The kind is unknown, the kind has no such path, or TOML has no such value.
 pub(super) fn edited(
     file: &File,
     values: &BTreeMap<String, Wanted>,
@@ -59,7 +58,7 @@ fn known<'a>(file: &File, fields: &'a [Field], path: &str) -> Result<&'a Field, 
     })
 }
 
-/// 9 and 9.0 are one value.
+/// Compares values; 9 equals 9.0.
 fn same(stands: &Wanted, wanted: &Wanted) -> bool {
     match (stands, wanted) {
         (Wanted::Number(stands), Wanted::Number(wanted)) => stands.as_f64() == wanted.as_f64(),
@@ -71,7 +70,7 @@ fn same(stands: &Wanted, wanted: &Wanted) -> bool {
     }
 }
 
-/// A number without a point stays one only where whole numbers are wanted; none for what TOML has not.
+/// Converts to TOML; numbers become floats unless the entry takes whole numbers. Returns `None` for null and objects.
 fn as_toml(wanted: &Wanted, entry: &Entry) -> Option<Value> {
     match wanted {
         Wanted::String(text) => Some(text.as_str().into()),
@@ -92,7 +91,7 @@ fn as_toml(wanted: &Wanted, entry: &Entry) -> Option<Value> {
     }
 }
 
-/// A remark behind the old value stays behind the new one.
+/// Sets a value; a comment after the old one stays.
 fn set(root: &mut Item, path: &str, mut value: Value) {
     let (tables, key) = parted(path);
     let table = tables.fold(root, |item, key| &mut item[key]);
@@ -121,13 +120,13 @@ fn leave_out(root: &mut Item, path: &str) {
     }
 }
 
-/// The names of the tables on the way, and the key in the last of them.
+/// Splits a path into the names of tables and the key in the last one.
 fn parted(path: &str) -> (impl Iterator<Item = &str>, &str) {
     let (tables, key) = path.rsplit_once('.').unwrap_or(("", path));
     (tables.split('.').filter(|it| !it.is_empty()), key)
 }
 
-/// Blanks of a table in one line, after a key came or went.
+/// Restores the spaces of an inline table after a key was added or removed.
 fn tidy(table: &mut Item) {
     if let Some(inline) = table.as_inline_table_mut() {
         inline.fmt();

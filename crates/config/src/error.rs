@@ -1,19 +1,19 @@
-//! Why a configuration was refused: always the file, and as far as known line, key, found, expected.
+//! Errors of a configuration: the file, and where known line, key, found, expected.
 
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// The first thing that loading refuses. Its text is one line, ready for the operator.
+/// The first fault that loading finds. Its text is one line for the operator.
 #[derive(Debug, Error)]
 pub enum ConfigError {
     /// The file is missing or cannot be read.
     #[error("{}: found no readable file, expected {expected}", file.display())]
     Unreadable {
-        /// Path as it was asked for.
+        /// Path of the file.
         file: PathBuf,
-        /// What the file should have held.
+        /// Expected content of the file.
         expected: &'static str,
-        /// What the operating system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
     /// Not TOML: a stray character, a key given twice, an unclosed text.
@@ -23,7 +23,7 @@ pub enum ConfigError {
         file: PathBuf,
         /// Line of the first fault, from 1.
         line: usize,
-        /// The parser's words, in one line.
+        /// Message of the parser, in one line.
         problem: String,
     },
     /// A key that is missing, unknown, of the wrong type, out of range or at odds with another.
@@ -35,42 +35,42 @@ pub enum ConfigError {
         line: usize,
         /// The key with its table, as `[analog_in].coil_voltage.channel`.
         key: String,
-        /// The value, in words.
+        /// The value in words.
         found: String,
-        /// What would have been accepted.
+        /// Accepted values.
         expected: String,
     },
-    /// A file that brings its own rules (`scene.toml`) breaks one of them.
+    /// A file breaks a rule of the module that owns it, for example `scene.toml` one of the guard.
     #[error("{}:{line}: {problem}", file.display())]
     Rule {
         /// Path of the file.
         file: PathBuf,
         /// Line of the key; from 1.
         line: usize,
-        /// The key, what was found and what was expected, in the words of the file's owner.
+        /// Message of that module: key, found, expected.
         problem: String,
     },
     /// No recipe of that name.
     #[error("{}: found no recipe \"{name}\", expected one of {}", dir.display(), list(known))]
     UnknownRecipe {
-        /// The folder that was searched.
+        /// Folder of the recipes.
         dir: PathBuf,
         /// The name asked for.
         name: String,
-        /// The recipes that exist.
+        /// Existing recipes.
         known: Vec<String>,
     },
-    /// A revision that never was.
+    /// No revision of that number.
     #[error("recipe \"{name}\": found revision {number}, expected 1 to {newest}")]
     UnknownRevision {
         /// Name of the recipe.
         name: String,
         /// The number asked for.
         number: u32,
-        /// The greatest there is.
+        /// Number of the newest revision.
         newest: u32,
     },
-    /// A change of a text that another revision has replaced.
+    /// A change begins from a revision that is no longer the newest.
     #[error(
         "recipe \"{name}\": the revision that this change begins from is no longer the newest, which is {newest}; nothing was \
          saved"
@@ -81,24 +81,24 @@ pub enum ConfigError {
         /// Number of the newest revision.
         newest: u32,
     },
-    /// A change after which every value is what it was.
+    /// A change leaves every value as it is.
     #[error("{}: found no value that differs, expected a change", file.display())]
     NothingChanged {
         /// Path of the file.
         file: PathBuf,
     },
-    /// A revision that could not be put in place.
+    /// A revision could not be written.
     #[error("{}: the new revision could not be written; the old one stays", file.display())]
     Unwritten {
         /// Path of the file.
         file: PathBuf,
-        /// What the operating system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
 }
 
 impl ConfigError {
-    /// Path of the key that is wrong, `limits.operate_voltage_v.high`, where a single one is.
+    /// Returns the path of the faulty key, `limits.operate_voltage_v.high`; `None` for faults of a whole file.
     pub fn key(&self) -> Option<String> {
         match self {
             Self::Value { key, .. } => {
@@ -119,7 +119,7 @@ impl ConfigError {
 
 fn list(names: &[String]) -> String {
     if names.is_empty() {
-        return "(there is no recipe at all)".to_owned();
+        return "(there are no recipes)".to_owned();
     }
     names.join(", ")
 }

@@ -1,20 +1,19 @@
-//! The files of the plant: read, checked, and handed to each module in that module's own types.
+//! Configuration: reads and checks the files of a plant and returns them as settings of the modules that own them.
 //!
 //! | file | holds | becomes |
 //! |---|---|---|
 //! | `rig.toml` | lines, modules, points, mechanism, references | [`Wiring`], the settings of `gauge` |
 //! | `scene.toml` | the bodies around the nest | `GuardSettings` |
-//! | `golden.toml` (named in `rig.toml`) | certified relays | `ReferenceSet` |
-//! | `card.toml` | what the process card says of the plant | `CardSettings` |
+//! | `golden.toml` (named in `rig.toml`) | reference parts | `ReferenceSet` |
+//! | `card.toml` | figures of the plant for the process card | `CardSettings` |
 //! | `lot.toml`, which may be missing | gates of a lot | `LotSettings` |
 //! | `recipes/NAME.toml` | one kind of part | `Recipe` |
-//! | `recipes/revisions/NAME/N.toml` | what it was before | [`Revision`] |
+//! | `recipes/revisions/NAME/N.toml` | earlier revisions of it | [`Revision`] |
 //!
-//! Three steps, each with its own kind of message, all of one form
-//! `file:line: key: found ..., expected ...`: the text must be TOML; every key must be known, present, of its
-//! type and in its range ([`check`], from the tables in [`keys`]); and the whole must fit together (an address
-//! used once, low not above high), which the module that owns the settings decides.
-//! `sim.toml` describes the simulated world and is no business of the controller.
+//! Loading has three steps, with messages of the form `file:line: key: found ..., expected ...`: the text must be TOML; every
+//! key must be known, present, of its type and in its range ([`check`], by the tables in [`keys`]); the values must fit
+//! together (an address used once, low not above high), which the module that owns the settings checks. The controller does
+//! not read `sim.toml`, which describes the simulated world.
 
 mod card;
 pub mod check;

@@ -1,4 +1,4 @@
-//! Loading of `lot.toml`, which may be missing: then a lot has no gates.
+//! Loading of `lot.toml`. Without the file a lot has no gates.
 
 use super::check::File;
 use super::error::ConfigError;
@@ -6,7 +6,7 @@ use super::keys;
 use machine::station::gates::LotSettings;
 use std::path::Path;
 
-/// Reads and checks by what a lot is run.
+/// Reads and checks the gates of a lot.
 pub(super) fn load_lot(dir: &Path) -> Result<LotSettings, ConfigError> {
     let path = dir.join("lot.toml");
     if !path.exists() {

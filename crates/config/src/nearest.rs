@@ -1,8 +1,8 @@
-//! The known word nearest to a mistyped one.
+//! Suggestions for mistyped words.
 
 use strsim::levenshtein;
 
-/// The nearest of `known`, when at most a third of the word (at least two letters) was mistyped.
+/// Returns the nearest of `known` within an edit distance of a third of the word, at least 2.
 pub fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let reach = (word.chars().count() / 3).max(2);
     known

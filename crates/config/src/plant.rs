@@ -1,4 +1,4 @@
-//! Loading of everything that does not change with the part.
+//! Loading of everything that does not depend on the recipe.
 
 use super::check::File;
 use super::error::ConfigError;
@@ -19,10 +19,10 @@ use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The plant as configured, checked as a whole.
+/// The checked configuration of a plant.
 #[derive(Debug, Clone)]
 pub struct Plant {
-    /// The folder it was read from.
+    /// Folder of the configuration.
     pub dir: PathBuf,
     /// Lines, modules, points, mechanism.
     pub wiring: Arc<Wiring>,
@@ -30,15 +30,15 @@ pub struct Plant {
     pub scene: GuardSettings,
     /// References on the interface board, if it has any.
     pub reference: Option<ReferenceSettings>,
-    /// Accuracies promised before calibration.
+    /// Accuracies before calibration.
     pub accuracy: AccuracySettings,
-    /// How long a calibration holds.
+    /// Validity of a calibration.
     pub calibration: CalibrationSettings,
-    /// Golden parts; none where `rig.toml` names no file of them.
+    /// Reference parts; none where `rig.toml` names no file of them.
     pub golden: ReferenceSet,
     /// Gates of a lot.
     pub lot: LotSettings,
-    /// Text of `rig.toml`, for the record of a lot.
+    /// Text of `rig.toml`, which the record of a lot keeps.
     pub rig_text: String,
 }
 
@@ -85,7 +85,7 @@ impl Plant {
     /// Refuses a recipe that this plant lacks references for, or that its modules cannot measure.
     ///
     /// # Errors
-    /// The first fault, with file, line, key and the module that stands against it.
+    /// The first fault, with file, line, key and the module that cannot measure it.
     pub fn admit(&self, recipe: &Recipe) -> Result<(), ConfigError> {
         recipe
             .referenced(self.reference.as_ref(), &self.golden)
@@ -101,7 +101,7 @@ impl Plant {
 }
 
 impl File {
-    /// Reads and parses a file; `expected` says what it holds, should it be missing.
+    /// Reads and parses a file; `expected` names its content in the message for a missing file.
     pub fn read(path: PathBuf, expected: &'static str) -> Result<Self, ConfigError> {
         match std::fs::read_to_string(&path) {
             Ok(text) => Self::parse(path, text),
@@ -113,7 +113,7 @@ impl File {
         }
     }
 
-    /// Parses a text that came from `path`.
+    /// Parses a text; messages name `path`.
     pub fn parse(path: PathBuf, text: String) -> Result<Self, ConfigError> {
         match Node::parse(&text) {
             Ok(root) => Ok(Self { path, text, root }),
@@ -121,7 +121,7 @@ impl File {
         }
     }
 
-    /// Checks the file against its keys and reads it into a settings type.
+    /// Checks the file against its keys and deserialises it.
     pub fn settings<T: DeserializeOwned>(&self, keys: &[Key]) -> Result<T, ConfigError> {
         self.check(keys)?;
         toml::from_str(&self.text).map_err(|error| self.misfit(&error))
@@ -136,9 +136,9 @@ fn syntax(file: PathBuf, fault: NotToml) -> ConfigError {
     }
 }
 
-/// Golden parts: every serial number once.
+/// Loads the reference parts; no serial number may appear twice.
 fn load_reference_parts(path: &Path) -> Result<ReferenceSet, ConfigError> {
-    let file = File::read(path.to_owned(), "the golden parts")?;
+    let file = File::read(path.to_owned(), "the reference parts")?;
     let set: ReferenceSet = file.settings(keys::golden::FILE)?;
     for (index, part) in set.parts.iter().enumerate() {
         if let Some(other) = set.parts[..index]
@@ -157,8 +157,8 @@ fn load_reference_parts(path: &Path) -> Result<ReferenceSet, ConfigError> {
     Ok(set)
 }
 
-/// The scene brings its own types and checks: an unknown key, a body without size, an actuator
-/// whose stroke is blocked in an empty rig.
+/// Loads the scene. The guard checks it: unknown keys, bodies without size, actuators whose stroke is blocked in an empty
+/// rig.
 fn load_scene(path: &Path) -> Result<GuardSettings, ConfigError> {
     let file = File::read(path.to_owned(), "the bodies around the nest")?;
     let settings: GuardSettings =
@@ -167,7 +167,7 @@ fn load_scene(path: &Path) -> Result<GuardSettings, ConfigError> {
     Ok(settings)
 }
 
-/// Every place of the sort axis must lie within the stroke that the scene gives it.
+/// Checks that every place of the sort axis lies within its stroke in the scene.
 fn check_axis(wiring: &Wiring, scene: &GuardSettings, rig: &File) -> Result<(), ConfigError> {
     let Some(slide) = scene
         .actuator
@@ -197,7 +197,7 @@ fn check_axis(wiring: &Wiring, scene: &GuardSettings, rig: &File) -> Result<(), 
 }
 
 impl File {
-    /// A text that does not fit the settings type of its owner.
+    /// Makes the error of a text that does not fit its settings type.
     fn misfit(&self, error: &toml::de::Error) -> ConfigError {
         let fault = not_toml(&self.text, error);
         let key = self.label(&self.root.path_at(fault.line));
@@ -212,7 +212,7 @@ impl File {
         }
     }
 
-    /// A rule of the owner that the file breaks; its text begins with the path of the field.
+    /// Makes the error of a broken rule of the scene; its text begins with the path of the field.
     fn broken_rule(&self, error: &dyn std::error::Error) -> ConfigError {
         let mut problem = error.to_string();
         let path = problem

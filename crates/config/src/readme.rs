@@ -1,9 +1,9 @@
-//! The tables of `config/README.md`, written from [`keys`](super::keys) so that they cannot drift.
+//! Tables of `config/README.md`, generated from [`keys`](super::keys) for a test.
 
 use machine::form::{Form, Key, Points};
 use std::fmt::Write;
 
-/// One table row for each key of a file, tables before what is in them.
+/// Returns a table row for each key of a file, parents first.
 pub fn rows(keys: &[Key]) -> String {
     let mut text = "| key | what it may be | read by | meaning |\n|---|---|---|---|\n".to_owned();
     write_rows("", keys, &mut text);
@@ -14,7 +14,7 @@ fn write_rows(path: &str, keys: &[Key], text: &mut String) {
     for key in keys {
         let own = format!("{path}{}", key.name);
         let left_out = if key.optional { ", or left out" } else { "" };
-        // Writing to a text cannot fail.
+        // Writing to a string cannot fail.
         let _ = writeln!(
             text,
             "| `{own}` | {}{left_out} | {} | {} |",

@@ -1,16 +1,14 @@
-//! Revisions of a recipe: the newest is `recipes/NAME.toml`, the earlier ones stay in `recipes/revisions/NAME/`, numbered
-//! from 1.
+//! Revisions of a recipe: the newest in `recipes/NAME.toml`, earlier ones in `recipes/revisions/NAME/`, numbered from 1.
 //!
-//! - A revision is the newest one with some values changed; comments and order of the file stay.
-//! - It is checked by what loads recipes, and as a run would, by what the modules of the plant can measure. What is refused
-//!   leaves every file as it was.
-//! - Whoever revises names the text that was changed, by hash. When another revision came meanwhile nothing is written: the
-//!   second of two people is told.
-//! - The old text is kept first; then the new one takes its place, whole or not at all. A crash in between leaves the newest
-//!   among the kept ones as well; it keeps its number.
-//! - The folder is locked while files change: two programs wait for each other.
+//! - A revision changes values of the newest text; comments and order of the file stay.
+//! - It passes the same checks as a recipe before a run, including what the modules of the plant can measure. A refused
+//!   revision changes no file.
+//! - A change names by hash the text that it begins from. It is refused when another revision came in between.
+//! - The old text is stored first, then a rename puts the new one in place. After a crash in between the newest text is stored
+//!   twice, under one number.
+//! - The folder is locked while files change, so that two programs do not interleave.
 //!
-//! A run reads its recipe once, before it begins, so that a revision never reaches a lot under way.
+//! A run reads its recipe once, before it begins: a revision never changes a lot under way.
 
 use super::check::File;
 use super::edit::edited;
@@ -24,24 +22,24 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
-/// A revision as screens see it.
+/// A revision as the page shows it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Revision {
     /// Name of the recipe.
     pub name: String,
-    /// From 1; the newest has the greatest.
+    /// Number, from 1.
     pub number: u32,
-    /// Number of the newest.
+    /// Number of the newest revision.
     pub newest: u32,
     /// SHA-256 of the text, as runs store it.
     pub hash: String,
-    /// When the file was written, microseconds since 1970 UTC; none when the file system does not know.
+    /// Time of writing, microseconds since 1970 UTC; `None` when the file system has none.
     pub saved_at_us: Option<i64>,
-    /// Its keys with their values.
+    /// Keys with their values.
     pub fields: Vec<Field>,
 }
 
-/// What is to be changed.
+/// Requested change of a recipe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Change {
@@ -53,10 +51,10 @@ pub struct Change {
     pub values: BTreeMap<String, serde_json::Value>,
 }
 
-/// The revision `number` of the recipe `name`, the newest without a number.
+/// Returns the revision `number` of the recipe `name`, the newest without a number.
 ///
 /// # Errors
-/// As [`super::load_recipe`]; a number that never was.
+/// As [`super::load_recipe`]; or there is no revision of this number.
 pub fn revision(dir: &Path, name: &str, number: Option<u32>) -> Result<Revision, ConfigError> {
     let file = File::read(recipe_path(dir, name)?, "a recipe")?;
     let kept = kept(dir, name);
@@ -83,10 +81,10 @@ pub fn revision(dir: &Path, name: &str, number: Option<u32>) -> Result<Revision,
     })
 }
 
-/// Makes the next revision of a recipe of `plant`.
+/// Writes the next revision of a recipe of `plant`.
 ///
 /// # Errors
-/// The first value that loading or the plant refuses; a change of another text than the newest; files that cannot be written.
+/// A value is refused, the change does not begin from the newest text, or a file cannot be written.
 pub fn revise(plant: &Plant, change: &Change) -> Result<Revision, ConfigError> {
     let (dir, name) = (&plant.dir, &change.name);
     let path = recipe_path(dir, name)?;
@@ -107,7 +105,7 @@ pub fn revise(plant: &Plant, change: &Change) -> Result<Revision, ConfigError> {
     revision(dir, name, None)
 }
 
-/// The text after `change` of the newest, `old`, if it is one that a run would take.
+/// Applies `change` to the newest text `old` and checks the result.
 fn next_text(
     plant: &Plant,
     change: &Change,
@@ -131,7 +129,7 @@ fn next_text(
     Ok(text)
 }
 
-/// Numbers of the earlier revisions, ascending.
+/// Returns the numbers of the earlier revisions, ascending.
 fn kept(dir: &Path, name: &str) -> Vec<u32> {
     let files = std::fs::read_dir(kept_folder(dir, name));
     let number = |file: std::fs::DirEntry| {
@@ -144,7 +142,7 @@ fn kept(dir: &Path, name: &str) -> Vec<u32> {
     numbers
 }
 
-/// Number of the newest text.
+/// Returns the number of the newest text.
 fn number_of(dir: &Path, name: &str, kept: &[u32], text: &str) -> u32 {
     let Some(last) = kept.last() else {
         return 1;
@@ -163,7 +161,7 @@ fn kept_path(dir: &Path, name: &str, number: u32) -> PathBuf {
     kept_folder(dir, name).join(format!("{number}.toml"))
 }
 
-/// The file holds `text` or what it held before, whatever happens meanwhile.
+/// Replaces a file atomically: after a crash it holds `text` or its old content.
 fn put(path: &Path, text: &str) -> std::io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder)?;

@@ -1,14 +1,14 @@
-//! JSON schema (draft 2020-12) of a configuration file, from the same description that loading checks.
+//! JSON schema (draft 2020-12) of a configuration file, from the tables that loading uses.
 
 use machine::form::{Form, Key, Range};
 use serde_json::{Map, Value, json};
 
-/// The schema of a file with these keys.
+/// Returns the schema of a file with these keys.
 pub fn schema(title: &str, keys: &[Key]) -> Value {
     titled(title, table(keys))
 }
 
-/// The schema of a file whose keys depend on the value of its `kind`.
+/// Returns the schema of a file whose keys depend on its `kind`.
 pub fn of_kinds(title: &str, kinds: &[impl AsRef<[Key]>]) -> Value {
     if let [only] = kinds {
         return schema(title, only.as_ref());

@@ -1,4 +1,4 @@
-//! A recipe as a sheet to be filled in: every key with its unit and range, and the value it has.
+//! A recipe as a form: every key with unit, range and value.
 
 use super::check::File;
 use super::error::ConfigError;
@@ -9,21 +9,21 @@ use machine::form::{Form, Key, Range};
 use serde::Serialize;
 use serde_json::json;
 
-/// One key of a recipe.
+/// A key of a recipe with its value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Field {
     /// Path of the key: `limits.operate_voltage_v.high`.
     pub path: String,
-    /// What it may be.
+    /// Accepted values.
     #[serde(flatten)]
     pub entry: Entry,
-    /// Whether it may be left out.
+    /// True when it may be left out.
     pub optional: bool,
-    /// What stands in the file; null where it is left out.
+    /// Value in the file; null when left out.
     pub value: serde_json::Value,
 }
 
-/// What a field takes.
+/// Accepted values of a field.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "form", rename_all = "snake_case")]
 pub enum Entry {
@@ -38,9 +38,9 @@ pub enum Entry {
     Number(Bounds),
     /// A list of numbers.
     Numbers {
-        /// How many.
+        /// Length of the list.
         count: usize,
-        /// Of each.
+        /// Range of each number.
         #[serde(flatten)]
         bounds: Bounds,
     },
@@ -50,14 +50,14 @@ pub enum Entry {
     Flag,
 }
 
-/// Where a number must lie.
+/// Range of a number.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Bounds {
-    /// Empty for a pure number.
+    /// Unit; empty for a pure number.
     pub unit: &'static str,
     /// Lower end.
     pub low: f64,
-    /// Whether the lower end itself is allowed; the upper one always is.
+    /// True when the lower end is allowed; the upper end always is.
     pub low_allowed: bool,
     /// Upper end.
     pub high: f64,
@@ -74,10 +74,10 @@ impl From<&Range> for Bounds {
     }
 }
 
-/// Every key that a recipe of its kind may hold, in the order of `config/README.md`, with what stands in the file.
+/// Returns every key of a recipe of its kind, in the order of `config/README.md`, with the value in the file.
 ///
 /// # Errors
-/// The file names no kind.
+/// The kind is missing or unknown.
 pub fn fields(file: &File) -> Result<Vec<Field>, ConfigError> {
     let mut found = Vec::new();
     let keys = keys::recipe::of(kind_of(file)?);
@@ -105,7 +105,7 @@ fn gather(path: &str, keys: &[Key], root: &Node, found: &mut Vec<Field>) {
     }
 }
 
-/// None for forms that a sheet cannot show; a recipe has none of them.
+/// Returns `None` for forms that no recipe has.
 fn entry(form: &Form) -> Option<Entry> {
     match form {
         Form::Text => Some(Entry::Text),

@@ -1,22 +1,22 @@
-//! A TOML text as a tree in which every value knows its line.
+//! A TOML text as a tree whose values have line numbers.
 //!
-//! Keys of a table keep the order of the file. A path names a value from the root: `module.rtd.type`,
-//! list items by number from 0 (`golden.1.serial`).
+//! Tables keep the order of the file. A path leads from the root to a value: `module.rtd.type`, or `golden.1.serial` with
+//! list items numbered from 0.
 
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// One value with the line (from 1) on which it, or for a table its header, begins.
+/// A value with its line.
 #[derive(Debug, Clone)]
 pub struct Node {
-    /// Line in the file, from 1.
+    /// Line of the value, or of the header of a table; from 1.
     pub line: usize,
-    /// The value itself.
+    /// The value.
     pub value: Value,
 }
 
-/// The kinds of value TOML knows.
+/// A TOML value.
 #[derive(Debug, Clone)]
 pub enum Value {
     /// A string.
@@ -40,12 +40,12 @@ pub enum Value {
 pub struct NotToml {
     /// Line of the fault, from 1.
     pub line: usize,
-    /// What the parser objects to, in one line.
+    /// Message of the parser, in one line.
     pub problem: String,
 }
 
 impl Node {
-    /// Reads a whole file.
+    /// Parses a text.
     pub fn parse(text: &str) -> Result<Node, NotToml> {
         let table = DeTable::parse(text).map_err(|error| not_toml(text, &error))?;
         let lines = LineTable::new(text);
@@ -55,7 +55,7 @@ impl Node {
         })
     }
 
-    /// The value under `key`, when this is a table that has it.
+    /// Returns the value under a key of a table, or an item of a list.
     pub fn get(&self, key: &str) -> Option<&Node> {
         match &self.value {
             Value::Table(entries) => entries
@@ -71,7 +71,7 @@ impl Node {
         }
     }
 
-    /// Follows a dotted path as far as it exists: the deepest node, and whether that is the whole path.
+    /// Follows a dotted path as far as it exists. Returns the deepest node, and true when the whole path exists.
     pub fn find(&self, path: &str) -> (&Node, bool) {
         let mut node = self;
         for key in path.split('.').filter(|key| !key.is_empty()) {
@@ -83,7 +83,7 @@ impl Node {
         (node, true)
     }
 
-    /// The path of the last value that begins at or before `line`; empty for the root.
+    /// Returns the path of the last value that begins at or before `line`; empty for the root.
     pub fn path_at(&self, line: usize) -> String {
         let named: Vec<(String, &Node)> = match &self.value {
             Value::Table(entries) => entries
@@ -110,12 +110,12 @@ impl Node {
         }
     }
 
-    /// True for a table.
+    /// Returns true for a table.
     pub fn is_table(&self) -> bool {
         matches!(self.value, Value::Table(_))
     }
 
-    /// The value in words, for messages.
+    /// Returns the value in words, for messages.
     pub fn describe(&self) -> String {
         match &self.value {
             Value::Text(text) => format!("\"{text}\""),
@@ -129,7 +129,7 @@ impl Node {
     }
 }
 
-/// The parser's objection with its line, for errors of any reader of `text`.
+/// Returns the message of a parser of `text` with its line.
 pub fn not_toml(text: &str, error: &toml::de::Error) -> NotToml {
     let at = error.span().map_or(0, |span| span.start);
     let problem = error.message().lines().collect::<Vec<_>>().join(", ");
@@ -205,7 +205,7 @@ impl LineTable {
     }
 }
 
-/// A whole number too large for 64 bits is kept as a number, so that a range check refuses it.
+/// Reads a whole number; one beyond 64 bits becomes infinite, so that a range check refuses it.
 fn whole(digits: &str, radix: u32) -> Value {
     match i64::from_str_radix(digits, radix) {
         Ok(number) => Value::Whole(number),

@@ -1,7 +1,7 @@
-//! What became of an alarm: returned, acknowledged, shelved (ISA-18.2), kept over a restart.
+//! State changes of alarms: returned, acknowledged, shelved (ISA-18.2). They survive a restart.
 //!
-//! A change speaks of a code and reaches every occurrence of it that it concerns, on the rig of the run (or on the
-//! simulated one): an alarm that came three times is acknowledged once.
+//! A change applies to every occurrence of a code on the rig, or on the simulated rig: one acknowledgement covers an alarm
+//! that was raised three times.
 
 use super::Store;
 use super::alarms::args;
@@ -9,52 +9,52 @@ use super::error::{Doing, Result};
 use rusqlite::{Connection, Transaction, params};
 use texts::Args;
 
-/// What happened to an alarm.
+/// A state change of an alarm.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum AlarmChange {
-    /// Its cause has gone.
+    /// The cause is gone.
     Returned,
-    /// A person has seen it.
+    /// A person has acknowledged it.
     Acknowledged {
-        /// Who.
+        /// Name of the person.
         by: String,
     },
-    /// It is not shown for a while.
+    /// A person has shelved it: it is not shown for a while.
     Shelved {
-        /// Until when.
+        /// End of the shelving.
         until_us: i64,
-        /// Who put it there.
+        /// Name of the person.
         by: String,
-        /// Why.
+        /// Reason given by the person.
         reason: String,
     },
 }
 
-/// A change of an alarm.
+/// A state change with its alarm.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AlarmChangeRecord {
-    /// Alarms of the simulated rig are not those of the rig.
+    /// True for alarms of the simulated rig.
     pub simulated: bool,
-    /// Its code; none: every one that nobody has seen.
+    /// Code of the alarm; `None` for every alarm.
     pub code: Option<String>,
-    /// When.
+    /// Time of the change.
     pub at_us: i64,
-    /// What.
+    /// The change.
     pub change: AlarmChange,
 }
 
-/// An alarm that nobody had seen when its run ended.
+/// An alarm that nobody has acknowledged.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct AlarmLeft {
-    /// Its code.
+pub struct UnacknowledgedAlarm {
+    /// Code of the alarm.
     pub code: String,
-    /// The message as shown, English.
+    /// Message in English.
     pub text: String,
     /// Arguments of the message by name.
     pub args: Args,
-    /// How often it came.
+    /// Number of occurrences.
     pub count: u32,
-    /// Not to be shown before this.
+    /// End of the shelving, if it is shelved.
     pub shelved_until_us: Option<i64>,
 }
 
@@ -103,7 +103,7 @@ pub(super) fn change(tx: &Transaction<'_>, it: &AlarmChangeRecord) -> Result<()>
     Ok(())
 }
 
-fn left(connection: &Connection, simulated: bool) -> rusqlite::Result<Vec<AlarmLeft>> {
+fn left(connection: &Connection, simulated: bool) -> rusqlite::Result<Vec<UnacknowledgedAlarm>> {
     connection
         .prepare(
             "SELECT alarm.code, alarm.text, count(*), max(alarm_state.shelved_until_us), max(alarm.id),
@@ -114,7 +114,7 @@ fn left(connection: &Connection, simulated: bool) -> rusqlite::Result<Vec<AlarmL
              GROUP BY alarm.code ORDER BY max(alarm.id)",
         )?
         .query_map([simulated], |row| {
-            Ok(AlarmLeft {
+            Ok(UnacknowledgedAlarm {
                 code: row.get(0)?,
                 text: row.get(1)?,
                 count: row.get(2)?,
@@ -126,8 +126,8 @@ fn left(connection: &Connection, simulated: bool) -> rusqlite::Result<Vec<AlarmL
 }
 
 impl Store {
-    /// Alarms of the rig (or the simulated one) that nobody has seen yet, one per code, oldest first.
-    pub fn alarms_left(&self, simulated: bool) -> Result<Vec<AlarmLeft>> {
+    /// Returns the unacknowledged alarms of a rig, one per code, oldest first.
+    pub fn unacknowledged_alarms(&self, simulated: bool) -> Result<Vec<UnacknowledgedAlarm>> {
         left(self.connection(), simulated).doing("reading alarms that nobody has seen")
     }
 }

@@ -1,4 +1,4 @@
-//! Occurrences of alarms, as they leave the history.
+//! Occurrences of alarms.
 
 use super::error::{Doing, Result};
 use super::{Archive, Filter, Moment};
@@ -7,61 +7,61 @@ use rusqlite::params_from_iter;
 use serde::Serialize;
 use texts::{Args, Lang};
 
-/// Where an alarm stands (ISA-18.2, states B to E; a shelved one keeps its state).
+/// State of an alarm (ISA-18.2, states B to E); shelving does not change it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AlarmState {
-    /// It stands and nobody has seen it.
+    /// Active, not acknowledged.
     Unacknowledged,
-    /// It stands and was seen.
+    /// Active, acknowledged.
     Acknowledged,
-    /// It has gone before anybody saw it.
+    /// Cleared before it was acknowledged.
     ReturnedUnacknowledged,
-    /// It has gone and was seen: back to normal.
+    /// Cleared and acknowledged.
     Normal,
 }
 
-/// Put out of sight for a while.
+/// Shelving of an alarm.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Shelf {
-    /// Until when.
+    /// End of the shelving.
     pub until: Moment,
-    /// Who did it.
+    /// Name of the person.
     pub by: String,
-    /// Why.
+    /// Reason given by the person.
     pub reason: String,
 }
 
-/// One occurrence.
+/// An occurrence of an alarm.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Alarm {
-    /// Name of the lot; none outside a run.
+    /// Name of the lot; `None` outside a run.
     pub lot: Option<String>,
     /// Number of the run within its lot.
     pub run: Option<u32>,
-    /// What kind of trouble.
+    /// Code of the alarm.
     pub code: String,
-    /// Serial line, when it concerns one.
+    /// Serial line that it concerns, if any.
     pub line: Option<String>,
-    /// The message as shown, English.
+    /// Message in English.
     pub text: String,
-    /// Arguments of the message by name; none in rows of before schema 9.
+    /// Arguments of the message by name; empty before schema 9.
     pub args: Args,
-    /// The message in Chinese; none where its arguments are missing, and for a code of another program.
+    /// Message in Chinese; `None` for an unknown code or missing arguments.
     pub text_zh: Option<String>,
-    /// The cause that the catalogue has for the code, Chinese; none for a code of another program.
+    /// Cause in Chinese; `None` for an unknown code.
     pub cause_zh: Option<&'static str>,
-    /// When it came.
+    /// Time of the alarm.
     pub raised: Moment,
-    /// When it went; none while it stands, and for one that ended its run.
+    /// Time at which it was cleared; `None` while it is active and when it ended its run.
     pub cleared: Option<Moment>,
-    /// When somebody had seen it.
+    /// Time of the acknowledgement.
     pub acknowledged: Option<Moment>,
-    /// Who.
+    /// Person who acknowledged it.
     pub acknowledged_by: Option<String>,
-    /// How it was shelved last.
+    /// Last shelving.
     pub shelf: Option<Shelf>,
-    /// What follows from it.
+    /// State that follows from these times.
     pub state: AlarmState,
 }
 
@@ -76,15 +76,14 @@ impl AlarmState {
     }
 }
 
-/// Arguments as they are stored.
+/// Reads stored arguments; empty when they are missing or damaged.
 pub(super) fn args(stored: Option<serde_json::Value>) -> Args {
     let args = stored.and_then(|it| serde_json::from_value(it).ok());
     args.unwrap_or_default()
 }
 
 impl Archive {
-    /// Alarms of the runs that the filter leaves (lot, run, recipe), raised in its span, in order of time;
-    /// the filter's page of them.
+    /// Returns the alarms of the selected runs (lot, run, recipe) and span in order of time, one page.
     pub fn alarms(&self, filter: &Filter) -> Result<Vec<Alarm>> {
         const DOING: &str = "reading alarms";
         let select = filter.alarms();

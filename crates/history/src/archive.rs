@@ -1,4 +1,4 @@
-//! The reader: parts that a filter leaves, one part with everything down to the raw replies.
+//! The reader: parts selected by a filter, and single parts down to their raw replies.
 
 use super::error::{Doing, Result};
 use super::reasons::texts;
@@ -6,28 +6,28 @@ use super::{CalibrationRecord, Filter, Measurement, Moment, Part, Sample, filter
 use rusqlite::{Connection, Row, params, params_from_iter};
 use std::path::{Path, PathBuf};
 
-/// A history opened for reading. Writers are not held up by it.
+/// A history opened for reading. Readers never block writers.
 #[derive(Debug)]
 pub struct Archive {
     pub(super) connection: Connection,
     pub(super) path: PathBuf,
 }
 
-/// Values of one part.
+/// Selects the values of one part.
 pub(super) const VALUES: &str = "SELECT parameter.key, m.value, m.uncertainty FROM measurement AS m
     JOIN parameter ON parameter.id = m.parameter_id
     WHERE m.part_id = ?1 ORDER BY m.parameter_id, m.attempt";
-/// All attempts of one part.
+/// Selects all attempts of one part.
 pub(super) const MEASUREMENTS: &str = "SELECT parameter.key, m.attempt, m.value, m.uncertainty,
       m.low, m.high, m.verdict, m.budget, m.parameter_id
     FROM measurement AS m JOIN parameter ON parameter.id = m.parameter_id
     WHERE m.part_id = ?1 ORDER BY m.parameter_id, m.attempt";
-/// Replies of one attempt.
+/// Selects the replies of one attempt.
 pub(super) const SAMPLES: &str = "SELECT line, module, channel, command, raw, at_us FROM sample
     WHERE part_id = ?1 AND parameter_id = ?2 AND attempt = ?3 ORDER BY n";
 
 impl Archive {
-    /// Opens an existing history. An older schema is migrated; a foreign or newer file is refused.
+    /// Opens an existing history and migrates an older schema. Fails for a file of another program or a newer one.
     pub fn open(path: &Path) -> Result<Self> {
         Ok(Self {
             connection: open::reader(path)?,
@@ -35,8 +35,8 @@ impl Archive {
         })
     }
 
-    /// Hands every part that the filter leaves to `each`, in order of judgement, one at a time: memory
-    /// does not grow with the answer. Ends early when `each` fails, with its error.
+    /// Calls `each` for every selected part in order of judgement, with constant memory. Stops at the first error of `each`
+    /// and returns it.
     pub fn each<E>(
         &self,
         filter: &Filter,
@@ -57,7 +57,7 @@ impl Archive {
         Ok(Ok(()))
     }
 
-    /// All parts that the filter leaves; for answers known to be short.
+    /// Returns all selected parts, for answers that fit into memory.
     pub fn query(&self, filter: &Filter) -> Result<Vec<Part>> {
         let mut parts = Vec::new();
         let end = self.each(filter, |part| {
@@ -70,7 +70,7 @@ impl Archive {
         }
     }
 
-    /// How many parts the filter leaves.
+    /// Counts the selected parts.
     pub fn how_many(&self, filter: &Filter) -> Result<u64> {
         let select = filter.count();
         self.connection
@@ -80,7 +80,7 @@ impl Archive {
             .doing("counting parts")
     }
 
-    /// Seconds between successive parts that the filter leaves, in no order.
+    /// Returns the cycle times of the selected parts, s, unordered.
     pub fn cycles(&self, filter: &Filter) -> Result<Vec<f64>> {
         let select = filter.cycles();
         self.connection
@@ -92,7 +92,7 @@ impl Archive {
             .doing("reading cycle times")
     }
 
-    /// One part of each run that has it, latest run last, with all attempts, raw replies and curves.
+    /// Returns part `seq` of every run of the lot, latest run last, with all attempts, raw replies and curves.
     pub fn show(&self, lot: &str, seq: u64, kind: &str) -> Result<Vec<Part>> {
         let filter = Filter {
             lot: Some(lot.to_owned()),
@@ -123,19 +123,19 @@ impl Archive {
         Ok(parts)
     }
 
-    /// The latest test of the golden part with this serial number.
-    pub fn golden_part(&self, serial: &str) -> Result<Option<Part>> {
+    /// Returns the latest test of the reference part with this serial number.
+    pub fn reference_part(&self, serial: &str) -> Result<Option<Part>> {
         const DOING: &str = "reading a golden part";
         let mut statement = self
             .connection
-            .prepare(&filter::golden_part())
+            .prepare(&filter::reference_part())
             .doing(DOING)?;
         let mut rows = statement.query([serial]).doing(DOING)?;
         let row = rows.next().doing(DOING)?;
         row.map(|row| self.part(row)).transpose().doing(DOING)
     }
 
-    /// The calibrations made last, one for each coil voltage, of the simulated rig or of the rig.
+    /// Returns the newest calibration of a rig for each coil voltage.
     pub fn calibrations(&self, simulated: bool) -> Result<Vec<CalibrationRecord>> {
         self.connection
             .prepare(
@@ -146,7 +146,7 @@ impl Archive {
             .doing("reading the latest calibrations")
     }
 
-    /// Parameter keys in the order of columns.
+    /// Returns the parameter keys in the order of columns.
     pub fn parameters(&self) -> Result<Vec<String>> {
         self.connection
             .prepare_cached("SELECT key FROM parameter ORDER BY id")
@@ -194,7 +194,7 @@ impl Archive {
             .query_row([id], |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?)))
     }
 
-    /// A later attempt overwrites an earlier one in the map.
+    /// Returns the values and uncertainties of the last attempts.
     fn values_of(&self, part: i64) -> rusqlite::Result<(Map, Map)> {
         let mut statement = self.connection.prepare_cached(VALUES)?;
         let mut rows = statement.query([part])?;

@@ -1,4 +1,4 @@
-//! An online copy and the file's own check. Writers go on during both.
+//! Online copy and integrity check. Writers continue during both.
 
 use super::error::{Doing, HistoryError, Result};
 use super::{Archive, open};
@@ -6,18 +6,18 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 impl Archive {
-    /// Copies the history as it is at this instant to `target`, checks the copy, and only then gives
-    /// it its name. `target` must not exist. Returns the size of the copy in bytes.
+    /// Copies the present state to `target`, which must not exist. The copy is checked before it gets its name. Returns its
+    /// size in bytes.
     pub fn backup(&self, target: &Path) -> Result<u64> {
         if target.exists() {
             return Err(HistoryError::Exists {
                 path: target.to_owned(),
             });
         }
-        let partial = beside(target);
+        let partial = partial_path(target);
         let copied = self.copy(&partial, target);
         if copied.is_err() && partial.exists() {
-            // The first error tells more than a failed clean-up would.
+            // The first error matters more than a failed clean-up.
             let _ = fs::remove_file(&partial);
         }
         copied
@@ -56,7 +56,7 @@ impl Archive {
         Ok(file.metadata().map_err(place)?.len())
     }
 
-    /// SQLite's integrity check and the references between tables.
+    /// Runs SQLite's integrity check and checks the references between tables.
     pub fn check(&self) -> Result<()> {
         const DOING: &str = "checking the history";
         let damaged = |finding: String| {
@@ -85,7 +85,7 @@ impl Archive {
     }
 }
 
-fn beside(target: &Path) -> PathBuf {
+fn partial_path(target: &Path) -> PathBuf {
     let mut name = target.as_os_str().to_owned();
     name.push(".partial");
     PathBuf::from(name)

@@ -1,18 +1,18 @@
-//! The columns of a part as one row: the one list of CSV, spreadsheets and screens.
+//! Columns of a part in CSV, spreadsheets and on the page.
 //!
-//! [`COLUMNS`] first, then a column per parameter with its value, then one per parameter with its
-//! expanded uncertainty. `history import` reads the same names back.
+//! The order is [`COLUMNS`], the value of each parameter, the expanded uncertainty of each parameter. `history import` reads
+//! the same names.
 
 use super::{Moment, Part};
 use std::borrow::Cow;
 use std::fmt;
 
-/// What stands in one cell.
+/// Content of a cell.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cell<'a> {
-    /// Nothing.
+    /// No content.
     Empty,
-    /// A text, never a formula.
+    /// A text; writers keep it from becoming a formula.
     Text(Cow<'a, str>),
     /// A count.
     Count(u64),
@@ -24,12 +24,12 @@ pub enum Cell<'a> {
 
 /// A column that every part has.
 pub struct Column {
-    /// In the header.
+    /// Name in the header.
     pub name: &'static str,
     of: fn(&Part) -> Cell<'_>,
 }
 
-/// In the order they are written in.
+/// Columns of every part, in order.
 pub const COLUMNS: [Column; 13] = [
     column("time", |it| Cell::Time(it.time)),
     column("lot", |it| text(&it.lot)),
@@ -37,10 +37,10 @@ pub const COLUMNS: [Column; 13] = [
     column("kind", |it| text(&it.kind)),
     column("seq", |it| Cell::Count(it.seq)),
     column("recipe", |it| text(&it.recipe)),
-    column("serial", |it| perhaps(it.serial.as_ref())),
+    column("serial", |it| optional_text(it.serial.as_ref())),
     column("verdict", |it| text(&it.verdict)),
-    column("bin", |it| perhaps(it.bin.as_ref())),
-    column("landed_bin", |it| perhaps(it.landed_bin.as_ref())),
+    column("bin", |it| optional_text(it.bin.as_ref())),
+    column("landed_bin", |it| optional_text(it.landed_bin.as_ref())),
     column("reasons", |it| match it.reasons.as_slice() {
         [] => Cell::Empty,
         reasons => Cell::Text(Cow::Owned(reasons.join("; "))),
@@ -49,7 +49,7 @@ pub const COLUMNS: [Column; 13] = [
     column("cycle_s", |it| number(it.cycle_s)),
 ];
 
-/// Names of all columns.
+/// Returns the names of all columns.
 pub fn header(parameters: &[String]) -> Vec<String> {
     let fixed = COLUMNS.iter().map(|column| column.name.to_owned());
     let doubts = parameters.iter().map(|key| format!("uncertainty {key}"));
@@ -59,7 +59,7 @@ pub fn header(parameters: &[String]) -> Vec<String> {
         .collect()
 }
 
-/// Cells of a part, as many as [`header`] has names.
+/// Returns the cells of a part in the order of [`header`].
 pub fn row<'a>(part: &'a Part, parameters: &'a [String]) -> impl Iterator<Item = Cell<'a>> {
     let fixed = COLUMNS.iter().map(|column| (column.of)(part));
     let figures = [&part.values, &part.uncertainty]
@@ -91,7 +91,7 @@ fn text(text: &str) -> Cell<'_> {
     Cell::Text(Cow::Borrowed(text))
 }
 
-fn perhaps(found: Option<&String>) -> Cell<'_> {
+fn optional_text(found: Option<&String>) -> Cell<'_> {
     found.map_or(Cell::Empty, |it| text(it))
 }
 

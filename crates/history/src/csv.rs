@@ -1,35 +1,34 @@
-//! Comma-separated values after RFC 4180, read strictly and written so that spreadsheets agree.
+//! Comma-separated values by RFC 4180: strict reading, writing for spreadsheets.
 //!
-//! Reading: UTF-8 with or without byte order mark, fields may be quoted, a quote inside is doubled,
-//! lines end with LF or CRLF. Every record carries the number of the line it begins on. A record
-//! with another number of fields than the header is an error, never padded.
+//! Reading takes UTF-8 with or without byte order mark, quoted fields with doubled quotes, and LF or CRLF. Every record has
+//! the number of its first line. A record with more or fewer fields than the header is an error.
 
 use ::csv::{ReaderBuilder, StringRecord, Terminator, WriterBuilder};
 use std::borrow::Cow;
 use std::io::{self, Write};
 
-/// What spreadsheets need in front to take a file for UTF-8.
+/// Prefix by which spreadsheets recognise UTF-8.
 pub const BYTE_ORDER_MARK: &str = "\u{feff}";
 
-/// What ends a line.
+/// Characters that end a line.
 const LINE_END: [char; 2] = ['\r', '\n'];
 
-/// A record and the line it begins on, from 1.
+/// A record with its place in the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Record {
-    /// Line number in the file.
+    /// First line, from 1.
     pub line: usize,
     /// Fields without their quotes.
     pub fields: Vec<String>,
 }
 
-/// Why a text is no CSV.
+/// Why a text is not CSV.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CsvError {
-    /// Nothing at all.
+    /// The text is empty.
     #[error("line 1: expected a header, found an empty file")]
     Empty,
-    /// Another number of fields than the header has.
+    /// A record has more or fewer fields than the header.
     #[error("line {line}: found {found} fields, expected {expected} as in the header")]
     Ragged {
         /// Line number in the file.
@@ -39,18 +38,18 @@ pub enum CsvError {
         /// Fields of the header.
         expected: usize,
     },
-    /// A quoted field without its end, or with text after it.
+    /// A quoted field has no end, or text after its end.
     #[error("line {line}: a quoted field must end with a quote before the next comma")]
     Quote {
-        /// Line on which the record begins.
+        /// First line of the record.
         line: usize,
     },
 }
 
-/// Reads header and records; passes over empty lines.
+/// Reads header and records; skips empty lines.
 ///
 /// # Errors
-/// Names the line of a record with another number of fields than the header, or with a quote out of place.
+/// Names the line of a record with a wrong number of fields or a misplaced quote.
 pub fn read(text: &str) -> Result<Vec<Record>, CsvError> {
     let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
     let mut reader = ReaderBuilder::new()
@@ -78,7 +77,7 @@ pub fn read(text: &str) -> Result<Vec<Record>, CsvError> {
     }
 }
 
-/// Checks the number of fields against that of the header.
+/// Makes a record after checking its number of fields.
 fn record(row: &StringRecord, line: usize, header: Option<&Record>) -> Result<Record, CsvError> {
     let fields: Vec<String> = row.iter().map(str::to_owned).collect();
     let expected = header.map_or(fields.len(), |header| header.fields.len());
@@ -92,7 +91,7 @@ fn record(row: &StringRecord, line: usize, header: Option<&Record>) -> Result<Re
     }
 }
 
-/// True when a field that begins with a quote ends with one, which the reader does not demand.
+/// Checks that every field that begins with a quote ends with one; the reader does not.
 fn is_strict(raw: &str, row: &StringRecord) -> bool {
     let mut rest = raw;
     for (n, field) in row.iter().enumerate() {
@@ -107,26 +106,26 @@ fn is_strict(raw: &str, row: &StringRecord) -> bool {
     rest.is_empty()
 }
 
-/// What a spreadsheet takes for the begin of a formula. A sign before a figure is none: only texts are asked.
+/// First characters by which a spreadsheet takes a text for a formula.
 const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
 
-/// Whether a spreadsheet may take the text for a formula, or for one that was made harmless.
-fn is_delicate(text: &str) -> bool {
+/// Returns true when a spreadsheet may take the text, without leading apostrophes, for a formula.
+fn looks_like_formula(text: &str) -> bool {
     text.trim_start_matches('\'').starts_with(FORMULA)
 }
 
-/// The text of a person as a spreadsheet shows it and never computes it: an apostrophe in front, where it needs one.
-pub fn harmless(text: &str) -> Cow<'_, str> {
-    if is_delicate(text) {
+/// Puts an apostrophe before a text that a spreadsheet would take for a formula.
+pub fn escape_formula(text: &str) -> Cow<'_, str> {
+    if looks_like_formula(text) {
         Cow::Owned(format!("'{text}"))
     } else {
         Cow::Borrowed(text)
     }
 }
 
-/// The text that [`harmless`] was given.
-pub fn as_typed(text: &str) -> &str {
-    let inner = text.strip_prefix('\'').filter(|it| is_delicate(it));
+/// Removes the apostrophe that [`escape_formula`] adds.
+pub fn unescape_formula(text: &str) -> &str {
+    let inner = text.strip_prefix('\'').filter(|it| looks_like_formula(it));
     inner.unwrap_or(text)
 }
 
@@ -186,12 +185,15 @@ mod tests {
             "'=1",
         ];
         for text in attacks {
-            let shown = harmless(text);
+            let shown = escape_formula(text);
             assert!(shown.starts_with('\''), "{shown}");
-            assert_eq!(as_typed(&shown), text);
+            assert_eq!(unescape_formula(&shown), text);
         }
         for text in ["批次 7", "7-A", "", "'", "'quoted'", "A=1"] {
-            assert_eq!((harmless(text).as_ref(), as_typed(text)), (text, text));
+            assert_eq!(
+                (escape_formula(text).as_ref(), unescape_formula(text)),
+                (text, text)
+            );
         }
     }
 

@@ -1,15 +1,13 @@
-//! Evidence curves: the samples of one signal as a small blob, and back.
+//! Evidence curves: packs the samples of a signal into a blob, and unpacks it.
 //!
-//! Per sample two numbers, each in bytes of seven bits, low ones first, the high bit set on all but the
-//! last (LEB128):
+//! A sample is two LEB128 numbers (seven bits a byte, low ones first, the high bit set on all but the last):
 //!
-//! 1. microseconds since the sample before, 0 for the first;
-//! 2. 0 for a look that gave no number (over range), else 1 + the zigzag code (0, -1, 1, -2 ...)
-//!    of the steps since the last number, the first one since 0.
+//! 1. microseconds since the previous sample, 0 for the first;
+//! 2. 0 for a reading without a number (over range), else 1 + the zigzag code (0, -1, 1, -2 ...) of the steps since the last
+//!    number, or since 0 for the first number.
 //!
-//! So a sample takes 2 to 12 bytes (gaps below nine hours, changes below 2^47 steps), some 4 in a test of the
-//! default recipe; a part takes at most 12 kB, since a trace keeps no more than
-//! [`MAX_SAMPLES`](machine::instrument::trace::MAX_SAMPLES) of a test.
+//! A sample takes 2 to 12 bytes (gaps below nine hours, changes below 2^47 steps), about 4 in a test of the default recipe. A
+//! part takes at most 12 kB: a trace keeps at most [`MAX_SAMPLES`](machine::instrument::trace::MAX_SAMPLES) of a test.
 
 use super::Moment;
 use super::error::{Doing, HistoryError, Result};
@@ -18,20 +16,20 @@ use machine::instrument::curve::Curve;
 use rusqlite::{Transaction, params};
 use serde::{Deserialize, Serialize, Serializer};
 
-/// The samples of one signal, as they were measured.
+/// Samples of a signal.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct CurveRecord {
     /// Name of the point.
     pub signal: String,
     /// Unit of the values; empty for bits and counts.
     pub unit: String,
-    /// Values are kept as whole multiples of this; more than 0.
+    /// Resolution: values are stored as whole multiples of it; more than 0.
     pub step: f64,
-    /// Instant and value, in order of time; none where the look gave no number.
+    /// Instant (microseconds since 1970 UTC) and value in order of time; `None` for a reading without a number.
     pub samples: Vec<(i64, Option<f64>)>,
 }
 
-/// A curve as it leaves the program.
+/// A curve in JSON.
 #[derive(Serialize)]
 struct Shown<'a> {
     signal: &'a str,
@@ -41,7 +39,7 @@ struct Shown<'a> {
     values: &'a [Option<f64>],
 }
 
-/// The curves of a part, their begin as an instant.
+/// Serialises curves with their start as an instant.
 pub(super) fn shown<S: Serializer>(
     curves: &[Curve],
     serializer: S,
@@ -55,7 +53,7 @@ pub(super) fn shown<S: Serializer>(
     }))
 }
 
-/// The blob.
+/// Packs a curve.
 pub(super) fn packed(curve: &CurveRecord) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(curve.samples.len() * 5);
     let (mut then, mut before) = (curve.samples.first().map_or(0, |it| it.0), 0_i64);
@@ -74,7 +72,7 @@ pub(super) fn packed(curve: &CurveRecord) -> Vec<u8> {
     bytes
 }
 
-/// Offsets and values of the blob; none when it does not hold exactly `samples` of them.
+/// Unpacks offsets and values; `None` unless the blob holds exactly `samples` of them.
 fn unpacked(mut bytes: &[u8], samples: usize, step: f64) -> Option<(Vec<i64>, Vec<Option<f64>>)> {
     let (mut at, mut steps) = (0_i64, 0_i64);
     let (mut offsets, mut values) = (Vec::new(), Vec::new());
@@ -113,7 +111,7 @@ fn take(bytes: &mut &[u8]) -> Option<u64> {
     None
 }
 
-/// Small numbers of either sign as small numbers without one.
+/// Maps small numbers of either sign to small unsigned ones.
 fn zigzag(value: i64) -> u64 {
     ((value << 1) ^ (value >> 63)).cast_unsigned()
 }
@@ -122,7 +120,7 @@ fn straight(code: u64) -> i64 {
     (code >> 1).cast_signed() ^ -((code & 1).cast_signed())
 }
 
-/// Keeps a curve; one without samples has no row.
+/// Inserts a curve; one without samples gets no row.
 pub(super) fn insert(tx: &Transaction<'_>, part: i64, it: &CurveRecord) -> rusqlite::Result<()> {
     let Some((begin_us, _)) = it.samples.first() else {
         return Ok(());
@@ -144,12 +142,12 @@ pub(super) fn insert(tx: &Transaction<'_>, part: i64, it: &CurveRecord) -> rusql
     Ok(())
 }
 
-/// Curves of one part.
+/// Selects the curves of one part.
 pub(super) const CURVES: &str = "SELECT signal, unit, begin_us, step, samples, packed FROM curve
     WHERE part_id = ?1 ORDER BY signal";
 
 impl Archive {
-    /// Evidence of a part that did not pass, by name of signal; empty for all others.
+    /// Returns the curves of a part in order of signal names; empty for a part that passed.
     pub fn curves(&self, part: &Part) -> Result<Vec<Curve>> {
         const DOING: &str = "reading the curves of a part";
         let mut statement = self.connection.prepare_cached(CURVES).doing(DOING)?;

@@ -1,4 +1,4 @@
-//! What a person decides about a lot that is not under way, and when that makes no sense.
+//! Decisions of a person about a lot that is not under way.
 
 use super::LotState;
 use texts::Message;
@@ -6,19 +6,19 @@ use texts::Message;
 /// A decision about a lot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Decision {
-    /// No run before somebody releases it.
+    /// No run may begin until a release.
     Hold,
-    /// It may be run again.
+    /// The lot may be run again.
     Release,
-    /// It is complete as it is.
+    /// The lot is complete.
     Close,
 }
 
 impl Decision {
-    /// Every one.
+    /// All decisions.
     pub const ALL: [Self; 3] = [Self::Hold, Self::Release, Self::Close];
 
-    /// The word of its order.
+    /// Returns the name of its order.
     pub const fn order(self) -> &'static str {
         match self {
             Self::Hold => "hold_lot",
@@ -27,12 +27,12 @@ impl Decision {
         }
     }
 
-    /// The one of this word.
+    /// Returns the decision with this order name.
     pub fn ordered(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|it| it.order() == word)
     }
 
-    /// The state that it puts a lot into.
+    /// Returns the state of the lot afterwards.
     pub const fn becomes(self) -> LotState {
         match self {
             Self::Hold => LotState::Held,
@@ -41,7 +41,7 @@ impl Decision {
         }
     }
 
-    /// Why it makes no sense of a lot in this state.
+    /// Returns the refusal for a lot in this state; `None` when the decision is possible.
     pub fn why_not(self, state: LotState) -> Option<Message> {
         let refused = |code| Some(Message::new("refusal", code));
         match (self, state) {

@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-/// Each variant says what was being done; the cause stays in `source()`.
+/// A failed access to the history. The cause is in `source()`.
 #[derive(Debug, thiserror::Error)]
 pub enum HistoryError {
-    /// Reading a history that was never written.
+    /// The file to read does not exist.
     #[error("no history at {path}: run a lot or import a file first")]
     Missing {
-        /// The file asked for.
+        /// The missing file.
         path: PathBuf,
     },
     /// The file is no SQLite database, or one of another program.
@@ -16,7 +16,7 @@ pub enum HistoryError {
     Foreign {
         /// The file asked for.
         path: PathBuf,
-        /// What it is instead.
+        /// What was found instead.
         found: String,
     },
     /// The file was written by a later version of the program.
@@ -29,7 +29,7 @@ pub enum HistoryError {
         /// Latest schema known here.
         known: i64,
     },
-    /// Another process held the file for longer than the busy time.
+    /// Another process held the file for longer than the busy timeout.
     #[error("{doing}: the history is locked by another process")]
     Locked {
         /// What was being done.
@@ -37,7 +37,7 @@ pub enum HistoryError {
         /// The cause.
         source: rusqlite::Error,
     },
-    /// No room; nothing of the batch was kept.
+    /// The disk is full; nothing of the batch was written.
     #[error("{doing}: the disk is full")]
     DiskFull {
         /// What was being done.
@@ -45,7 +45,7 @@ pub enum HistoryError {
         /// The cause.
         source: rusqlite::Error,
     },
-    /// The file or its folder may not be written.
+    /// The file or its folder is read-only.
     #[error("{doing}: the history is read-only")]
     ReadOnly {
         /// What was being done.
@@ -67,7 +67,7 @@ pub enum HistoryError {
         /// The lot named.
         lot: String,
     },
-    /// A landing without its part.
+    /// A landing names a part that has no row.
     #[error("lot {lot:?} has no {kind} part {seq} that could land")]
     NoSuchPart {
         /// The lot named.
@@ -77,7 +77,7 @@ pub enum HistoryError {
         /// The part named.
         seq: u64,
     },
-    /// The same part twice with different contents.
+    /// A part differs from the row that it already has.
     #[error("lot {lot:?} already has another {kind} part {seq}; the first one stays")]
     PartTwice {
         /// The lot named.
@@ -87,41 +87,41 @@ pub enum HistoryError {
         /// The part named.
         seq: u64,
     },
-    /// A part confirmed by the beams of two bins.
+    /// The beams of two bins confirm the same part.
     #[error("part {seq} of lot {lot:?} already landed in {first:?}, now in {second:?}")]
     LandedTwice {
         /// The lot named.
         lot: String,
         /// The part named.
         seq: u64,
-        /// The bin that stays.
+        /// The bin in the row.
         first: String,
         /// The bin refused.
         second: String,
     },
-    /// A count beyond what a row can hold.
+    /// A count exceeds what SQLite can store.
     #[error("{what} {value} is beyond 2^63 - 1")]
     TooLarge {
-        /// Which count.
+        /// Name of the count.
         what: &'static str,
         /// Its value.
         value: u64,
     },
-    /// A copy would overwrite something.
+    /// The target of a backup exists.
     #[error("{path} exists already; a backup never overwrites")]
     Exists {
-        /// The file in the way.
+        /// The existing file.
         path: PathBuf,
     },
-    /// The copy could not be moved into place.
+    /// A finished copy could not get its name.
     #[error("putting the backup in place at {path}")]
     Place {
-        /// The file wanted.
+        /// Target of the backup.
         path: PathBuf,
         /// The cause.
         source: std::io::Error,
     },
-    /// The database fails its own check.
+    /// The integrity check found damage.
     #[error("{path} is damaged: {finding}")]
     Damaged {
         /// The file checked.
@@ -131,12 +131,12 @@ pub enum HistoryError {
     },
 }
 
-/// Shorthand of this module.
+/// Result of an access to the history.
 pub type Result<T> = std::result::Result<T, HistoryError>;
 
-/// Gives a database answer the sentence of what was being done.
+/// Adds what was being done to a database error.
 pub(super) trait Doing<T> {
-    /// Sorts the cause into the variants an operator can act upon.
+    /// Turns a database error into the variant an operator can act upon.
     fn doing(self, doing: &'static str) -> Result<T>;
 }
 

@@ -1,19 +1,17 @@
-//! The one filter of command line, screens and sheets, and the SQL it becomes.
+//! The filter of command line, page and exports, and its SQL.
 //!
-//! Two ways through the file. Without a value range the parts are found by their own indexes. With
-//! one, `measurement_value` (parameter, population, run, verdict, value) is entered once per run and
-//! verdict at the first value of the range, and gives the row numbers of the parts. These are gone through in
-//! ascending order, so that only parts that match are touched, neighbours together, and a page ends early.
-//! What stands beside the parts (runs, alarms, orders) is asked for in `filter/beside.rs`.
+//! Without a parameter, the indexes of `part` find the parts. With one, the index `measurement_value` (parameter, population,
+//! run, verdict, value) gives their row numbers: SQLite enters it once per run and verdict at the least value and then visits
+//! the matching parts in ascending order, so that a page ends early. `filter/related.rs` selects runs, alarms and orders.
 
-mod beside;
+mod related;
 
 use super::Moment;
 use super::gates::SUSPECT;
 use rusqlite::types::Value;
 use serde::Deserialize;
 
-/// What to look for; an absent member does not restrict.
+/// Selection of parts; an absent member does not restrict.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Filter {
@@ -29,7 +27,7 @@ pub struct Filter {
     pub until: Option<Moment>,
     /// `pass`, `fail`, `void` or `unjudged`.
     pub verdict: Option<String>,
-    /// The bin asked for by the verdict.
+    /// Bin of the verdict.
     pub bin: Option<String>,
     /// `lot` (when absent), `golden` or `all`.
     pub kind: Option<String>,
@@ -39,20 +37,20 @@ pub struct Filter {
     pub min: Option<f64>,
     /// Greatest value of `param`, included.
     pub max: Option<f64>,
-    /// Only parts between a good golden check and one that failed.
+    /// Only parts between a passed and a failed reference check.
     pub suspect: bool,
-    /// At most so many parts, the first ones in order of judgement.
+    /// Most parts to return, in order of judgement.
     pub limit: Option<u64>,
-    /// So many parts are passed over before the first one: the next page.
+    /// Number of parts to skip first.
     pub offset: Option<u64>,
 }
 
 /// A statement with its values.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Select {
-    /// Text with `?` in order of `values`.
+    /// Statement with a `?` for each of `values`.
     pub sql: String,
-    /// What stands for each `?`.
+    /// Values in the order of the `?`.
     pub values: Vec<Value>,
 }
 
@@ -67,8 +65,8 @@ const COLUMNS: &str = "part.id, part.run_id, part.kind, part.seq, part.serial, p
     part.bin, part.reasons, part.judged_at_us, part.test_s, part.cycle_s, part.landed_bin, \
     part.landed_at_us";
 
-/// The latest test of one golden part.
-pub(super) fn golden_part() -> String {
+/// Selects the latest test of a reference part.
+pub(super) fn reference_part() -> String {
     format!(
         "SELECT {COLUMNS} FROM part WHERE part.serial = ?1 AND part.kind = 'golden'
          ORDER BY part.judged_at_us DESC LIMIT 1"
@@ -76,7 +74,7 @@ pub(super) fn golden_part() -> String {
 }
 
 impl Filter {
-    /// Names of the members that restrict, in the order above.
+    /// Returns the names of the members that are set, without `suspect`.
     pub fn members(&self) -> Vec<&'static str> {
         let set = [
             ("lot", self.lot.is_some()),
@@ -97,7 +95,7 @@ impl Filter {
         named.map(|(name, _)| name).collect()
     }
 
-    /// Rows of `part` in order of judgement.
+    /// Selects rows of `part` in order of judgement.
     pub(super) fn parts(&self) -> Select {
         let mut select = match &self.param {
             Some(param) => {
@@ -125,7 +123,7 @@ impl Filter {
         select
     }
 
-    /// The page of an ordered answer.
+    /// Adds limit and offset.
     fn page(&self, select: &mut Select) {
         let signed = |it: u64| i64::try_from(it).unwrap_or(i64::MAX);
         if self.limit.is_some() || self.offset.is_some() {
@@ -134,8 +132,8 @@ impl Filter {
         }
     }
 
-    /// Part row and value of one parameter, in no order. Reads the index alone unless the filter
-    /// asks for a bin or a time.
+    /// Selects part row and value of a parameter, unordered. Reads only the index unless the filter has a bin, a time or
+    /// `suspect`.
     pub(super) fn series(&self, param: &str) -> Select {
         let joined = self.asks_of_part();
         let mut select = self.values(param, "m.part_id, m.value", joined);
@@ -145,7 +143,7 @@ impl Filter {
         select
     }
 
-    /// How many parts there are; where values alone decide, nothing but their index is read.
+    /// Counts the parts, by the index of values alone where that is enough.
     pub(super) fn count(&self) -> Select {
         let found = match &self.param {
             Some(param) if !self.asks_of_part() => {
@@ -161,19 +159,19 @@ impl Filter {
         }
     }
 
-    /// Whether nothing but whole runs is asked for, production parts of every verdict; a page does not matter.
+    /// Returns true when the filter selects all production parts of whole runs, apart from its page.
     pub(super) fn asks_for_runs_alone(&self) -> bool {
         let production = self.kind.as_deref().is_none_or(|kind| kind == "lot");
         let ranged = self.min.is_some() || self.max.is_some();
         production && self.verdict.is_none() && !ranged && !self.asks_of_part()
     }
 
-    /// Whether a member asks for what stands in the row of the part alone.
+    /// Returns true when a member restricts a column that only `part` has.
     fn asks_of_part(&self) -> bool {
         self.suspect || self.bin.is_some() || self.since.is_some() || self.until.is_some()
     }
 
-    /// Rig time between parts, where it is known.
+    /// Selects the known cycle times.
     pub(super) fn cycles(&self) -> Select {
         let mut select = Select {
             sql: "SELECT part.cycle_s FROM part WHERE part.cycle_s IS NOT NULL".to_owned(),
@@ -184,7 +182,7 @@ impl Filter {
         select
     }
 
-    /// How many production parts passed, and how many of them not in a retest and without a second attempt.
+    /// Counts parts that passed, and those that passed a first test without a second attempt.
     pub(super) fn passed(&self) -> Select {
         let sql = "SELECT count(*), ifnull(sum(NOT EXISTS (SELECT 1 FROM measurement AS m \
                    WHERE m.part_id = part.id AND m.attempt > 1) \
@@ -249,7 +247,7 @@ impl Filter {
         }
     }
 
-    /// `by_value`: the index of values has dealt with kind and verdict.
+    /// Adds conditions on `part`. With `by_value` the index of values has restricted kind and verdict already.
     fn part_conditions(&self, select: &mut Select, by_value: bool) {
         if !by_value {
             match self.kind.as_deref() {

@@ -1,18 +1,18 @@
-//! What stands between a lot and its end: its state, golden checks, retests, and which parts are suspect.
+//! State of a lot, reference checks, retests and suspect parts.
 //!
 //! | state | a run may begin | set by |
 //! |---|---|---|
 //! | open | yes, with the recipe of the run before | a run that was stopped, cut off or ended by an alarm; a release |
 //! | running | yes: the run before was cut off | the begin of a run; the next program on the rig makes it open |
-//! | held | no | a failed golden check, the discard limit, a person |
+//! | held | no | a failed reference check, the reject-rate limit, a person |
 //! | complete | yes, as a new beginning | the count was reached, or a person closed it |
 //!
-//! Parts judged after the last good check and before a failed one are *suspect*: nothing is written to their rows,
-//! [`Filter::suspect`](super::Filter) finds them. On a rig checks of every run count; a simulated rig is another one
-//! in every run.
+//! Parts judged after the last passed check and before a failed one are *suspect*. Their rows stay unchanged;
+//! [`Filter::suspect`](super::Filter) selects them. On a rig the checks of all runs count, on the simulated rig those of the
+//! same run.
 
 use super::error::{Doing, Result};
-use super::store::{Known, source};
+use super::store::{RowIds, source};
 use super::{Archive, Filter, Moment, Store};
 use rusqlite::{Connection, OptionalExtension, Transaction, params, params_from_iter};
 use serde::{Deserialize, Serialize};
@@ -23,19 +23,19 @@ use serde::{Deserialize, Serialize};
 pub enum LotState {
     /// May be run.
     Open,
-    /// A run is under way, or was cut off and no program has been on the rig since.
+    /// A run is under way, or was cut off and no program has used the rig since.
     Running,
-    /// May not be run before somebody releases it.
+    /// May not be run until it is released.
     Held,
     /// Done.
     Complete,
 }
 
 impl LotState {
-    /// Every one.
+    /// All states.
     pub const ALL: [Self; 4] = [Self::Open, Self::Running, Self::Held, Self::Complete];
 
-    /// The name in the file.
+    /// Returns its name in rows and JSON.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Open => "open",
@@ -51,40 +51,40 @@ impl LotState {
     }
 }
 
-/// A lot changes its state.
+/// A new state of a lot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LotStateRecord {
-    /// The lot.
+    /// Name of the lot.
     pub lot: String,
-    /// Its state from now on.
+    /// The new state.
     pub state: LotState,
-    /// Why it is held.
+    /// Reason why it is held.
     pub why: Option<String>,
-    /// Since when.
+    /// Time of the change.
     pub at_us: i64,
 }
 
-/// Golden parts were measured and compared with their certificates.
+/// A comparison of reference parts with their certificates.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ReferenceCheckRecord {
-    /// The open lot it was made in.
+    /// The open lot at that time.
     pub lot: String,
-    /// When it was decided.
+    /// Time of the result.
     pub at_us: i64,
-    /// They read as certified.
+    /// True when the parts read as certified.
     pub passed: bool,
-    /// Which parts, or what was found instead.
+    /// Serial numbers, or the deviation found.
     pub text: String,
 }
 
-/// Where a lot stands.
+/// State of a lot, with the recipe of its last run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct LotStanding {
-    /// Its state.
+pub struct LotStatus {
+    /// State of the lot.
     pub state: LotState,
-    /// Why it is held.
+    /// Reason why it is held.
     pub why: Option<String>,
-    /// Since when.
+    /// Time of the last change.
     pub since: Moment,
     /// Name of the recipe of its last run.
     pub recipe: String,
@@ -95,39 +95,39 @@ pub struct LotStanding {
 /// Yield of a lot over its runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct LotYield {
-    /// Parts judged in runs that were no retest.
+    /// Parts judged in first tests.
     pub parts: u64,
-    /// Those of them that passed: the first result, whatever a retest says later.
+    /// Parts that passed their first test.
     pub first_pass: u64,
     /// Parts that passed in a retest.
     pub retest_pass: u64,
-    /// Parts between a good and a failed golden check.
+    /// Parts between a passed and a failed reference check.
     pub suspect: u64,
 }
 
-/// One golden check, as it leaves the history.
+/// A reference check.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct ReferenceCheck {
     /// Number of the run within its lot.
     pub run: u32,
-    /// When it was decided.
+    /// Time of the result.
     pub at: Moment,
-    /// The golden parts read as certified.
+    /// True when the parts read as certified.
     pub passed: bool,
-    /// Which parts, or what was found instead.
+    /// Serial numbers, or the deviation found.
     pub text: String,
-    /// Of one that failed: parts judged since this instant are suspect.
+    /// Start of the suspect span of a failed check; `None` for a passed one.
     pub suspect_since: Option<Moment>,
 }
 
-/// Condition of SQL on `part` that leaves the suspect ones.
+/// SQL condition on `part` that selects suspect parts.
 pub(super) const SUSPECT: &str = " AND EXISTS (SELECT 1 FROM golden_check AS failed \
     JOIN run AS checked ON checked.id = failed.run_id JOIN run AS own ON own.id = part.run_id \
     WHERE NOT failed.passed AND part.judged_at_us > failed.suspect_since_us \
     AND part.judged_at_us <= failed.at_us \
     AND (own.id = checked.id OR (own.source = 'rig' AND checked.source = 'rig')))";
 
-/// The lot is in `record.state` from now on; of a lot that nobody has run there is nothing to write.
+/// Stores the state of a lot; does nothing for a lot without runs. Returns the number of changed rows.
 pub(super) fn state(connection: &Connection, record: &LotStateRecord) -> rusqlite::Result<usize> {
     connection.execute(
         "INSERT INTO lot_state (lot_id, state, why, since_us)
@@ -138,10 +138,10 @@ pub(super) fn state(connection: &Connection, record: &LotStateRecord) -> rusqlit
     )
 }
 
-/// A check; the same one again changes nothing.
-pub(super) fn golden_check(
+/// Inserts a check; recording it again changes nothing.
+pub(super) fn reference_check(
     tx: &Transaction<'_>,
-    known: &Known,
+    known: &RowIds,
     it: &ReferenceCheckRecord,
 ) -> Result<()> {
     let run = known.run(&it.lot)?;
@@ -161,8 +161,8 @@ pub(super) fn golden_check(
 }
 
 impl Store {
-    /// Whoever has the rig now knows that no run of before is under way: lots whose run was cut off are open. The
-    /// simulated rig and the rig are two.
+    /// Opens the lots whose run was cut off. The caller has just taken the rig (or the simulated rig), so that none of their
+    /// runs is under way.
     pub fn cut_off(&mut self, simulated: bool, at_us: i64) -> Result<()> {
         self.connection()
             .execute(
@@ -177,8 +177,8 @@ impl Store {
 }
 
 impl Archive {
-    /// Where a lot stands; none when nobody has run it.
-    pub fn standing(&self, lot: &str) -> Result<Option<LotStanding>> {
+    /// Returns the state of a lot; `None` for a lot without runs.
+    pub fn standing(&self, lot: &str) -> Result<Option<LotStatus>> {
         self.connection
             .query_row(
                 "SELECT ifnull(lot_state.state, 'open'), lot_state.why,
@@ -188,7 +188,7 @@ impl Archive {
                  WHERE lot.name = ?1 ORDER BY run.number DESC LIMIT 1",
                 [lot],
                 |row| {
-                    Ok(LotStanding {
+                    Ok(LotStatus {
                         state: LotState::named(&row.get::<_, String>(0)?),
                         why: row.get(1)?,
                         since: Moment(row.get(2)?),
@@ -201,7 +201,7 @@ impl Archive {
             .doing("reading the state of a lot")
     }
 
-    /// First and final results of a lot, and how many of its parts are suspect.
+    /// Counts first and final results and suspect parts of a lot.
     pub fn lot_yield(&self, lot: &str) -> Result<LotYield> {
         const DOING: &str = "counting a lot over its runs";
         let count = |sql: &str| {
@@ -226,7 +226,7 @@ impl Archive {
         })
     }
 
-    /// Golden checks of the runs that the filter leaves, in order of time.
+    /// Returns the reference checks of the selected runs in order of time.
     pub fn reference_checks(&self, filter: &Filter) -> Result<Vec<ReferenceCheck>> {
         let runs = filter.runs();
         let sql = format!(
@@ -244,7 +244,7 @@ impl Archive {
             .doing("reading golden checks")
     }
 
-    /// The golden check made last, on the simulated rig or on the rig.
+    /// Returns the latest reference check of a rig.
     pub fn last_reference_check(&self, simulated: bool) -> Result<Option<ReferenceCheck>> {
         self.connection
             .query_row(

@@ -1,15 +1,15 @@
-//! The CSV of an older system into records: everything is read and checked before a row is written.
+//! Import of CSV files: the whole file is read and checked before the first row is written.
 //!
 //! The header names parameter keys and optionally `time` (RFC 3339), `verdict`, `serial` and `bin`.
-//! An empty cell is a value that was not measured. Columns that only our own export writes (`lot`,
-//! `seq`, `uncertainty ...`) are passed over, so that an export can be read back; any other unknown
-//! column is refused, for a misspelt key would otherwise lose its values in silence.
+//! An empty cell is a value that was not measured. Columns that only the export writes (`lot`, `seq`, `uncertainty ...`) are
+//! ignored, so that an export can be imported; any other unknown column is refused, since a misspelt key would lose its
+//! values unnoticed.
 
 use super::csv::{self, CsvError, Record};
 use super::{MeasurementRecord, Moment, PartRecord};
 use machine::dut::Reason;
 
-/// Columns of our own export that an import does not take.
+/// Columns of an export that an import ignores.
 const PASSED_OVER: [&str; 9] = [
     "type",
     "lot",
@@ -21,50 +21,50 @@ const PASSED_OVER: [&str; 9] = [
     "test_s",
     "cycle_s",
 ];
-/// Start of the names of the columns that an export gives to uncertainties.
+/// Prefix of the columns that hold uncertainties in an export.
 const UNCERTAINTY: &str = "uncertainty ";
 
 /// One row of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImportRow {
-    /// Without lot and sequence number, with the time of the row if there is one.
+    /// The part without lot and sequence number; its time is that of the row, or 0.
     pub part: PartRecord,
-    /// Whether the file gave a time.
+    /// True when the row has a time.
     pub timed: bool,
 }
 
-/// Why a file cannot be imported; nothing of it was.
+/// Why a file is refused. Nothing of it was imported.
 #[derive(Debug, thiserror::Error)]
 pub enum ImportError {
-    /// Not a table.
+    /// The text is not CSV.
     #[error(transparent)]
     Csv(#[from] CsvError),
-    /// A column nobody knows.
+    /// A column is neither a parameter nor one of the known names.
     #[error(
         "line 1: unknown column {found:?}; expected time, verdict, serial, bin or one of {known}"
     )]
     UnknownColumn {
         /// Name found.
         found: String,
-        /// Parameter keys that would do.
+        /// Accepted parameter keys.
         known: String,
     },
-    /// The same column twice.
-    #[error("line 1: column {found:?} stands there twice")]
+    /// Two columns have the same name.
+    #[error("line 1: column {found:?} appears twice")]
     ColumnTwice {
         /// Name found.
         found: String,
     },
-    /// A mapping for a column that is not there.
+    /// A mapping names a column that the file lacks.
     #[error("line 1: there is no column {column:?} to map")]
     NothingToMap {
         /// Name looked for.
         column: String,
     },
-    /// No parameter at all.
+    /// No column is a parameter.
     #[error("line 1: expected at least one parameter key among the columns")]
     NoParameter,
-    /// A cell that does not fit its column.
+    /// A cell does not fit its column.
     #[error("line {line}, column {column}: found {found:?}, expected {expected}")]
     Cell {
         /// Line number in the file.
@@ -73,12 +73,12 @@ pub enum ImportError {
         column: String,
         /// Text found.
         found: String,
-        /// What would do.
+        /// Accepted values.
         expected: &'static str,
     },
 }
 
-/// What a column is for.
+/// Meaning of a column.
 enum Column {
     Time,
     Verdict,
@@ -89,8 +89,7 @@ enum Column {
     PassedOver,
 }
 
-/// Reads a whole file. `maps` renames columns of the file (from, to); `parameters` are the keys known
-/// to the history.
+/// Reads a CSV text. `maps` renames columns (from, to); `parameters` are the keys of the history.
 pub fn parse_import(
     text: &str,
     maps: &[(String, String)],
@@ -99,7 +98,7 @@ pub fn parse_import(
     parse_records(&csv::read(text)?, maps, parameters)
 }
 
-/// The same, for a table that was read already: header first.
+/// Reads records whose first one is the header; the rest as [`parse_import`].
 pub fn parse_records(
     records: &[Record],
     maps: &[(String, String)],
@@ -209,10 +208,10 @@ fn take(row: &mut ImportRow, column: &Column, name: &str, cell: &str) -> Result<
         Column::Verdict => {
             row.part.verdict = verdict(cell).ok_or("pass, fail, void or unjudged")?
         }
-        Column::Serial => row.part.serial = Some(csv::as_typed(cell).to_owned()),
-        Column::Bin => row.part.bin = csv::as_typed(cell).to_owned(),
+        Column::Serial => row.part.serial = Some(csv::unescape_formula(cell).to_owned()),
+        Column::Bin => row.part.bin = csv::unescape_formula(cell).to_owned(),
         Column::Reasons => {
-            let typed = csv::as_typed(cell).split("; ");
+            let typed = csv::unescape_formula(cell).split("; ");
             row.part.reasons = typed.map(Reason::from_text).collect();
         }
         Column::Parameter => row.part.measurements.push(measurement(name, cell)?),

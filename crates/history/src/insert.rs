@@ -1,13 +1,13 @@
-//! One record into its rows. Always inside a transaction of [`Store`](super::Store).
+//! Inserts records as rows, inside a transaction of [`Store`](super::Store).
 
 use super::error::{Doing, HistoryError, Result};
-use super::store::Known;
+use super::store::RowIds;
 use super::{LotRecord, MeasurementRecord, PartRecord, SampleRecord};
 use super::{curve, reasons};
 use machine::dut::Reason;
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
 
-/// Row and number of a new run; lot and recipe are made when they are new.
+/// Inserts a run, and lot and recipe when they are new. Returns row and number of the run.
 pub(super) fn run(
     transaction: &Transaction<'_>,
     lot: &LotRecord,
@@ -55,8 +55,8 @@ pub(super) fn run(
     Ok(made)
 }
 
-/// A part with its measurements, samples and curves, or nothing when it is already there.
-pub(super) fn part(tx: &Transaction<'_>, known: &mut Known, part: &PartRecord) -> Result<()> {
+/// Inserts a part with its measurements, samples and curves; does nothing when it has the same row already.
+pub(super) fn part(tx: &Transaction<'_>, known: &mut RowIds, part: &PartRecord) -> Result<()> {
     const DOING: &str = "recording a part";
     let run = known.run(&part.lot)?;
     check(part);
@@ -102,7 +102,7 @@ pub(super) fn part(tx: &Transaction<'_>, known: &mut Known, part: &PartRecord) -
     }
 }
 
-/// Checks what whoever judges a part owes its row.
+/// Checks that the record of a part is consistent.
 fn check(part: &PartRecord) {
     assert!(part.seq >= 1, "the first part has number 1");
     assert_eq!(
@@ -147,7 +147,7 @@ fn same_part(tx: &Transaction<'_>, part: &PartRecord, run: i64, seq: i64) -> Res
 
 fn measurements(
     tx: &Transaction<'_>,
-    known: &mut Known,
+    known: &mut RowIds,
     part: &PartRecord,
     run: i64,
     row: i64,
@@ -229,7 +229,7 @@ fn sampled(
     Ok(())
 }
 
-fn parameter(tx: &Transaction<'_>, known: &mut Known, key: &str) -> Result<i64> {
+fn parameter(tx: &Transaction<'_>, known: &mut RowIds, key: &str) -> Result<i64> {
     if let Some(&row) = known.parameters.get(key) {
         return Ok(row);
     }
@@ -239,7 +239,7 @@ fn parameter(tx: &Transaction<'_>, known: &mut Known, key: &str) -> Result<i64> 
     Ok(row)
 }
 
-/// Row of a parameter; a new one gets its column in the view `parts`.
+/// Returns the row of a parameter; inserts a new one, with its column in the view `parts`.
 pub(super) fn parameter_row(connection: &Connection, key: &str) -> rusqlite::Result<i64> {
     let mut find = connection.prepare_cached("SELECT id FROM parameter WHERE key = ?1")?;
     if let Some(row) = find.query_row([key], |row| row.get(0)).optional()? {
@@ -255,7 +255,7 @@ pub(super) fn parameter_row(connection: &Connection, key: &str) -> rusqlite::Res
     Ok(row)
 }
 
-/// As SQLite counts.
+/// Converts a count to the signed integer of SQLite.
 pub(super) fn signed(what: &'static str, value: u64) -> Result<i64> {
     i64::try_from(value).map_err(|_| HistoryError::TooLarge { what, value })
 }

@@ -1,4 +1,4 @@
-//! Where parts were inside of the machine, for the run that comes next.
+//! Places of the parts inside the machine, for the next run.
 
 use super::Store;
 use super::error::{Doing, Result};
@@ -7,12 +7,12 @@ use machine::handling::inside::Inside;
 use machine::rig::bin::Bin;
 use rusqlite::{OptionalExtension, Transaction, params};
 
-/// As it was written down last.
+/// The last known places of one rig.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct InsideRecord {
-    /// Of the simulated rig.
+    /// True for the simulated rig.
     pub simulated: bool,
-    /// The places.
+    /// Occupied places.
     pub inside: Inside,
 }
 
@@ -33,7 +33,7 @@ pub(super) fn keep(tx: &Transaction<'_>, it: &InsideRecord) -> Result<()> {
 }
 
 impl Store {
-    /// What the run before left inside; nothing when there was none.
+    /// Returns what the previous run left inside; empty without a previous run.
     pub fn left_inside(&self, simulated: bool) -> Result<Inside> {
         let read = |row: &rusqlite::Row<'_>| {
             Ok(Inside {

@@ -1,15 +1,15 @@
-//! What is recorded about a part or the rig after the fact: where a part landed, when an alarm went.
-//! Both fill in what was null, once. Always inside a transaction of [`Store`](super::Store).
+//! Later additions to rows: where a part landed, that it was interrupted, when an alarm was cleared. Every function runs
+//! inside a transaction of [`Store`](super::Store).
 
 use super::error::{Doing, HistoryError, Result};
 use super::insert::signed;
 use super::reasons;
-use super::store::Known;
+use super::store::RowIds;
 use super::{AlarmRecord, InterruptedRecord, LandingRecord};
 use rusqlite::{OptionalExtension, Transaction, params};
 
-/// Fills in where and when a part landed, once.
-pub(super) fn landing(tx: &Transaction<'_>, known: &Known, it: &LandingRecord) -> Result<()> {
+/// Fills in bin and time of a landing, once.
+pub(super) fn landing(tx: &Transaction<'_>, known: &RowIds, it: &LandingRecord) -> Result<()> {
     const DOING: &str = "recording a landing";
     let run = known.run(&it.lot)?;
     let seq = signed("part", it.seq)?;
@@ -43,10 +43,10 @@ pub(super) fn landing(tx: &Transaction<'_>, known: &Known, it: &LandingRecord) -
     landed_before(it, first)
 }
 
-/// A judged part becomes void and belongs into retest, once and only before it has landed.
+/// Makes a judged part void with bin `retest`, once and only before it has landed.
 pub(super) fn interrupted(
     tx: &Transaction<'_>,
-    known: &Known,
+    known: &RowIds,
     it: &InterruptedRecord,
 ) -> Result<()> {
     const DOING: &str = "recording an interruption";
@@ -92,8 +92,8 @@ fn landed_before(it: &LandingRecord, first: Option<String>) -> Result<()> {
     }
 }
 
-/// One occurrence: a second record of it only fills in when it went.
-pub(super) fn alarm(tx: &Transaction<'_>, known: &Known, it: &AlarmRecord) -> Result<()> {
+/// Inserts an alarm; a second record of it only fills in when it was cleared.
+pub(super) fn alarm(tx: &Transaction<'_>, known: &RowIds, it: &AlarmRecord) -> Result<()> {
     let run = it.lot.as_deref().map(|lot| known.run(lot)).transpose()?;
     assert!(!it.code.is_empty(), "an alarm without a code");
     let cleared_after = it.cleared_at_us.is_none_or(|at| at >= it.raised_at_us);

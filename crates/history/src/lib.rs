@@ -1,19 +1,18 @@
-//! History: what was measured on which part, kept for good in one SQLite file.
+//! History: every lot, part, measurement, reply and alarm of a rig, in one SQLite file.
 //!
-//! - [`Store`] is the one writer. It takes plain records ([`Row`]) in batches, one transaction each;
-//!   a batch that was acknowledged survives power loss, a batch that failed left nothing.
-//! - [`Archive`] is a reader. One [`Filter`] serves command line, screens and sheets.
-//! - A row is written once. The same part twice is no second row; a lot opened again gets a new run.
-//! - What a number was made of travels with it: attempt, limits, uncertainty and its budget, and the
-//!   raw replies with line, module and channel. The recipe and the calibration in force are found
-//!   from the run by their hashes.
-//! - What another recipe would say is told and not written ([`rejudged`]); what was copied whole may be
-//!   pruned ([`Store::prune`]), nothing else is ever deleted.
-//! - Of a part that did not pass everything that was seen of it stays, as small blobs ([`CurveRecord`]).
-//! - The file may be opened by hand: the tables carry a remark per column, and the views `lots`,
-//!   `parts`, `reasons`, `measurements`, `samples`, `curves` and `alarms` show local time and names instead of numbers.
+//! - [`Store`] is the only writer. It takes records ([`Row`]) in batches, one transaction each: an acknowledged batch
+//!   survives power loss, a failed one leaves nothing.
+//! - [`Archive`] is the reader. Command line, page and exports select with the same [`Filter`].
+//! - A row is written once. Recording a part again adds no row; opening a lot again adds a run.
+//! - A value keeps its attempt, limits, uncertainty with budget, and raw replies with line, module and channel. The run names
+//!   recipe and calibration by their hashes.
+//! - Judging by another recipe writes nothing ([`rejudged`]). Only runs that were copied whole can be deleted
+//!   ([`Store::prune`]).
+//! - A part that did not pass keeps the sampled curves of its test ([`CurveRecord`]).
+//! - Any SQLite tool can read the file: every column has a remark, and the views `lots`, `parts`, `reasons`, `measurements`,
+//!   `samples`, `curves` and `alarms` show local time and names instead of row numbers.
 //!
-//! Not here: deciding anything (gauge, station), statistics (quality), a clock.
+//! The history takes no decisions, computes no statistics (crate `quality`) and has no clock.
 
 pub mod inquiry;
 pub mod report;
@@ -51,7 +50,7 @@ mod values;
 mod views;
 mod wear;
 
-pub use alarm_states::{AlarmChange, AlarmChangeRecord, AlarmLeft};
+pub use alarm_states::{AlarmChange, AlarmChangeRecord, UnacknowledgedAlarm};
 pub use alarms::{Alarm, AlarmState, Shelf};
 pub use archive::Archive;
 pub use curve::CurveRecord;
@@ -59,16 +58,16 @@ pub use decision::Decision;
 pub use error::{HistoryError, Result};
 pub use filter::Filter;
 pub use gates::{
-    LotStanding, LotState, LotStateRecord, LotYield, ReferenceCheck, ReferenceCheckRecord,
+    LotState, LotStateRecord, LotStatus, LotYield, ReferenceCheck, ReferenceCheckRecord,
 };
 pub use import::{ImportError, ImportRow, parse_import, parse_records};
 pub use inside::InsideRecord;
-pub use lot_book::LotLine;
+pub use lot_book::LotEntry;
 pub use lot_name::{LOT_NAME, is_lot_name};
 pub use lots::{LotSummary, Passed, Yield};
 pub use moment::{Moment, MomentError};
 pub use open::{APPLICATION_ID, SCHEMA};
-pub use orders::{OrderRecord, Ordered};
+pub use orders::{OrderEntry, OrderRecord};
 pub use part::{Measurement, Part, Sample};
 pub use record::{
     AlarmRecord, CalibrationRecord, InterruptedRecord, LandingRecord, LotRecord, MeasurementRecord,

@@ -1,38 +1,38 @@
-//! The book of lots: each lot that was run, over all its runs, the one that was run last first.
+//! The list of lots that were run, the latest first, each over all its runs.
 
 use super::error::{Doing, Result};
-use super::{Archive, LotStanding, LotYield, Moment};
+use super::{Archive, LotStatus, LotYield, Moment};
 use serde::Serialize;
 
-/// A lot in the book.
+/// A lot over all its runs.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct LotLine {
-    /// Its name.
+pub struct LotEntry {
+    /// Name of the lot.
     pub lot: String,
-    /// How often it was run.
+    /// Number of runs.
     pub runs: u32,
-    /// Begin of its last run.
+    /// Start of the last run.
     pub opened: Moment,
-    /// Code of the trouble that ended its last run; none of one that ended well, or was cut off.
+    /// Code of the trouble that ended the last run; `None` for a normal end and for a run that was cut off.
     pub cause: Option<String>,
-    /// What happened, English.
+    /// Text of the cause, English.
     pub cause_text: Option<String>,
-    /// Where it stands.
+    /// State and recipe.
     #[serde(flatten)]
-    pub standing: LotStanding,
-    /// What it has come to.
+    pub standing: LotStatus,
+    /// Yield.
     #[serde(flatten)]
     pub counts: LotYield,
 }
 
-/// Lots with their runs, and the end of the run that was opened last; what was imported was not run here.
+/// Selects lots with the number of their runs and the end of the last one, without imports.
 const BOOK: &str = "SELECT lot.name, count(*), max(run.opened_at_us), run_end.cause, run_end.cause_text
     FROM run JOIN lot ON lot.id = run.lot_id LEFT JOIN run_end ON run_end.run_id = run.id WHERE run.source <> 'import'
     GROUP BY lot.id ORDER BY 3 DESC, lot.id DESC LIMIT ?1 OFFSET ?2";
 
 impl Archive {
-    /// `limit` lots, the last `offset` of them left out.
-    pub fn lot_book(&self, limit: u32, offset: u32) -> Result<Vec<LotLine>> {
+    /// Returns at most `limit` lots after the latest `offset` ones.
+    pub fn lot_book(&self, limit: u32, offset: u32) -> Result<Vec<LotEntry>> {
         let names: Vec<(String, u32, i64, [Option<String>; 2])> = self
             .connection
             .prepare(BOOK)
@@ -49,7 +49,7 @@ impl Archive {
             let Some(standing) = self.standing(&lot)? else {
                 continue;
             };
-            book.push(LotLine {
+            book.push(LotEntry {
                 counts: self.lot_yield(&lot)?,
                 opened: Moment(opened_us),
                 lot,

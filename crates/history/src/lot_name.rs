@@ -1,13 +1,13 @@
-//! What a lot may be called: text that a person can read back from a screen, a sheet and a terminal.
+//! Rule for names of lots: a person can read the name on a screen, on paper and in a terminal.
 
-/// Longest name, characters; the schema refuses longer ones, too.
+/// Longest name in characters, the same as in the schema.
 const LONGEST: usize = 200;
 
-/// What [`is_lot_name`] expects, for a message.
+/// The rule of [`is_lot_name`] in words.
 pub const LOT_NAME: &str =
     "1 to 200 characters, none of them a control character, and not blanks alone";
 
-/// Whether a new lot may have this name. Lots of earlier versions keep theirs.
+/// Returns true when a new lot may have this name. Existing lots keep theirs.
 pub fn is_lot_name(name: &str) -> bool {
     !name.trim().is_empty()
         && name.chars().count() <= LONGEST
@@ -19,7 +19,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_lot_has_a_name_that_a_person_can_read_back() {
+    fn blank_long_and_control_names_are_refused() {
         let good = ["A", "批次 7 'b' \"c\" <d>", &"批".repeat(LONGEST)];
         assert!(good.into_iter().all(is_lot_name));
         let bad = [

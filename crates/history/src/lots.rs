@@ -1,11 +1,11 @@
-//! Summaries: every run with its counts, and the yield of a span of time.
+//! Summaries of runs, and verdicts of a span of time.
 
 use super::error::{Doing, Result};
 use super::{Archive, Filter, Moment};
 use rusqlite::{OptionalExtension, params, params_from_iter};
 use serde::Serialize;
 
-/// One run of a lot with its counts of production parts.
+/// A run with its counts of production parts.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LotSummary {
     /// Name of the lot.
@@ -14,63 +14,63 @@ pub struct LotSummary {
     pub run: u32,
     /// Name of the recipe.
     pub recipe: String,
-    /// Hash of the recipe text in force.
+    /// Hash of the recipe.
     pub recipe_hash: String,
-    /// Hash of the calibration in force.
+    /// Hash of the calibration.
     pub calibration_hash: Option<String>,
     /// `rig`, `simulated` or `import`.
     pub source: String,
     /// Seed of the simulated rig.
     pub seed: Option<String>,
-    /// Of a retest run: who agreed to it.
+    /// Person who agreed to a retest; `None` for a first test.
     pub retest: Option<String>,
-    /// Begin of the run.
+    /// Start of the run.
     pub opened: Moment,
-    /// End; none while it runs or when it was cut off.
+    /// End of the run; `None` while it runs and for a run that was cut off.
     pub closed: Option<Moment>,
-    /// `complete`, `stopped` or `alarm`; none while it runs, when it was cut off, or of a run older than schema 9.
+    /// `complete`, `stopped` or `alarm`; `None` without an end and before schema 9.
     pub ended: Option<String>,
-    /// Code of the trouble that ended it: an alarm, or why the program could not go on.
+    /// Code of the trouble that ended the run: an alarm or a fault of the program.
     pub cause: Option<String>,
-    /// What happened, English.
+    /// Text of the cause, English.
     pub cause_text: Option<String>,
     /// Counts of production parts.
     #[serde(flatten)]
     pub counts: Yield,
-    /// Golden parts run before the lot.
+    /// Tests of reference parts.
     pub golden: u64,
-    /// Occurrences of alarms.
+    /// Number of alarms.
     pub alarms: u64,
-    /// Production parts per bin, as the verdicts ask.
+    /// Production parts by the bin of their verdict.
     pub bins: std::collections::BTreeMap<String, u64>,
 }
 
 /// Counts of verdicts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Yield {
-    /// All of them.
+    /// All parts.
     pub parts: u64,
-    /// Good.
+    /// Passed parts.
     pub pass: u64,
-    /// Bad.
+    /// Failed parts.
     pub fail: u64,
-    /// Could not be judged.
+    /// Parts that could not be judged.
     pub void: u64,
-    /// Imported without a verdict.
+    /// Parts that were imported without a verdict.
     pub unjudged: u64,
 }
 
 /// Parts that passed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Passed {
-    /// After all attempts.
+    /// Passed after any number of attempts.
     pub finally: u64,
-    /// Not in a retest run, and without a second attempt at any measurement.
+    /// Passed in a first test without a second attempt at any measurement.
     pub at_first: u64,
 }
 
 impl Yield {
-    /// Good parts in percent of those with a verdict; none without any.
+    /// Returns the passed share of the judged parts, %; `None` without judged parts.
     pub fn percent(&self) -> Option<f64> {
         let judged = self.parts - self.unjudged;
         (judged > 0).then(|| 100.0 * self.pass as f64 / judged as f64)
@@ -89,20 +89,20 @@ impl Yield {
     }
 }
 
-/// Verdicts of a span of time.
+/// Counts verdicts in a span of time.
 pub(super) const YIELD: &str = "SELECT verdict, count(*) FROM part INDEXED BY part_time
     WHERE judged_at_us >= ?1 AND judged_at_us < ?2 AND kind = 'lot' GROUP BY verdict";
-/// Counts of one run.
+/// Counts the parts of one run.
 pub(super) const COUNTS: &str =
     "SELECT kind, verdict, bin, count(*) FROM part WHERE run_id = ?1 GROUP BY 1, 2, 3";
 
 impl Archive {
-    /// Runs that the filter leaves (lot, recipe, run), in order of opening.
+    /// Returns the selected runs (lot, recipe, run) in order of opening.
     pub fn lots(&self, filter: &Filter) -> Result<Vec<LotSummary>> {
         self.summaries(filter).doing("reading the lots")
     }
 
-    /// Text of the recipe with this hash, as it was when a lot was judged by it.
+    /// Returns the text of the recipe with this hash.
     pub fn recipe(&self, hash: &str) -> Result<Option<String>> {
         self.connection
             .prepare_cached("SELECT body FROM recipe WHERE hash = ?1")
@@ -110,7 +110,7 @@ impl Archive {
             .doing("reading a recipe")
     }
 
-    /// Whether the filter (lot, recipe, run) leaves any run.
+    /// Returns true when the filter (lot, recipe, run) selects a run.
     pub fn has_runs(&self, filter: &Filter) -> Result<bool> {
         let runs = filter.runs();
         self.connection
@@ -119,7 +119,7 @@ impl Archive {
             .doing("looking for a run")
     }
 
-    /// Counts of production parts judged from `since` up to, but not including, `until`.
+    /// Counts production parts judged from `since` until before `until`.
     pub fn yield_between(&self, since: Moment, until: Moment) -> Result<Yield> {
         let mut counts = Yield::default();
         self.connection
@@ -137,7 +137,7 @@ impl Archive {
             .doing("counting verdicts")
     }
 
-    /// Parts that the filter leaves which passed, and those of them that passed at the first attempt.
+    /// Counts the selected parts that passed, and those that passed at the first attempt.
     pub fn passed(&self, filter: &Filter) -> Result<Passed> {
         let select = filter.passed();
         self.connection

@@ -1,4 +1,4 @@
-//! Instants at the border of the program: RFC 3339 outside, integer microseconds UTC inside.
+//! Instants: microseconds since 1970 UTC inside the program, RFC 3339 in its input and output.
 
 use jiff::Timestamp;
 use jiff::fmt::temporal::Pieces;
@@ -10,7 +10,7 @@ use std::str::FromStr;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Moment(pub i64);
 
-/// A text that is no instant.
+/// A text that is not an RFC 3339 time with offset.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{found:?} is no RFC 3339 time: expected for example 2026-03-01T08:00:00+08:00")]
 pub struct MomentError {
@@ -30,7 +30,7 @@ impl FromStr for Moment {
     }
 }
 
-/// The last days of the year 9999, by which people say "never": the latest instant of the calendar.
+/// Reads a time in the year 9999, which people write for "never", as the latest instant.
 fn never(text: &str) -> Option<Timestamp> {
     let said = Pieces::parse(text).ok()?;
     let is_last_year = said.date().year() == 9999;

@@ -1,13 +1,12 @@
-//! Opening the file: whose it is, which schema it has, how it is kept safe.
+//! Opening a history file: owner, schema, durability.
 //!
-//! 1. A file with rows but without our `application_id` belongs to another program and is refused
-//!    before anything is written to it.
+//! 1. A file with tables but another `application_id` belongs to another program. It is refused before any write.
 //! 2. A schema newer than this program is refused; an older one is migrated, one transaction a step.
-//! 3. Write-ahead log with `synchronous = FULL`: a batch that was acknowledged survives power loss.
-//! 4. A plan is made once for a statement, whatever its values (`QPSG`): a statement that is asked part by part
-//!    would else be planned anew for each of them, which takes longer than its answer.
-//! 5. Reads go through the page cache, not through a memory map: there an I/O error would be a signal that ends the
-//!    process that drives the rig.
+//! 3. Write-ahead log with `synchronous = FULL`: an acknowledged batch survives power loss.
+//! 4. Query plans do not depend on bound values (`QPSG`): planning a statement again for each part would take longer than
+//!    running it.
+//! 5. Reads use the page cache, not a memory map: an I/O error in a map raises a signal that would end the process that
+//!    drives the rig.
 
 use super::error::{Doing, HistoryError, Result};
 use super::{reasons, series, views};
@@ -16,10 +15,10 @@ use rusqlite::{Connection, ErrorCode, OpenFlags};
 use std::path::Path;
 use std::time::Duration;
 
-/// `RRig`, in the header of the file: tells our files from those of other programs.
+/// `RRig`: the application id in the header of a history file.
 pub const APPLICATION_ID: i64 = 0x5252_6967;
 
-/// Step `n` brings schema `n` to `n + 1`. Steps are only ever added.
+/// Step `n` migrates schema `n` to `n + 1`. Existing steps never change.
 pub(super) const MIGRATIONS: [&str; 10] = [
     include_str!("schema/v1.sql"),
     include_str!("schema/v2.sql"),
@@ -33,19 +32,19 @@ pub(super) const MIGRATIONS: [&str; 10] = [
     include_str!("schema/v10.sql"),
 ];
 
-/// Latest schema this program knows.
+/// Schema that this program writes.
 pub const SCHEMA: i64 = MIGRATIONS.len() as i64;
 
-/// The schema that keeps values of closed runs side by side.
+/// First schema with packed values of closed runs.
 const PACKS: i64 = 6;
 
-/// The schema that keeps reasons as codes.
+/// First schema with reasons as codes.
 const CODES: i64 = 8;
 
-/// How long a locked file is waited for: longer than any batch, shorter than an operator's patience.
+/// Longest wait for a locked file: longer than any batch takes.
 const BUSY: Duration = Duration::from_secs(5);
 
-/// Opens for writing, made when missing.
+/// Opens a file for writing; creates a missing one.
 pub(super) fn writer(path: &Path) -> Result<Connection> {
     let flags = OpenFlags::SQLITE_OPEN_READ_WRITE
         | OpenFlags::SQLITE_OPEN_CREATE
@@ -55,7 +54,7 @@ pub(super) fn writer(path: &Path) -> Result<Connection> {
     Ok(connection)
 }
 
-/// Opens for reading only; an older schema is migrated first.
+/// Opens an existing file for reading, after migrating an older schema.
 pub(super) fn reader(path: &Path) -> Result<Connection> {
     if !path.exists() {
         return Err(HistoryError::Missing {
@@ -96,7 +95,7 @@ fn prepare(connection: &Connection, path: &Path) -> Result<()> {
     migrate(connection, found)
 }
 
-/// Schema of the file, 0 for an empty one.
+/// Returns the schema of the file, 0 for an empty one. Fails when the file belongs to another program or is newer.
 fn check(connection: &Connection, path: &Path) -> Result<i64> {
     let foreign = |found: String| HistoryError::Foreign {
         path: path.to_owned(),
@@ -122,7 +121,7 @@ fn check(connection: &Connection, path: &Path) -> Result<i64> {
     }
 }
 
-/// Application id, schema, and how many tables and indexes there are.
+/// Returns application id, schema, and number of tables and indexes.
 fn header(connection: &Connection) -> rusqlite::Result<(i64, i64, i64)> {
     let tables = "SELECT count(*) FROM sqlite_schema";
     Ok((
@@ -144,7 +143,7 @@ fn migrate(connection: &Connection, found: i64) -> Result<()> {
     done
 }
 
-/// Reads the schema again: another process may have migrated while this one waited for the lock.
+/// Runs the missing steps. Reads the schema again, since another process may have migrated during the wait for the lock.
 fn steps(connection: &Connection) -> rusqlite::Result<()> {
     let from: i64 = connection.pragma_query_value(None, "user_version", |row| row.get(0))?;
     for (step, sql) in MIGRATIONS

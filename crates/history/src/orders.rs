@@ -1,52 +1,52 @@
-//! The audit of orders: who wanted what, from where, and whether it was taken. Written once, never changed.
+//! Audit of orders: person, place, order and answer. Rows never change.
 
 use super::error::{Doing, Result};
-use super::store::Known;
+use super::store::RowIds;
 use super::{Archive, Filter, Moment};
 use rusqlite::{Transaction, params, params_from_iter};
 use serde::Serialize;
 
-/// One order and its answer.
+/// An order and its answer.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct OrderRecord {
-    /// The open lot it came in, if any.
+    /// The open lot at that time, if any.
     pub lot: Option<String>,
-    /// When it was answered.
+    /// Time of the answer.
     pub at_us: i64,
-    /// Who ordered it; empty for a stranger.
+    /// Name of the person; empty when not logged in.
     pub who: String,
-    /// As which role; empty for a stranger.
+    /// Role of the person; empty when not logged in.
     pub role: String,
-    /// Address of the screen, or `command line`.
+    /// Address of the browser, or `command line`.
     pub origin: String,
     /// The order with its members, JSON.
     pub what: String,
-    /// Why it was refused; none when it was taken.
+    /// Reason of the refusal, English; `None` for an accepted order.
     pub refused: Option<String>,
 }
 
-/// One order, as it leaves the history.
+/// An order in the audit.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Ordered {
-    /// When it was answered.
+pub struct OrderEntry {
+    /// Time of the answer.
     pub at: Moment,
-    /// Name of the lot under way; none outside a run.
+    /// Lot under way; `None` outside a run.
     pub lot: Option<String>,
     /// Number of the run within its lot.
     pub run: Option<u32>,
-    /// Who ordered it; empty for a stranger.
+    /// Name of the person; empty when not logged in.
     pub who: String,
-    /// As which role.
+    /// Role of the person.
     pub role: String,
-    /// From where.
+    /// Address of the browser, or `command line`.
     pub origin: String,
     /// The order with its members.
     pub what: serde_json::Value,
-    /// Why it was refused; none when it was taken.
+    /// Reason of the refusal, English; `None` for an accepted order.
     pub refused: Option<String>,
 }
 
-pub(super) fn insert(tx: &Transaction<'_>, known: &Known, it: &OrderRecord) -> Result<()> {
+pub(super) fn insert(tx: &Transaction<'_>, known: &RowIds, it: &OrderRecord) -> Result<()> {
     let run = it.lot.as_deref().map(|lot| known.run(lot)).transpose()?;
     tx.prepare_cached(
         "INSERT INTO ordered (at_us, run_id, who, role, origin, what, refused)
@@ -62,15 +62,14 @@ pub(super) fn insert(tx: &Transaction<'_>, known: &Known, it: &OrderRecord) -> R
 }
 
 impl Archive {
-    /// Orders of the runs that the filter leaves (lot, run, recipe), answered in its span, by `who` if asked for,
-    /// in order of time.
-    pub fn orders(&self, filter: &Filter, who: Option<&str>) -> Result<Vec<Ordered>> {
+    /// Returns the orders of the selected runs (lot, run, recipe) and span, of one person or of all, in order of time.
+    pub fn orders(&self, filter: &Filter, who: Option<&str>) -> Result<Vec<OrderEntry>> {
         let select = filter.orders(who);
         self.connection
             .prepare(&select.sql)
             .and_then(|mut it| {
                 it.query_map(params_from_iter(&select.values), |row| {
-                    Ok(Ordered {
+                    Ok(OrderEntry {
                         at: Moment(row.get(0)?),
                         lot: row.get(1)?,
                         run: row.get(2)?,

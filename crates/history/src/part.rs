@@ -1,11 +1,11 @@
-//! A part with what was measured on it, as it leaves the history: what screens, sheets and `--json` show.
+//! A part with its measurements as page, exports and `--json` show it.
 
 use super::{Moment, curve};
 use machine::dut::Reason;
 use machine::instrument::curve::Curve;
 use serde::Serialize;
 
-/// A part as screens, sheets and `--json` show it.
+/// A part with its results.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Part {
     /// Always `part`, as in the output of a run.
@@ -25,30 +25,30 @@ pub struct Part {
     pub serial: Option<String>,
     /// `pass`, `fail`, `void` or `unjudged`.
     pub verdict: String,
-    /// The bin the verdict asks for.
+    /// Bin of the verdict.
     pub bin: Option<String>,
-    /// The bin whose beam saw it.
+    /// Bin whose beam confirmed the part.
     pub landed_bin: Option<String>,
-    /// When the beam saw it.
+    /// Time of that confirmation.
     pub landed_at: Option<Moment>,
-    /// Why it is not a pass.
+    /// Reasons against a pass, in the strings of rows.
     pub reasons: Vec<String>,
-    /// The codes of the reasons, in their order.
+    /// The same reasons as codes.
     pub reason_codes: Vec<Reason>,
-    /// When the verdict stood.
+    /// Time of the verdict.
     pub time: Moment,
-    /// Probes up to verdict, rig seconds.
+    /// Time from probes up to verdict, rig seconds.
     pub test_s: Option<f64>,
-    /// Since the previous nest exit, rig seconds.
+    /// Time since the previous nest exit, rig seconds.
     pub cycle_s: Option<f64>,
     /// Last value of each parameter, by key.
     pub values: serde_json::Map<String, serde_json::Value>,
-    /// Its expanded uncertainty, k = 2.
+    /// Expanded uncertainty (k = 2) of each value, by key.
     pub uncertainty: serde_json::Map<String, serde_json::Value>,
-    /// Every attempt, with its samples; only on a single part.
+    /// All attempts with their samples; filled for a single part only.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub measurements: Vec<Measurement>,
-    /// What was seen of it, when it did not pass; only on a single part.
+    /// Sampled curves of a part that did not pass; filled for a single part only.
     #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "curve::shown")]
     pub curves: Vec<Curve>,
     #[serde(skip)]
@@ -60,21 +60,21 @@ pub struct Part {
 pub struct Measurement {
     /// Parameter key.
     pub parameter: String,
-    /// 1, or more when measured again.
+    /// Number of the attempt, from 1.
     pub attempt: u32,
-    /// In the unit of the key.
+    /// Value in the unit of the key.
     pub value: Option<f64>,
-    /// Expanded, k = 2.
+    /// Expanded uncertainty, k = 2.
     pub uncertainty: Option<f64>,
     /// Lower limit in force.
     pub low: Option<f64>,
     /// Upper limit in force.
     pub high: Option<f64>,
-    /// Verdict of this attempt alone.
+    /// Verdict of this attempt.
     pub verdict: String,
     /// Uncertainty budget.
     pub budget: Option<serde_json::Value>,
-    /// The replies it was made of.
+    /// Replies that the value was computed from.
     pub samples: Vec<Sample>,
 }
 
@@ -91,21 +91,21 @@ pub struct Sample {
     pub command: String,
     /// Text received.
     pub raw: String,
-    /// When the reply was complete.
+    /// Time of the last byte.
     pub at: Moment,
 }
 
 #[cfg(any(test, feature = "fixture"))]
 impl Part {
-    /// The same part, failed for these reasons.
-    pub fn because(mut self, reasons: Vec<Reason>) -> Self {
+    /// Returns the part with these reasons.
+    pub fn with_reasons(mut self, reasons: Vec<Reason>) -> Self {
         self.reasons = reasons.iter().map(Reason::to_string).collect();
         self.reason_codes = reasons;
         self
     }
 
-    /// A part of run 1 with nothing measured.
-    pub fn of_paper(lot: &str, seq: u64, verdict: &str) -> Self {
+    /// Returns a part of run 1 without measurements.
+    pub fn fixture(lot: &str, seq: u64, verdict: &str) -> Self {
         Self {
             tag: "part",
             lot: lot.to_owned(),

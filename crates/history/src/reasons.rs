@@ -1,4 +1,4 @@
-//! Why a part did not pass, as codes: a row of `reason` for each text of `part.reasons`, in its order.
+//! Codes of the reasons why a part did not pass: the table `reason` has a row for each text of `part.reasons`.
 
 use super::Archive;
 use super::insert::parameter_row;
@@ -6,14 +6,14 @@ use machine::dut::{Characteristic, Reason};
 use machine::gauge::Side;
 use rusqlite::{Connection, Row, params};
 
-/// Reasons of one part.
+/// Selects the reasons of one part in order.
 pub(super) const REASONS: &str = "SELECT code, parameter.key, side, detail FROM reason
     LEFT JOIN parameter ON parameter.id = reason.parameter_id WHERE part_id = ?1 ORDER BY n";
 
-/// Parts of a batch whose texts are read together.
+/// Parts that one step of the migration reads.
 const BATCH: usize = 1_000;
 
-/// Keeps the reasons of the part in row `part`, the first one at place `n`, counted from 1.
+/// Inserts reasons of the part in row `part`; the first one gets number `n`, at least 1.
 pub(super) fn insert(
     connection: &Connection,
     part: i64,
@@ -42,7 +42,44 @@ pub(super) fn insert(
     Ok(())
 }
 
-/// Gives every part of before schema 8 its codes: the one time that texts of a history are read.
+/// Texts of reasons before schema 8, one a line: `code|parameter|side|text`, with `*` for the detail. The table is frozen:
+/// later edits of the catalogue do not change how old files are migrated.
+const TEXTS: &str = include_str!("schema/reason_texts.txt");
+
+/// Reads a text as programs before schema 8 wrote it; one without a code stays [`Code::Unclassified`](machine::dut::reason::Code).
+fn read_text(text: &str) -> Reason {
+    let known = TEXTS.lines().find_map(|line| read_as(line, text));
+    let known = known.or_else(|| of_a_limit(text));
+    known.unwrap_or_else(|| Reason::unclassified(text))
+}
+
+/// The reason of one line of [`TEXTS`], when the text is its text.
+fn read_as(line: &str, text: &str) -> Option<Reason> {
+    let [code, key, side, form] = line.splitn(4, '|').collect::<Vec<_>>().try_into().ok()?;
+    let detail = match form.split_once('*') {
+        Some((before, after)) => text.strip_prefix(before)?.strip_suffix(after)?,
+        None if form == text => "",
+        None => return None,
+    };
+    let about = Characteristic::from_key(key);
+    Reason::stored(code, about, Side::from_name(side), detail)
+}
+
+/// A text that begins with the key of a characteristic and speaks of its limit.
+fn of_a_limit(text: &str) -> Option<Reason> {
+    let (key, rest) = text.split_once(' ')?;
+    let (code, side) = match rest {
+        "low" => ("outside_limit", Some(Side::Low)),
+        "high" => ("outside_limit", Some(Side::High)),
+        "low not proven" => ("not_proven", Some(Side::Low)),
+        "high not proven" => ("not_proven", Some(Side::High)),
+        "not measured" => ("not_measured", None),
+        _ => return None,
+    };
+    Reason::stored(code, Characteristic::from_key(key), side, "")
+}
+
+/// Inserts the codes of every part that was recorded before schema 8.
 pub(super) fn read_texts(connection: &Connection) -> rusqlite::Result<()> {
     let mut after = 0;
     loop {
@@ -52,13 +89,13 @@ pub(super) fn read_texts(connection: &Connection) -> rusqlite::Result<()> {
         };
         after = *last;
         for (part, stored) in &batch {
-            let reasons: Vec<Reason> = texts(stored).map(Reason::from_text).collect();
+            let reasons: Vec<Reason> = texts(stored).map(read_text).collect();
             insert(connection, *part, 1, &reasons)?;
         }
     }
 }
 
-/// The next parts that have reasons, with them.
+/// Returns the next parts with reasons, after row `after`, with their stored texts.
 fn with_texts(
     connection: &Connection,
     after: i64,
@@ -73,14 +110,14 @@ fn with_texts(
         .collect()
 }
 
-/// Texts of a stored list.
+/// Returns the texts of a stored JSON list.
 pub(super) fn texts(stored: &serde_json::Value) -> impl Iterator<Item = &str> {
     let list = stored.as_array().map(Vec::as_slice).unwrap_or_default();
     list.iter().filter_map(serde_json::Value::as_str)
 }
 
 impl Archive {
-    /// Codes beside the texts of a part. A code that this program does not know is kept as its text.
+    /// Returns a reason for each text; one whose code this program does not know is unclassified.
     pub(super) fn reasons(&self, part: i64, texts: &[String]) -> rusqlite::Result<Vec<Reason>> {
         if texts.is_empty() {
             return Ok(Vec::new());
@@ -101,4 +138,18 @@ fn read(row: &Row<'_>) -> rusqlite::Result<Option<Reason>> {
     let about = key.as_deref().and_then(Characteristic::from_key);
     let side = side.as_deref().and_then(Side::from_name);
     Ok(Reason::stored(&code, about, side, &detail))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_text_of_old_is_read_as_its_code() {
+        for line in TEXTS.lines() {
+            let code = line.split('|').next().unwrap_or_default();
+            let text = line.rsplit('|').next().unwrap_or_default();
+            assert_eq!(read_text(&text.replace('*', "COM")).code.name(), code);
+        }
+    }
 }

@@ -1,7 +1,6 @@
-//! Plain records that the cycle hands to the history.
+//! Records that the control cycle hands to the history: texts, numbers, reasons and microseconds since 1970 UTC (`_us`).
 //!
-//! They know nothing of the station or of a kind of device: texts, numbers, reasons and integer microseconds UTC. A
-//! number that is not finite is stored as no number at all.
+//! A number that is not finite is stored as null.
 
 use super::{
     AlarmChangeRecord, CurveRecord, InsideRecord, LotStateRecord, OrderRecord,
@@ -12,26 +11,26 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use texts::Args;
 
-/// One opening of a lot. A lot opened again gets the next run number; nothing is overwritten.
+/// A run of a lot. Opening the lot again adds a run with the next number.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct LotRecord {
-    /// What the operator called the lot.
+    /// Name of the lot.
     pub lot: String,
     /// Name of the recipe.
     pub recipe: String,
-    /// The recipe as it is in force, TOML.
+    /// Text of the recipe, TOML.
     pub recipe_snapshot: String,
-    /// Hash of the snapshot, see [`snapshot_hash`]; equal hashes share one stored text.
+    /// Hash of the text, see [`snapshot_hash`]; runs with equal hashes share one stored text.
     pub recipe_hash: String,
     /// Hash of the calibration in force.
     pub calibration_hash: Option<String>,
-    /// Begin of the run.
+    /// Start of the run.
     pub opened_at_us: i64,
-    /// Whether the rig is the simulated one.
+    /// True on the simulated rig.
     pub simulated: bool,
     /// Seed of the simulated rig.
     pub seed: Option<u64>,
-    /// Of a run that tests parts of the lot again: who agreed to it.
+    /// Person who agreed to a retest; `None` for a first test.
     pub retest: Option<String>,
 }
 
@@ -42,38 +41,38 @@ pub struct PartRecord {
     pub lot: String,
     /// Count of parts that entered the nest, from 1.
     pub seq: u64,
-    /// Serial number when the part has one.
+    /// Serial number, if the part has one.
     pub serial: Option<String>,
     /// `pass`, `fail` or `void`.
     pub verdict: String,
-    /// The bin the verdict asks for; empty when it is not to be sorted.
+    /// Bin of the verdict; empty for a part that is not sorted.
     pub bin: String,
-    /// Why it is not a pass, the decisive reason first.
+    /// Reasons against a pass, the decisive one first.
     pub reasons: Vec<Reason>,
-    /// When the verdict stood.
+    /// Time of the verdict.
     pub judged_at_us: i64,
-    /// Probes up to verdict, rig seconds; not a number when unknown (imports).
+    /// Time from probes up to verdict, rig seconds; NaN for an import.
     pub test_s: f64,
-    /// Since the previous nest exit, rig seconds; often known only with the landing.
+    /// Time since the previous nest exit, rig seconds; `None` until it is known, at the landing at the latest.
     pub cycle_s: Option<f64>,
-    /// The bin whose beam saw it fall.
+    /// Bin whose beam confirmed the part.
     pub landed_bin: Option<String>,
-    /// When the beam saw it.
+    /// Time of that confirmation.
     pub landed_at_us: Option<i64>,
-    /// `lot` for production, `golden` for a reference part; each kind counts its own `seq`.
+    /// `lot` for a production part, `golden` for a reference part; each kind counts its own `seq`.
     pub kind: String,
-    /// In the order they were made; a repeated one has a higher attempt.
+    /// Measurements in order of time; a repetition has a higher attempt.
     pub measurements: Vec<MeasurementRecord>,
-    /// What was seen of it; none of a part that passed.
+    /// Sampled curves; empty for a part that passed.
     pub curves: Vec<CurveRecord>,
 }
 
 /// One attempt to measure one parameter.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MeasurementRecord {
-    /// Parameter key with its unit as suffix, `operate_voltage_v`.
+    /// Parameter key with unit suffix, `operate_voltage_v`.
     pub key: String,
-    /// In the unit of the key; none when the measurement stayed unset.
+    /// Value in the unit of the key; `None` without a usable value.
     pub value: Option<f64>,
     /// Expanded uncertainty, k = 2, same unit.
     pub uncertainty: Option<f64>,
@@ -81,125 +80,125 @@ pub struct MeasurementRecord {
     pub low: Option<f64>,
     /// Upper limit of the recipe.
     pub high: Option<f64>,
-    /// `pass`, `fail` or `void`, of this attempt alone.
+    /// Verdict of this attempt: `pass`, `fail` or `void`.
     pub verdict: String,
-    /// 1, or more when measured again; statistics count the highest.
+    /// Number of the attempt, from 1; statistics use the last one.
     pub attempt: u32,
     /// Uncertainty budget as JSON text.
     pub budget: Option<String>,
-    /// The replies the value was made of.
+    /// Replies that the value was computed from.
     pub samples: Vec<SampleRecord>,
 }
 
-/// One reply of a module, as it came over the line.
+/// A reply of a module.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct SampleRecord {
     /// Name of the serial line.
     pub line: String,
-    /// Address of the module on its line, as on the wire.
+    /// Address of the module, two hexadecimal digits.
     pub module: String,
-    /// Channel; empty when the reply is of the whole module.
+    /// Channel; empty for a reply about the whole module.
     pub channel: String,
     /// Text sent, without the carriage return.
     pub command: String,
     /// Text received, without the carriage return.
     pub raw: String,
-    /// When the reply was complete.
+    /// Time of the last byte.
     pub at_us: i64,
 }
 
-/// A part seen by the beam of a bin.
+/// The beam of a bin confirms a part.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct LandingRecord {
     /// The open lot it belongs to.
     pub lot: String,
     /// `lot` or `golden`.
     pub kind: String,
-    /// The part.
+    /// Number of the part.
     pub seq: u64,
-    /// The bin whose beam saw it.
+    /// Bin of the beam.
     pub bin: String,
-    /// When.
+    /// Time of the confirmation.
     pub at_us: i64,
-    /// Since the previous nest exit, rig seconds, when it is known by now.
+    /// Time since the previous nest exit, rig seconds, if known.
     pub cycle_s: Option<f64>,
 }
 
-/// A part that was judged and then interrupted on its way: void, to retest; its values stay.
+/// A judged part is interrupted on its way: its row becomes void with bin `retest` and keeps its values.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct InterruptedRecord {
     /// The open lot it belongs to.
     pub lot: String,
     /// `lot` or `golden`.
     pub kind: String,
-    /// The part.
+    /// Number of the part.
     pub seq: u64,
-    /// Added to its reasons.
+    /// Reason that is added to the row.
     pub reason: Reason,
 }
 
-/// One occurrence of an alarm; recorded again with `cleared_at_us` when it goes.
+/// An occurrence of an alarm; recorded again with `cleared_at_us` when it is cleared.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct AlarmRecord {
-    /// The open lot it happened in, if any.
+    /// The open lot at that time, if any.
     pub lot: Option<String>,
-    /// What kind of trouble.
+    /// Code of the alarm.
     pub code: String,
-    /// Serial line, when it concerns one.
+    /// Serial line that it concerns, if any.
     pub line: Option<String>,
-    /// The message as shown, English.
+    /// Message in English.
     pub text: String,
     /// Arguments of the message by name.
     pub args: Args,
-    /// When it came.
+    /// Time of the alarm.
     pub raised_at_us: i64,
-    /// When it went.
+    /// Time at which it was cleared.
     pub cleared_at_us: Option<i64>,
 }
 
-/// Calibration factors in force from `made_at_us` on.
+/// Calibration factors, valid from `made_at_us` to `due_at_us`.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct CalibrationRecord {
-    /// When the factors were determined.
+    /// Time of the calibration.
     pub made_at_us: i64,
-    /// When they stop being valid.
+    /// End of validity.
     pub due_at_us: i64,
     /// Hash of the body, see [`snapshot_hash`].
     pub hash: String,
     /// Factors with uncertainties, JSON text.
     pub body: String,
-    /// Whether a verification after it passed.
+    /// True unless the last verification failed.
     pub verified: bool,
 }
 
-/// What one turn of the rig may ask to be kept.
+/// A record of the control cycle.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Row {
     /// A judged part.
     Part(PartRecord),
-    /// A part that reached a bin.
+    /// A part whose beam has confirmed it.
     Landed(LandingRecord),
-    /// A judged part that goes to retest all the same.
+    /// A judged part that was interrupted.
     Interrupted(InterruptedRecord),
-    /// An alarm that came, or went.
+    /// An alarm that was raised or cleared.
     Alarm(AlarmRecord),
-    /// What became of an alarm.
+    /// An alarm that was acknowledged, shelved or returned.
     AlarmChange(AlarmChangeRecord),
-    /// A run of a lot has ended.
+    /// The end of a run.
     RunEnded(RunEndRecord),
-    /// A lot changes its state.
+    /// A new state of a lot.
     LotState(LotStateRecord),
-    /// Golden parts were compared with their certificates.
+    /// A check of reference parts against their certificates.
     ReferenceCheck(ReferenceCheckRecord),
     /// An order with its answer.
     Order(OrderRecord),
-    /// Uses of what wears.
+    /// Uses of a wearing part.
     Wear(WearRecord),
-    /// What the next run has to look for.
+    /// Places of parts inside the machine.
     Inside(InsideRecord),
 }
 
-/// SHA-256 of a snapshot's text, hexadecimal: the name under which it is stored once.
+/// Returns the SHA-256 of a text, hexadecimal.
 pub fn snapshot_hash(text: impl AsRef<[u8]>) -> String {
     Sha256::digest(text.as_ref())
         .iter()

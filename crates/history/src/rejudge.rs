@@ -1,12 +1,11 @@
-//! Stored values and curves held against another recipe. Nothing is written: the old verdict stays what it was.
+//! Judges stored values and curves by another recipe. Nothing is written.
 //!
-//! - What the values say is judged as in a run, with their stored uncertainty; a value within U of a limit
-//!   is `not proven`, for it cannot be measured again.
-//! - What is stored at the reference temperature of its recipe is brought to the one of the other recipe.
-//! - A characteristic without a value may still be proven too great by what was seen of the part ([`above`]).
-//! - What neither says (an open circuit, a refused reply) is not the recipe's business and stays.
-//! - Results are those of one kind and nominal voltage: a recipe with another one cannot judge them
-//!   ([`Basis::misfit`]).
+//! - Values are judged as in a run, with their stored uncertainty; a value within U of a limit is `not proven`, since it
+//!   cannot be measured again.
+//! - Values at the reference temperature of their recipe are converted to that of the other recipe.
+//! - Curves may prove that a characteristic without a value exceeds its upper limit ([`above`]).
+//! - Reasons that depend on no limit (an open circuit, a refused reply) stay.
+//! - The other recipe must have the same kind and nominal voltage ([`Basis::misfit`]).
 
 use super::Part;
 use machine::dut::reason::Code;
@@ -15,7 +14,7 @@ use machine::dut::{Characteristic, Judgement, Reason, Recipe, Verdict};
 use machine::gauge::{Budget, Reading, Side, judge};
 use machine::instrument::curve::Curve;
 
-/// The verdict of `recipe` over what was measured on `part` under a recipe of `basis`, and seen of it.
+/// Returns the verdict of `recipe` on a part with its curves, tested by a recipe of `basis`.
 pub fn rejudged(part: &Part, curves: &[Curve], basis: Basis, recipe: &Recipe) -> Verdict {
     let judged: Vec<(Characteristic, Judgement)> = recipe
         .limits()
@@ -49,7 +48,7 @@ pub fn rejudged(part: &Part, curves: &[Curve], basis: Basis, recipe: &Recipe) ->
     }
 }
 
-/// Value and uncertainty as they were stored, at the other reference; without either it is no number.
+/// Returns the stored value and uncertainty times `factor`; NaN for a missing one.
 fn stored(part: &Part, of: Characteristic, factor: f64) -> Reading {
     let number = |map: &serde_json::Map<String, serde_json::Value>| {
         let number = map.get(of.key()).and_then(serde_json::Value::as_f64);
@@ -63,8 +62,8 @@ fn stored(part: &Part, of: Characteristic, factor: f64) -> Reading {
     }
 }
 
-/// Whether a reason speaks of a limit, or of a value that is missing: then the other recipe says it anew. A test that ended
-/// because the contact did not move speaks of an upper limit too, where it was `seen`.
+/// Returns true for a reason that depends on a limit or a missing value, which the other recipe judges anew. A contact that
+/// did not move also exceeds an upper limit, where the curves have `seen` that.
 fn of_a_limit(reason: &Reason, seen: impl Fn(Characteristic) -> bool) -> bool {
     match reason.code {
         Code::OutsideLimit(_) | Code::NotProven(_) | Code::NotMeasured(_) => true,

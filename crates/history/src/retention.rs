@@ -1,10 +1,9 @@
-//! Retention: what was copied whole may be deleted here after a while, and nothing else.
+//! Retention: deletes the parts of runs that were copied whole.
 //!
-//! - A run counts as copied when a backup holds it or an export wrote all of it; both tell
-//!   [`Store::copied`] after their file is on the disk. Only closed runs count: an open one still grows.
+//! - Backup and export call [`Store::copied`] once their file is on the disk. Only closed runs count as copied.
 //! - [`Store::prune`] deletes parts, reasons, measurements, raw replies, curves and alarms of copied runs that ended before
-//!   an instant, one transaction a run. Lot, run, recipe and the note of the copy stay, so that numbers
-//!   of runs go on and anyone can see where the parts went.
+//!   an instant, one transaction a run. Lot, run, recipe and the note of the copy stay: run numbers continue, and the note
+//!   names the file with the parts.
 
 use super::error::{Doing, Result};
 use super::{Filter, Store};
@@ -18,14 +17,14 @@ pub struct Pruned {
     pub lot: String,
     /// Number of the run within its lot.
     pub run: u32,
-    /// Parts deleted, golden ones included.
+    /// Deleted parts, including tests of reference parts.
     pub parts: u64,
-    /// Where they are.
+    /// File of the copy.
     pub file: String,
 }
 
 impl Store {
-    /// Notes that the closed runs which `filter` leaves (lot, run, recipe) are whole in `file`. Gives how many.
+    /// Notes that `file` holds the selected closed runs (lot, run, recipe) whole. Returns their number.
     pub fn copied(&mut self, filter: &Filter, file: &str, at_us: i64) -> Result<u64> {
         const DOING: &str = "noting a copy";
         let runs = filter.runs();
@@ -47,7 +46,7 @@ impl Store {
         Ok(noted as u64)
     }
 
-    /// Runs that [`Store::prune`] would empty, the oldest first.
+    /// Returns the runs that [`Store::prune`] would empty, oldest first.
     pub fn prunable(&self, closed_before_us: i64) -> Result<Vec<Pruned>> {
         let found = self
             .prunable_rows(closed_before_us)
@@ -55,7 +54,7 @@ impl Store {
         Ok(found.into_iter().map(|(_, run)| run).collect())
     }
 
-    /// Deletes the parts of copied runs that ended before the instant; `each` hears of every run that is done.
+    /// Deletes the parts of copied runs that ended before the instant, and calls `each` after every run.
     pub fn prune(
         &mut self,
         closed_before_us: i64,
@@ -65,7 +64,7 @@ impl Store {
         const DOING: &str = "pruning a run";
         for (id, run) in self.prunable_rows(closed_before_us).doing(DOING)? {
             let transaction = self.transaction(DOING)?;
-            emptied(&transaction, id, now_us).doing(DOING)?;
+            empty_run(&transaction, id, now_us).doing(DOING)?;
             transaction.commit().doing(DOING)?;
             each(&run);
         }
@@ -92,7 +91,7 @@ impl Store {
     }
 }
 
-/// What goes of a run, rows that point elsewhere first.
+/// Statements that empty a run, referring tables first.
 pub(super) const EMPTYING: [&str; 8] = [
     "DELETE FROM series WHERE run_id = ?1",
     "DELETE FROM curve WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
@@ -104,7 +103,7 @@ pub(super) const EMPTYING: [&str; 8] = [
     "DELETE FROM alarm WHERE run_id = ?1",
 ];
 
-fn emptied(transaction: &Transaction<'_>, run: i64, now_us: i64) -> rusqlite::Result<()> {
+fn empty_run(transaction: &Transaction<'_>, run: i64, now_us: i64) -> rusqlite::Result<()> {
     for sql in EMPTYING {
         transaction.execute(sql, [run])?;
     }

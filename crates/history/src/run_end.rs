@@ -1,23 +1,23 @@
-//! How a run ended, and the cause when it ended in trouble.
+//! End of a run, with its cause when trouble ended it.
 
 use super::error::{Doing, Result};
-use super::store::Known;
+use super::store::RowIds;
 use machine::station::wants::Ending;
 use rusqlite::{Transaction, params};
 
 /// The end of the open run of a lot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RunEndRecord {
-    /// The lot.
+    /// Name of the lot.
     pub lot: String,
-    /// How it ended.
+    /// Kind of end.
     pub ended: Ending,
-    /// Code and English text of the trouble; none of a run that ended without.
+    /// Code and English text of the trouble that ended the run, if any.
     pub cause: Option<(String, String)>,
 }
 
-/// Keeps the end of a run; the last one counts.
-pub(super) fn insert(tx: &Transaction<'_>, known: &Known, it: &RunEndRecord) -> Result<()> {
+/// Stores the end of a run; a later one replaces it.
+pub(super) fn insert(tx: &Transaction<'_>, known: &RowIds, it: &RunEndRecord) -> Result<()> {
     assert!(
         it.cause.is_none() || it.ended == Ending::Alarm,
         "trouble of a run that ended well"

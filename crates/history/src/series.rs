@@ -1,18 +1,17 @@
-//! Values of closed runs side by side: what statistics over many runs read instead of an entry a value.
+//! Packed values of closed runs, for statistics over many runs.
 //!
-//! A closed run does not change. When it is closed, the counted values of its production parts are packed, a blob a
-//! parameter: 8 bytes a value against the 31 of its entry in the index, and nothing to be decoded row by row. They are
-//! taken for a filter that asks for nothing but runs; for a run that was never closed, and for every other filter, the
-//! index of values is read. Either way gives the same values in the same order.
+//! Closing a run packs the counted values of its production parts into a blob per parameter: 8 bytes a value instead of the
+//! 31 of its index entry, and no decoding row by row. Filters that select whole runs read the blobs; other filters, and runs
+//! that were never closed, read the index. Both ways give the same values in the same order.
 
 use super::{Archive, Filter};
 use rusqlite::{Connection, OptionalExtension, params, params_from_iter};
 
-/// Parts and counted values of one parameter in one run, in no order.
+/// Selects parts and counted values of a parameter in one run, unordered.
 pub(super) const OF_RUN: &str = "SELECT part_id, value FROM measurement
     WHERE parameter_id = ?1 AND population = 'lot' AND run_id = ?2
       AND part_verdict IN ('pass', 'fail', 'void', 'unjudged')";
-/// The same, packed.
+/// Selects the packed values of a parameter in one run.
 pub(super) const PACKED: &str = "SELECT first_part, last_part, packed FROM series
     WHERE run_id = ?2 AND parameter_id = ?1";
 
@@ -23,7 +22,7 @@ struct Piece {
     values: Vec<f64>,
 }
 
-/// Packs every parameter of a run that was just closed.
+/// Packs every parameter of a closed run.
 pub(super) fn pack(connection: &Connection, run: i64) -> rusqlite::Result<()> {
     let parameters: Vec<i64> = connection
         .prepare_cached("SELECT id FROM parameter")?
@@ -45,7 +44,7 @@ pub(super) fn pack(connection: &Connection, run: i64) -> rusqlite::Result<()> {
     Ok(())
 }
 
-/// Packs the runs that were closed before there was this table.
+/// Packs the runs that were closed before this table existed.
 pub(super) fn pack_all(connection: &Connection) -> rusqlite::Result<()> {
     let runs: Vec<i64> = connection
         .prepare("SELECT id FROM run WHERE closed_at_us IS NOT NULL")?
@@ -54,7 +53,7 @@ pub(super) fn pack_all(connection: &Connection) -> rusqlite::Result<()> {
     runs.into_iter().try_for_each(|run| pack(connection, run))
 }
 
-/// From the index; none without a value.
+/// Reads a piece from the index; `None` without a value.
 fn loose(connection: &Connection, parameter: i64, run: i64) -> rusqlite::Result<Option<Piece>> {
     let mut found: Vec<(i64, f64)> = connection
         .prepare_cached(OF_RUN)?
@@ -89,8 +88,8 @@ fn packed(connection: &Connection, parameter: i64, run: i64) -> rusqlite::Result
 }
 
 impl Archive {
-    /// Values of `param` in order of judgement; none when the filter asks for more than runs, or when parts of
-    /// two runs alternate.
+    /// Returns the values of `param` in order of judgement; `None` when the filter selects more finely than by run, or when
+    /// parts of two runs alternate.
     pub(super) fn side_by_side(
         &self,
         param: &str,
@@ -117,7 +116,7 @@ impl Archive {
         Ok(apart.then(|| pieces.into_iter().flat_map(|it| it.values).collect()))
     }
 
-    /// Row numbers of the runs that the filter leaves.
+    /// Returns the row numbers of the selected runs.
     pub(super) fn run_rows(&self, filter: &Filter) -> rusqlite::Result<Vec<i64>> {
         let runs = filter.runs();
         self.connection

@@ -1,7 +1,6 @@
-//! The writer: lots are opened, batches recorded, lots closed.
+//! The writer: opens lots, records batches, closes lots.
 //!
-//! One batch is one transaction and one wait for the disk. The caller decides how large a batch is:
-//! a rig makes about one part a second and records it alone, an import records hundreds at once.
+//! A batch is one transaction and one disk flush. A rig records each part alone, an import hundreds at once.
 
 use super::error::{Doing, HistoryError, Result};
 use super::{
@@ -12,7 +11,7 @@ use rusqlite::{Connection, OptionalExtension, Transaction, TransactionBehavior, 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// Who writes; kept with every run.
+/// Name and version of the writing program, stored with every run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Identity {
     /// Name of the program.
@@ -22,7 +21,7 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// Name and version of the program that is running.
+    /// Returns name and version of this package.
     #[must_use]
     pub fn of_this_program() -> Self {
         Self {
@@ -32,27 +31,26 @@ impl Identity {
     }
 }
 
-/// The one writer of a history file. Blocking: about one disk flush per call.
+/// The writer of a history file. Calls block for about one disk flush.
 #[derive(Debug)]
 pub struct Store {
     connection: Connection,
     path: PathBuf,
     written_by: String,
-    /// Row numbers that the batch inserts need again and again.
-    known: Known,
+    known: RowIds,
 }
 
-/// What the writer need not look up in the file.
+/// Row numbers that need no look-up in the file.
 #[derive(Debug, Default)]
-pub(super) struct Known {
-    /// Open lots and the row of their run.
+pub(super) struct RowIds {
+    /// Row of the open run, by lot.
     pub runs: HashMap<String, i64>,
-    /// Parameter keys and their row.
+    /// Row of a parameter, by key.
     pub parameters: HashMap<String, i64>,
 }
 
-impl Known {
-    /// The run that rows of `lot` belong to.
+impl RowIds {
+    /// Returns the row of the open run of `lot`.
     pub fn run(&self, lot: &str) -> Result<i64> {
         let missing = || HistoryError::LotNotOpen {
             lot: lot.to_owned(),
@@ -62,23 +60,23 @@ impl Known {
 }
 
 impl Store {
-    /// Opens the file, made or migrated when needed. Refuses files of other programs and schemas
+    /// Opens a file; creates a missing one and migrates an older one. Fails for a file of another program and for a schema
     /// newer than [`SCHEMA`](super::SCHEMA).
     pub fn open(path: &Path, identity: &Identity) -> Result<Self> {
         Ok(Self {
             connection: open::writer(path)?,
             path: path.to_owned(),
             written_by: format!("{} {}", identity.program, identity.version),
-            known: Known::default(),
+            known: RowIds::default(),
         })
     }
 
-    /// The file written to.
+    /// Returns the path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Opens a run of the lot and gives its number: 1, or one more than the last time.
+    /// Opens a run of the lot and returns its number within the lot, from 1.
     pub fn begin_lot(&mut self, lot: &LotRecord) -> Result<u32> {
         const DOING: &str = "opening the lot";
         let source = source(lot.simulated);
@@ -92,8 +90,7 @@ impl Store {
         Ok(number)
     }
 
-    /// Opens a run, records `parts` (whose lot and order must be those of `lot`) and closes it again,
-    /// in one transaction: all of a file or nothing. Gives the number of the run.
+    /// Opens a run, records `parts` of the same lot and closes the run, in one transaction. Returns the number of the run.
     pub fn import(&mut self, lot: &LotRecord, parts: Vec<PartRecord>) -> Result<u32> {
         const DOING: &str = "importing";
         let own = parts.iter().all(|part| part.lot == lot.lot);
@@ -107,7 +104,7 @@ impl Store {
             .transaction_with_behavior(TransactionBehavior::Immediate)
             .doing(DOING)?;
         let (run, number) = insert::run(&transaction, lot, "import", written_by).doing(DOING)?;
-        let mut known = Known::default();
+        let mut known = RowIds::default();
         known.runs.insert(lot.lot.clone(), run);
         for part in &parts {
             insert::part(&transaction, &mut known, part)?;
@@ -123,7 +120,7 @@ impl Store {
         Ok(number)
     }
 
-    /// The calibration that the open run of the lot measures by from now on.
+    /// Stores the hash of the calibration that the open run of the lot uses from now on.
     pub fn calibrated(&mut self, lot: &str, hash: &str) -> Result<()> {
         let run = self.known.run(lot)?;
         let changed = self
@@ -137,7 +134,7 @@ impl Store {
         Ok(())
     }
 
-    /// Ends the run of the lot; rows for it are refused from now on.
+    /// Closes the run of the lot; later rows for it are refused.
     pub fn close_lot(&mut self, lot: &str, at_us: i64) -> Result<()> {
         const PACKING: &str = "packing the values of a closed lot";
         let run = self.known.run(lot)?;
@@ -151,16 +148,16 @@ impl Store {
         assert_eq!(changed, 1, "an open run without its row");
         self.known.runs.remove(lot);
         assert!(self.known.run(lot).is_err(), "a closed run gets rows");
-        // It is closed whatever becomes of this: without it statistics read the index.
+        // The run stays closed when packing fails: statistics then read the index.
         let transaction = self.transaction(PACKING)?;
         series::pack(&transaction, run).doing(PACKING)?;
         transaction.commit().doing(PACKING)
     }
 
-    /// Writes a batch in one transaction: all of it, or on any error nothing.
+    /// Writes a batch in one transaction; on an error nothing of it is written.
     ///
-    /// A part or landing that is already there word for word is passed over, so a batch of unknown
-    /// fate may be sent again; one that contradicts its row is refused.
+    /// A part or landing that equals its row is skipped, so that a batch of unknown fate can be sent again; one that differs
+    /// is refused.
     pub fn record(&mut self, rows: &[Row]) -> Result<()> {
         const DOING: &str = "recording";
         let Self {
@@ -180,7 +177,7 @@ impl Store {
         written
     }
 
-    /// The beam of `bin` saw production part `seq`.
+    /// Records that the beam of `bin` confirmed production part `seq`.
     pub fn landed(
         &mut self,
         lot: &str,
@@ -199,12 +196,12 @@ impl Store {
         })])
     }
 
-    /// An alarm came; the same one with `cleared_at_us` set: it went.
+    /// Records an alarm, or with `cleared_at_us` that it was cleared.
     pub fn alarm(&mut self, alarm: &AlarmRecord) -> Result<()> {
         self.record(&[Row::Alarm(alarm.clone())])
     }
 
-    /// Keeps a calibration; the same one again only updates whether it was verified.
+    /// Stores a calibration; for one that exists only updates `verified`.
     pub fn save_calibration(&mut self, calibration: &CalibrationRecord) -> Result<()> {
         let CalibrationRecord {
             made_at_us,
@@ -226,8 +223,7 @@ impl Store {
         Ok(())
     }
 
-    /// The calibration made last for one coil voltage, of the simulated rig or of the rig, whether or not it is
-    /// still valid.
+    /// Returns the newest calibration of a rig for one coil voltage, expired or not.
     pub fn latest_calibration_of(
         &self,
         simulated: bool,
@@ -256,12 +252,12 @@ impl Store {
     }
 }
 
-/// Of the rig or of the simulated one, as rows say it.
+/// Returns the value of the column `source`.
 pub(super) const fn source(simulated: bool) -> &'static str {
     if simulated { "simulated" } else { "rig" }
 }
 
-fn write(transaction: &Transaction<'_>, known: &mut Known, rows: &[Row]) -> Result<()> {
+fn write(transaction: &Transaction<'_>, known: &mut RowIds, rows: &[Row]) -> Result<()> {
     rows.iter().try_for_each(|row| match row {
         Row::Part(part) => insert::part(transaction, known, part),
         Row::Interrupted(it) => landing::interrupted(transaction, known, it),
@@ -272,7 +268,7 @@ fn write(transaction: &Transaction<'_>, known: &mut Known, rows: &[Row]) -> Resu
         Row::LotState(it) => gates::state(transaction, it)
             .map(|_| ())
             .doing("recording the state of a lot"),
-        Row::ReferenceCheck(it) => gates::golden_check(transaction, known, it),
+        Row::ReferenceCheck(it) => gates::reference_check(transaction, known, it),
         Row::Order(it) => orders::insert(transaction, known, it),
         Row::Wear(it) => wear::add(transaction, it),
         Row::Inside(it) => inside::keep(transaction, it),
@@ -291,19 +287,19 @@ pub(super) fn calibration(row: &rusqlite::Row<'_>) -> rusqlite::Result<Calibrati
 
 #[cfg(test)]
 impl Store {
-    /// Gives up at once on a locked file.
+    /// Fails at once on a locked file.
     pub(super) fn impatient(&self) {
         self.connection
             .busy_timeout(std::time::Duration::ZERO)
             .expect("a time-out can be set");
     }
-    /// The file may not be written any more.
+    /// Makes every later write fail.
     pub(super) fn read_only(&self) {
         self.connection
             .pragma_update(None, "query_only", true)
             .expect("a file can be kept from being written");
     }
-    /// The file may not grow any more.
+    /// Makes every write fail that would enlarge the file.
     pub(super) fn no_more_pages(&self) {
         let pages: i64 = self
             .connection
@@ -313,7 +309,7 @@ impl Store {
             .pragma_update_and_check(None, "max_page_count", pages, |_| Ok(()))
             .expect("a file can be kept from growing");
     }
-    /// A pragma as text.
+    /// Returns a pragma as text.
     pub(super) fn pragma(&self, name: &str) -> String {
         let read = |row: &rusqlite::Row<'_>| row.get::<_, rusqlite::types::Value>(0);
         match self.connection.pragma_query_value(None, name, read) {
@@ -322,7 +318,7 @@ impl Store {
             other => format!("{other:?}"),
         }
     }
-    /// Writes in a transaction that is never committed, and goes away.
+    /// Writes in a transaction that is never committed, and closes the file.
     pub(super) fn begin_and_forget(self) {
         self.connection
             .execute_batch("BEGIN IMMEDIATE; UPDATE part SET verdict = 'void'; DELETE FROM sample;")

@@ -1,5 +1,5 @@
-//! The values of one parameter in order of judgement, and the limits they were judged by: what the
-//! statistics need, read from the packed values of whole runs or else from the index of values alone.
+//! Values of one parameter in order of judgement, with their limits: the input of the statistics. They come from the packed
+//! values of closed runs, or else from the index of values.
 
 use super::error::{Doing, Result};
 use super::{Archive, Filter};
@@ -8,16 +8,16 @@ use rusqlite::{OptionalExtension, params, params_from_iter};
 /// Values of one parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Values {
-    /// Finite, in order of judgement (of the file, on import).
+    /// Finite values in order of judgement; of an import, in order of the file.
     pub values: Vec<f64>,
     /// Limits in force.
     pub limits: LimitsSeen,
 }
 
-/// Limits found on the runs that the values come from.
+/// Limits of the runs that the values come from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LimitsSeen {
-    /// No run had any.
+    /// No run has a limit.
     None,
     /// All runs agree.
     Same {
@@ -26,19 +26,18 @@ pub enum LimitsSeen {
         /// Upper limit.
         high: Option<f64>,
     },
-    /// Runs differ, so that a capability over all of them means nothing.
+    /// Runs have different limits, so that a capability over all of them has no meaning.
     Differ,
 }
 
-/// Limits of one run.
+/// Selects the limits of a parameter in one run.
 pub(super) const LIMITS: &str = "SELECT low, high FROM measurement
     WHERE parameter_id = (SELECT id FROM parameter WHERE key = ?1)
       AND population = 'lot' AND run_id = ?2 LIMIT 1";
 
 impl Archive {
-    /// Values of `param` on the parts that the filter leaves. Superseded attempts, values that
-    /// could not be judged and (unless asked for) golden parts do not count. The filter's `limit`
-    /// and `offset` count values in order of judgement.
+    /// Returns the values of `param` of the selected parts, without superseded attempts and values that could not be judged.
+    /// `limit` and `offset` of the filter count values.
     pub fn values(&self, param: &str, filter: &Filter) -> Result<Values> {
         let values = self.series(param, filter).doing("reading values")?;
         let limits = self.limits(param, filter).doing("reading limits")?;
@@ -67,7 +66,7 @@ impl Archive {
         Ok(in_order(found).collect())
     }
 
-    /// A recipe is frozen during a run, so one measurement speaks for all of its run.
+    /// Reads one measurement of each run: the recipe does not change within a run.
     fn limits(&self, param: &str, filter: &Filter) -> rusqlite::Result<LimitsSeen> {
         let mut one = self.connection.prepare_cached(LIMITS)?;
         let mut seen: Option<(Option<f64>, Option<f64>)> = None;
@@ -86,11 +85,11 @@ impl Archive {
     }
 }
 
-/// So many places may stay empty for each value that is placed by its part.
+/// Highest ratio of empty places to values for placing by row number.
 const EMPTY: usize = 3;
 
-/// Values by the row number of their part, which grows in order of judgement. Row numbers have few gaps, so
-/// that a value is put in its place at once; only where they are far apart they are sorted.
+/// Orders values by the row number of their part, which grows with judgement. Places each value directly while row numbers
+/// have few gaps, else sorts.
 fn in_order(mut found: Vec<(i64, f64)>) -> Box<dyn Iterator<Item = f64>> {
     let parts = found.iter().map(|&(part, _)| part);
     let (Some(first), Some(last)) = (parts.clone().min(), parts.max()) else {
@@ -105,7 +104,7 @@ fn in_order(mut found: Vec<(i64, f64)>) -> Box<dyn Iterator<Item = f64>> {
     for (part, value) in found {
         placed[part.abs_diff(first) as usize] = value;
     }
-    // Only finite values have a place in the index.
+    // The index holds finite values only.
     Box::new(placed.into_iter().filter(|value| !value.is_nan()))
 }
 

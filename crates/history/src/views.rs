@@ -1,7 +1,7 @@
-//! Views for those who open the file by hand: plural names, local time, one column per parameter.
+//! Views for people who open the file with other tools: plural names, local time, one column per parameter.
 //!
-//! They are derived, never part of a migration: rebuilt after each migration and whenever a
-//! parameter is seen for the first time, so that `parts` has its column.
+//! Views are no part of a migration: they are rebuilt after each migration, and for every new parameter, which gets a column
+//! in `parts`.
 
 use rusqlite::Connection;
 
@@ -56,7 +56,7 @@ CREATE VIEW alarms AS
 DROP VIEW IF EXISTS parts;
 ";
 
-/// Makes all views anew; called inside a write transaction.
+/// Rebuilds all views; the caller holds a write transaction.
 pub(super) fn rebuild(connection: &Connection) -> rusqlite::Result<()> {
     connection.execute_batch(FIXED)?;
     let parameters: Vec<(i64, String)> = connection
@@ -66,7 +66,7 @@ pub(super) fn rebuild(connection: &Connection) -> rusqlite::Result<()> {
     connection.execute_batch(&parts(&parameters))
 }
 
-/// The last attempt of each parameter as a column of its own.
+/// Returns the view `parts`, with the last attempt of each parameter as a column.
 fn parts(parameters: &[(i64, String)]) -> String {
     let columns: String = parameters
         .iter()

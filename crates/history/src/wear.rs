@@ -1,4 +1,4 @@
-//! How often what wears was used since it was replaced.
+//! Counters of uses since the last replacement of wearing parts.
 
 use super::error::{Doing, Result};
 use super::store::source;
@@ -6,27 +6,27 @@ use super::{Archive, Moment, Store};
 use rusqlite::{Connection, Transaction, params};
 use serde::Serialize;
 
-/// So many uses more.
+/// Further uses of a wearing part.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WearRecord {
-    /// Of the simulated rig.
+    /// True on the simulated rig.
     pub simulated: bool,
-    /// What wears.
+    /// Name of the counter.
     pub name: String,
-    /// Uses since the record before.
+    /// Uses since the previous record, at least 1.
     pub more: u64,
 }
 
-/// A counter.
+/// A counter of uses.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Wear {
-    /// What wears.
+    /// Name of the counter.
     pub name: String,
-    /// Uses since it was replaced.
+    /// Uses since the last replacement.
     pub count: u64,
-    /// When it was replaced last.
+    /// Time of the last replacement.
     pub replaced: Option<Moment>,
-    /// Who did it.
+    /// Person who replaced it.
     pub replaced_by: Option<String>,
 }
 
@@ -64,19 +64,19 @@ fn read(connection: &Connection, simulated: bool) -> Result<Vec<Wear>> {
 }
 
 impl Archive {
-    /// Every counter of the rig or of the simulated one.
+    /// Returns all counters of a rig.
     pub fn wear(&self, simulated: bool) -> Result<Vec<Wear>> {
         read(&self.connection, simulated)
     }
 }
 
 impl Store {
-    /// Every counter of the rig or of the simulated one.
+    /// Returns all counters of a rig.
     pub fn wear(&self, simulated: bool) -> Result<Vec<Wear>> {
         read(self.connection(), simulated)
     }
 
-    /// `name` was replaced: its counter begins anew. False when it has none.
+    /// Sets the counter `name` to 0 after a replacement. Returns false when there is no such counter.
     pub fn replaced(&mut self, simulated: bool, name: &str, by: &str, at_us: i64) -> Result<bool> {
         self.connection()
             .execute(

@@ -1,7 +1,7 @@
 //! `/api/history/...`: the command `history` over HTTP, with the same filter in the query string.
 //!
 //! The filter is [`Filter`]: `lot`, `run`, `recipe`, `since`, `until` (RFC 3339), `verdict`, `bin`, `kind`
-//! (`lot` when absent, `golden`, `all`), `param`, `min`, `max`, and of an ordered answer the page: `limit`,
+//! (`lot` when absent, `golden`, `all`), `suspect`, `param`, `min`, `max`, and of an ordered answer the page: `limit`,
 //! `offset`.
 //!
 //! | route | members of the filter | others | answer |
@@ -47,7 +47,7 @@ use axum::response::{IntoResponse, Response};
 use history::inquiry::charts::{Charted, charts};
 use history::inquiry::figures::{Classes, figures, histogram};
 use history::inquiry::{InquiryError, checks};
-use history::{Alarm, Archive, Filter, LotSummary, Moment, Ordered, Part, Yield};
+use history::{Alarm, Archive, Filter, LotSummary, Moment, OrderEntry, Part, Yield};
 use quality::Summary;
 use quality::rules::Rules;
 pub(super) use readers::Readers;
@@ -66,7 +66,7 @@ pub(super) async fn query(
     filter: Filtered,
 ) -> Result<Response, HmiError> {
     let Query(filter) = filter?;
-    checks::sensible(&filter)?;
+    checks::validate(&filter)?;
     let (archive, place) = desk.readers.open().await?;
     let param = filter.param.clone();
     let known = move || checks::parameters(&archive, param.as_deref()).map(|_| archive);
@@ -84,7 +84,7 @@ pub(super) async fn count(
     filter: Filtered,
 ) -> Result<Json<Value>, HmiError> {
     let Query(filter) = filter?;
-    checks::sensible(&filter)?;
+    checks::validate(&filter)?;
     if filter.limit.is_some() || filter.offset.is_some() {
         return Err(InquiryError::member("limit, offset", "`count` is about all pages").into());
     }
@@ -182,7 +182,7 @@ pub(super) async fn spc(
     uri: Uri,
 ) -> Result<Json<Vec<Charted>>, HmiError> {
     let (filter, how) = asked::<Charting>(&uri)?;
-    checks::sensible(&filter)?;
+    checks::validate(&filter)?;
     if how.lang.is_some() {
         return Err(InquiryError::member("lang", "`spc` has no words, `report/chart` has").into());
     }
@@ -209,7 +209,7 @@ pub(super) async fn alarms(
 pub(super) async fn orders(
     State(desk): State<Desk>,
     uri: Uri,
-) -> Result<Json<Vec<Ordered>>, HmiError> {
+) -> Result<Json<Vec<OrderEntry>>, HmiError> {
     let (filter, Audited { who }) = asked(&uri)?;
     checks::only(&filter, "orders", OF_ALARMS)?;
     let read = move |archive: &Archive| Ok(archive.orders(&filter, who.as_deref())?);
@@ -217,7 +217,7 @@ pub(super) async fn orders(
 }
 
 fn of_one_parameter(mut filter: Filter, route: &str) -> Result<(String, Filter), HmiError> {
-    checks::sensible(&filter)?;
+    checks::validate(&filter)?;
     if filter.min.is_some() || filter.max.is_some() {
         let reason = format!("`{route}` is about all values, not a range of them");
         return Err(InquiryError::member("min, max", reason).into());

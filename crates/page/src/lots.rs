@@ -13,7 +13,7 @@ use super::router::Desk;
 use axum::Json;
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Query, State};
-use history::{Archive, Decision, LotLine, LotState, Wear};
+use history::{Archive, Decision, LotEntry, LotState, Wear};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use texts::Message;
@@ -27,7 +27,7 @@ const MOST: u32 = 200;
 #[derive(Debug, Serialize)]
 pub(super) struct Listed {
     #[serde(flatten)]
-    line: LotLine,
+    line: LotEntry,
     why_not: BTreeMap<&'static str, Option<Message>>,
 }
 

@@ -1,4 +1,4 @@
-//! The two files, parsed once.
+//! The two catalogues, parsed once.
 
 use crate::Lang;
 use fluent_bundle::concurrent::FluentBundle;
@@ -21,18 +21,18 @@ static ZH_BUNDLE: LazyLock<Bundle> = LazyLock::new(|| bundle("zh-CN", &ZH));
 /// A text without arguments in both languages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Plain {
-    /// Family and code.
+    /// Id: family and code.
     pub id: &'static str,
-    /// English.
+    /// English text.
     pub en: &'static str,
-    /// Simplified Chinese.
+    /// Chinese text.
     pub zh: &'static str,
 }
 
 fn parsed(text: &str) -> FluentResource {
     match FluentResource::try_new(text.to_owned()) {
         Ok(resource) => resource,
-        Err((_, errors)) => panic!("a catalogue is no Fluent: {errors:?}"),
+        Err((_, errors)) => panic!("a catalogue is not valid Fluent: {errors:?}"),
     }
 }
 
@@ -41,7 +41,7 @@ fn bundle(tag: &str, resource: &'static FluentResource) -> Bundle {
     let mut bundle = Bundle::new_concurrent(vec![locale]);
     bundle.set_use_isolating(false);
     let added = bundle.add_resource(resource);
-    assert!(added.is_ok(), "an id stands twice: {added:?}");
+    assert!(added.is_ok(), "an id appears twice: {added:?}");
     bundle
 }
 
@@ -59,7 +59,7 @@ fn of(lang: Lang) -> &'static Bundle {
     }
 }
 
-/// Whether both files know the text.
+/// Returns true when the catalogues have the text; a test keeps their ids equal.
 pub(crate) fn has(id: &str) -> bool {
     EN_BUNDLE.has_message(id)
 }
@@ -84,14 +84,14 @@ pub(crate) fn plain_text(lang: Lang, id: &str, attribute: Option<&str>) -> &'sta
     found.unwrap_or_default()
 }
 
-/// The pattern with its arguments; none when an argument is missing.
+/// Fills in the arguments; `None` when one is missing.
 pub(crate) fn filled(lang: Lang, pattern: &'static Text, args: &FluentArgs<'_>) -> Option<String> {
     let mut errors = Vec::new();
     let text = of(lang).format_pattern(pattern, Some(args), &mut errors);
     errors.is_empty().then(|| text.into_owned())
 }
 
-/// Ids of every text, in the order of the file.
+/// Returns all ids in the order of the file.
 pub fn ids(lang: Lang) -> impl Iterator<Item = &'static str> {
     resource(lang).entries().filter_map(|entry| match entry {
         Entry::Message(message) => Some(message.id.name),
@@ -99,14 +99,14 @@ pub fn ids(lang: Lang) -> impl Iterator<Item = &'static str> {
     })
 }
 
-/// Names of the attributes of a text.
+/// Returns the names of the attributes of a text.
 pub fn attributes(lang: Lang, id: &str) -> BTreeSet<&'static str> {
     let message = of(lang).get_message(id);
     let all = message.iter().flat_map(|it| it.attributes());
     all.map(|it| it.id()).collect()
 }
 
-/// Names of the arguments of a text, or of an attribute of it; none where there is no such text.
+/// Returns the names of the arguments of a text or attribute; `None` when it does not exist.
 pub fn arguments(lang: Lang, id: &str, attribute: Option<&str>) -> Option<BTreeSet<&'static str>> {
     let elements = pattern(lang, id, attribute)?.elements.iter();
     let name = |element: &PatternElement<&'static str>| match element {
@@ -118,7 +118,7 @@ pub fn arguments(lang: Lang, id: &str, attribute: Option<&str>) -> Option<BTreeS
     Some(elements.filter_map(name).collect())
 }
 
-/// Every text without arguments, in the order of the English file.
+/// Returns every text without arguments, in the order of the English file.
 pub fn plain() -> impl Iterator<Item = Plain> {
     let without = |id: &&str| arguments(Lang::En, id, None).is_some_and(|it| it.is_empty());
     ids(Lang::En).filter(without).map(|id| Plain {

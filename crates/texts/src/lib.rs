@@ -1,12 +1,12 @@
-//! Every text that a person reads on the page, on paper and in answers, in English and Chinese.
+//! Texts of the page, of paper and of answers, in English and Chinese.
 //!
-//! `locale/en.ftl` and `locale/zh.ftl` hold the texts in Fluent: literals and `{ $argument }` only. The id of a text is its
-//! family and its code, `alarm-door_open`; what belongs to a text stands in its attributes (`.cause`, `.action`). An id,
-//! attribute or argument that is missing is a mistake of this program: an assertion fails.
+//! `locale/en.ftl` and `locale/zh.ftl` hold the texts in Fluent: literals and `{ $argument }` only. The id of a text is
+//! family and code, `alarm-door_open`; attributes (`.cause`, `.action`) hold further texts of the same code. A missing id,
+//! attribute or argument is a bug and fails an assertion.
 //!
 //! ```
 //! use texts::{Lang, Message};
-//! assert_eq!(Lang::Zh.text("bin-coil"), "线圈");
+//! assert_eq!(Lang::Zh.text("bin-coil"), "线圈不良箱");
 //! let full = Message::new("alarm", "bin_full").with("bin", "coil");
 //! assert!(full.say(Lang::En).starts_with("The beam of bin coil stays dark."));
 //! ```
@@ -30,10 +30,10 @@ pub enum Lang {
 }
 
 impl Lang {
-    /// Every language.
+    /// All languages.
     pub const ALL: [Self; 2] = [Self::En, Self::Zh];
 
-    /// Tag for the `lang` of a page.
+    /// Returns the value of the HTML attribute `lang`.
     pub const fn tag(self) -> &'static str {
         match self {
             Self::En => "en",
@@ -41,18 +41,18 @@ impl Lang {
         }
     }
 
-    /// The text `id`, which has no arguments.
+    /// Returns the text `id`, which must have no arguments.
     pub fn text(self, id: &str) -> &'static str {
         catalogue::plain_text(self, id, None)
     }
 
-    /// The attribute of the text `id`, without arguments.
+    /// Returns an attribute of the text `id`, which must have no arguments.
     pub fn attribute(self, id: &str, attribute: &str) -> &'static str {
         catalogue::plain_text(self, id, Some(attribute))
     }
 
-    /// The name of `code` in its family. A code that the catalogue does not know keeps its own name: a bin that a plant has
-    /// named, a key of a file of another system.
+    /// Returns the name of `code` in its family, or `code` itself when the catalogue lacks it: bins and parameter keys can be
+    /// named by the plant.
     pub fn name<'a>(self, family: &str, code: &'a str) -> &'a str {
         let id = format!("{family}-{code}");
         if catalogue::has(&id) {

@@ -1,4 +1,4 @@
-//! A code with its arguments: what a text is made of, and what programs compare.
+//! Messages: codes with arguments, which programs compare and a catalogue turns into text.
 
 use crate::catalogue::Text as Pattern;
 use crate::{Lang, catalogue};
@@ -8,15 +8,18 @@ use serde::{Deserialize, Serialize, Serializer};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-/// Arguments by name. Those that [`NAMES`] lists are codes, said by the text of their own family.
+/// Arguments by name. Values of the names in [`NAMES`] are codes, which a text of their own family replaces.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Args(BTreeMap<Cow<'static, str>, String>);
 
-/// Arguments that name a thing of the catalogue: `bin` = `coil` is said as `bin-coil`, `needed_role` by the family `role`.
-const NAMES: [&str; 8] = [
+/// Arguments whose values are codes: `bin` = `coil` becomes the text `bin-coil`, `needed_role` uses the family `role`.
+const NAMES: [&str; 11] = [
     "alarm",
     "bin",
+    "characteristic",
+    "fault",
+    "interruption",
     "place",
     "motion",
     "side",
@@ -25,10 +28,10 @@ const NAMES: [&str; 8] = [
     "needed_role",
 ];
 
-/// The argument that chooses one of several texts of a code: the attribute of this name.
+/// Argument whose value names the attribute that replaces the text of a code.
 const CASE: &str = "case";
 
-/// A text with its arguments, in no language yet. Programs get it as `{"code", "args", "en", "zh"}`.
+/// A code with arguments, independent of language. It serialises as `{"code", "args", "en", "zh"}`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Message {
     family: &'static str,
@@ -37,22 +40,22 @@ pub struct Message {
 }
 
 impl Args {
-    /// The argument of this name.
+    /// Returns the argument of this name.
     pub fn get(&self, name: &str) -> Option<&str> {
         self.0.get(name).map(String::as_str)
     }
 
-    /// Names, in order.
+    /// Returns the names in alphabetical order.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.0.keys().map(AsRef::as_ref)
     }
 
-    /// Whether there are none.
+    /// Returns true without arguments.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// These and one more.
+    /// Adds an argument.
     #[must_use]
     pub fn with(mut self, name: &'static str, value: impl ToString) -> Self {
         self.0.insert(name.into(), value.to_string());
@@ -70,7 +73,7 @@ impl Args {
             .collect()
     }
 
-    /// The text of a thing, which may speak of the other arguments: the way of the axis of a bin, an alarm of all its own.
+    /// Returns the text of a code, which may contain the other arguments: `motion-axis_bin` contains `bin`.
     fn named<'a>(&'a self, lang: Lang, name: &str, code: &'a str) -> Cow<'a, str> {
         let family = name.rsplit('_').next().unwrap_or(name);
         let id = format!("{family}-{code}");
@@ -86,12 +89,12 @@ impl Args {
 }
 
 impl Message {
-    /// The text of a code without arguments yet.
+    /// Makes a message without arguments.
     pub fn new(family: &'static str, code: impl Into<Cow<'static, str>>) -> Self {
         Self::of(family, code, Args::default())
     }
 
-    /// The text of a code with these arguments.
+    /// Makes a message with these arguments.
     pub fn of(family: &'static str, code: impl Into<Cow<'static, str>>, args: Args) -> Self {
         Self {
             family,
@@ -100,35 +103,35 @@ impl Message {
         }
     }
 
-    /// With one more argument.
+    /// Adds an argument.
     #[must_use]
     pub fn with(mut self, name: &'static str, value: impl ToString) -> Self {
         self.args = self.args.with(name, value);
         self
     }
 
-    /// The text that the code has for this case.
+    /// Chooses the text of the code for this case.
     #[must_use]
     pub fn case(self, case: &'static str) -> Self {
         self.with(CASE, case)
     }
 
-    /// Code within its family.
+    /// Returns the code, without family.
     pub fn code(&self) -> &str {
         &self.code
     }
 
-    /// Its arguments.
+    /// Returns the arguments.
     pub fn args(&self) -> &Args {
         &self.args
     }
 
-    /// Family and code.
+    /// Returns the id in the catalogue: family and code.
     pub fn id(&self) -> String {
         format!("{}-{}", self.family, self.code)
     }
 
-    /// Its text.
+    /// Returns the text; an assertion fails without one.
     pub fn say(&self, lang: Lang) -> String {
         let said = self.try_say(lang);
         assert!(
@@ -140,18 +143,18 @@ impl Message {
         said.unwrap_or_default()
     }
 
-    /// Its text; none where an argument is missing: it was stored by another version.
+    /// Returns the text; `None` when an argument is missing, as in messages that another version has stored.
     pub fn try_say(&self, lang: Lang) -> Option<String> {
         catalogue::filled(lang, self.pattern(lang)?, &self.args.fluent(lang))
     }
 
-    /// An attribute of its text.
+    /// Returns an attribute of the text, if it has one and no argument is missing.
     pub fn try_attribute(&self, lang: Lang, attribute: &str) -> Option<String> {
         let pattern = catalogue::pattern(lang, &self.id(), Some(attribute))?;
         catalogue::filled(lang, pattern, &self.args.fluent(lang))
     }
 
-    /// A text that speaks of another one carries the case of that one, and has none of its own.
+    /// Falls back to the text without case: a text that contains another one carries the case of the inner one.
     fn pattern(&self, lang: Lang) -> Option<&'static Pattern> {
         let case = catalogue::pattern(lang, &self.id(), self.args.get(CASE));
         case.or_else(|| catalogue::pattern(lang, &self.id(), None))

@@ -109,7 +109,7 @@ mod tests {
     const LOT: &str = "<b>批次\"1\"</b>";
 
     fn part(operate_v: f64) -> Part {
-        let mut part = Part::of_paper(LOT, 7, "pass");
+        let mut part = Part::fixture(LOT, 7, "pass");
         part.values
             .insert("operate_voltage_v".into(), operate_v.into());
         part.serial = Some("=1+1".into());

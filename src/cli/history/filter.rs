@@ -97,7 +97,7 @@ impl PartArgs {
             max: range.max,
             ..self.filter()
         };
-        checks::sensible(&filter)?;
+        checks::validate(&filter)?;
         Ok(filter)
     }
 }

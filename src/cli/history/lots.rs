@@ -46,7 +46,7 @@ pub(super) fn write(lots: &[LotSummary], format: Format, out: &mut Output) -> an
         Format::Csv => {
             csv::write(out, HEADER)?;
             for lot in lots {
-                csv::write(out, cells(lot).iter().map(|cell| csv::harmless(cell)))?;
+                csv::write(out, cells(lot).iter().map(|cell| csv::escape_formula(cell)))?;
             }
         }
         Format::Table => {

@@ -3,7 +3,7 @@
 use super::filter::RunArgs;
 use super::output::{Format, FormatArgs, Output, Table, text};
 use clap::Args;
-use history::{Archive, Filter, Moment, Ordered, csv};
+use history::{Archive, Filter, Moment, OrderEntry, csv};
 use std::io::Write;
 
 #[derive(Debug, Args)]
@@ -41,13 +41,13 @@ pub(super) fn run(archive: &Archive, args: &OrdersArgs) -> anyhow::Result<()> {
     write(&orders, args.format.format(), &mut Output::stdout())
 }
 
-pub(super) fn write(orders: &[Ordered], format: Format, out: &mut Output) -> anyhow::Result<()> {
+pub(super) fn write(orders: &[OrderEntry], format: Format, out: &mut Output) -> anyhow::Result<()> {
     match format {
         Format::Json => orders.iter().try_for_each(|it| out.json(it))?,
         Format::Csv => {
             csv::write(out, HEADER)?;
             for it in orders {
-                csv::write(out, cells(it).iter().map(|cell| csv::harmless(cell)))?;
+                csv::write(out, cells(it).iter().map(|cell| csv::escape_formula(cell)))?;
             }
         }
         Format::Table => {
@@ -59,7 +59,7 @@ pub(super) fn write(orders: &[Ordered], format: Format, out: &mut Output) -> any
     Ok(out.flush()?)
 }
 
-fn cells(it: &Ordered) -> Vec<String> {
+fn cells(it: &OrderEntry) -> Vec<String> {
     vec![
         it.at.to_string(),
         text(it.lot.as_ref()),

@@ -4,7 +4,7 @@ use super::output::{Output, Table};
 use clap::Args;
 use config::load_recipe;
 use history::Archive;
-use history::inquiry::rejudge::{Again, Rejudging};
+use history::inquiry::rejudge::{RejudgedPart, Rejudging};
 use std::io::Write;
 use std::path::Path;
 
@@ -48,7 +48,7 @@ pub(super) fn run(config: &Path, archive: &Archive, args: &RejudgeArgs) -> anyho
     Ok(out.flush()?)
 }
 
-fn cells(part: Again) -> Vec<String> {
+fn cells(part: RejudgedPart) -> Vec<String> {
     vec![
         part.run.to_string(),
         part.seq.to_string(),

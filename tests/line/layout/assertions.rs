@@ -1,8 +1,8 @@
-//! How densely the modules around the machine say what would be our own mistake.
+//! Density of assertions in the modules around the machine.
 
 use super::tree::{Source, assert_none, rust_files};
 
-/// Module and the assertions it holds at least, per 1000 lines of code outside tests.
+/// Modules with their least number of assertions per 1000 lines of code outside tests.
 const LEAST: [(&str, usize); 5] = [
     ("station", 8),
     ("handling", 8),
@@ -11,7 +11,7 @@ const LEAST: [(&str, usize); 5] = [
     ("history", 8),
 ];
 
-/// At the beginning of a line of code.
+/// Beginnings of lines with an assertion.
 const ASSERTIONS: [&str; 6] = [
     "assert!(",
     "assert_eq!(",
@@ -21,7 +21,7 @@ const ASSERTIONS: [&str; 6] = [
     "debug_assert_ne!(",
 ];
 
-/// Lines of code in front of the tests of a file, and the assertions among them.
+/// Counts lines of code before the tests of a file, and assertions among them.
 fn counted(source: &Source) -> (usize, usize) {
     let outside = source
         .code()
@@ -34,7 +34,7 @@ fn counted(source: &Source) -> (usize, usize) {
 }
 
 #[test]
-fn the_modules_around_the_machine_assert_what_they_rely_on() {
+fn modules_around_the_machine_have_assertions() {
     let sources = rust_files(&["src", "crates"]);
     let mut broken = Vec::new();
     for (module, least) in LEAST {

@@ -1,4 +1,4 @@
-//! The documents speak of things that exist (paths, tests, links, commands), and stay short enough to be read.
+//! Paths, tests, links and commands in documents exist, and documents keep their length limits.
 
 mod markdown;
 
@@ -6,7 +6,7 @@ use super::tree::{Source, assert_none, root, rust_files};
 use markdown::quoted;
 use std::fs;
 
-/// Documents of a bounded length: bytes, of the Chinese one characters. One page each, for one reader.
+/// Documents with their longest length: bytes, characters for the Chinese one.
 const BOUNDED: &[(&str, usize)] = &[
     ("README.md", 6144),
     ("ARCHITECTURE.md", 10_240),
@@ -19,7 +19,7 @@ const BOUNDED: &[(&str, usize)] = &[
     ("docs/limits.md", 6144),
 ];
 
-/// Documents that are as long as what they list.
+/// Documents without a length limit.
 const UNBOUNDED: &[&str] = &[
     "CHANGELOG.md",
     "config/README.md",
@@ -30,12 +30,12 @@ const UNBOUNDED: &[&str] = &[
 /// Longest table cell, words.
 const CELL: usize = 25;
 
-/// Folders in which a quoted path must lie to be taken for one.
+/// Folders by which a quoted text is recognised as a path.
 const ROOTS: &[&str] = &[
     "src/", "crates/", "sim/", "config/", "tests/", ".ci/", "docs/",
 ];
 
-/// The documents as they are; one that is not written yet is left out.
+/// Reads the existing documents.
 pub fn documents() -> Vec<Source> {
     let names = BOUNDED.iter().map(|(name, _)| name);
     let written = names
@@ -48,7 +48,7 @@ pub fn documents() -> Vec<Source> {
     written.map(read).collect()
 }
 
-/// Documents whose sentences people write: no list of keys or changes.
+/// Returns documents of sentences, without lists of keys or changes.
 fn bounded() -> impl Iterator<Item = (Source, usize)> {
     documents().into_iter().filter_map(|document| {
         let (_, most) = BOUNDED.iter().find(|(name, _)| *name == document.path)?;
@@ -119,7 +119,7 @@ fn resolves(document: &Source, target: &str) -> bool {
     path.exists() && (anchor.is_empty() || has_anchor())
 }
 
-/// The program reads the words and then is asked for help, so that nothing runs.
+/// Checks that the program accepts the words, with `--help` so that nothing runs.
 #[cfg(feature = "sim")]
 #[test]
 fn every_command_line_in_the_documents_parses() {
@@ -202,7 +202,7 @@ fn the_readme_names_the_command_that_the_checks_run() {
     );
 }
 
-/// `crates/machine/src/handling/{feed,nest}.rs` is two paths; NAME and * stand for any name: then the folder must exist.
+/// Expands `handling/{feed,nest}.rs` to two paths. For NAME and * only the folder must exist.
 fn paths(quoted: &str) -> Vec<String> {
     if !ROOTS.iter().any(|start| quoted.starts_with(start)) || quoted.contains(char::is_whitespace)
     {

@@ -1,9 +1,8 @@
-//! Who may import whom. Cargo holds the crates apart; what the manifests must not say stands here, and the order of the
-//! modules inside `machine`.
+//! Allowed imports: dependencies that manifests must not have, and the order of the modules inside `machine`.
 
 use super::tree::{Source, assert_none, files, has_word, rust_files};
 
-/// Crates that a caller uses without a clock, a file, a socket or a thread, and all that they may depend on.
+/// Crates without clock, file, socket or thread, with their allowed dependencies.
 const PURE: &[(&str, &[&str])] = &[
     ("units", &["serde"]),
     ("dcon", &["thiserror"]),
@@ -31,7 +30,7 @@ const PURE: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Module of `machine`, and what it may import besides itself.
+/// Modules of `machine` with their allowed imports.
 const MACHINE: &[(&str, &[&str])] = &[
     ("form", &[]),
     ("gauge", &[]),
@@ -66,7 +65,7 @@ fn a_pure_crate_depends_only_on_pure_crates() {
     assert_none(&broken);
 }
 
-/// Keys of `[dependencies]`.
+/// Returns the keys of `[dependencies]`.
 fn dependencies(manifest: &str) -> Vec<String> {
     let lines = manifest.lines().map(str::trim);
     let inside = lines
@@ -80,7 +79,7 @@ fn dependencies(manifest: &str) -> Vec<String> {
 }
 
 #[test]
-fn a_module_of_the_machine_imports_what_the_table_allows() {
+fn machine_modules_import_only_what_the_table_allows() {
     let mut broken = Vec::new();
     for source in rust_files(&["crates/machine/src"]) {
         let module = source.room().unwrap().to_owned();
@@ -135,10 +134,10 @@ fn the_simulated_rig_and_the_controller_share_no_code() {
     assert_none(&broken);
 }
 
-/// Crates that start the simulated rig.
+/// Crates that may start the simulated rig.
 const SIMULATING: [&str; 2] = ["crates/app/", "crates/studies/"];
 
-/// First path segment after `crate::`, of every import and every path in the code.
+/// Returns the first segment after `crate::` of every import and path.
 fn imports(source: &Source) -> Vec<(usize, String)> {
     let mut found = Vec::new();
     for (line, code) in source.code() {
@@ -165,7 +164,7 @@ fn leading_name(path: &str) -> Option<String> {
     (end > 0).then(|| path[..end].to_owned())
 }
 
-/// A chain of `super::` that climbs to the root and leaves the module by the back door.
+/// Returns chains of `super::` that leave the module through the root.
 fn climbs(source: &Source) -> Vec<(usize, String)> {
     let inside = source.path.strip_prefix("crates/machine/src/");
     let names = inside.unwrap_or(&source.path).split('/').count();

@@ -1,8 +1,8 @@
-//! What belongs to one kind of device stands in its folder: no name of it anywhere else.
+//! Names of one kind of device appear in its folder only.
 
 use super::tree::{Source, assert_none, files};
 
-/// A kind: its folder, and names that only it has.
+/// A kind of device: its folder and its identifiers.
 const KINDS: &[(&str, &[&str])] = &[
     (
         "crates/machine/src/dut/em_relay/",
@@ -34,7 +34,7 @@ const KINDS: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Studies are about the parts of a kind; a released migration is never edited; examples show a question as it is asked.
+/// Exceptions: studies of a kind, released migrations, examples of command lines.
 const ALLOWED: &[&str] = &[
     "src/cli/study.rs",
     "crates/studies/src/",
@@ -43,7 +43,7 @@ const ALLOWED: &[&str] = &[
 ];
 
 #[test]
-fn a_name_of_a_kind_stands_in_its_folder_only() {
+fn names_of_a_kind_stay_in_its_folder() {
     let broken: Vec<String> = sources().iter().flat_map(foreign).collect();
     assert_none(&broken);
 }
@@ -57,7 +57,7 @@ fn sources() -> Vec<Source> {
     all
 }
 
-/// Names of kinds whose folder the file does not lie in.
+/// Returns names of kinds outside whose folder the file lies.
 fn foreign(source: &Source) -> Vec<String> {
     let end = source
         .text
@@ -86,7 +86,7 @@ fn foreign(source: &Source) -> Vec<String> {
 }
 
 #[test]
-fn a_name_in_a_comment_a_test_or_its_own_folder_is_not_foreign() {
+fn comments_tests_and_own_folders_may_name_a_kind() {
     let text = "/// coil_a\nlet a = coil_a;\n\n#[cfg(test)]\nmod tests {\n    let a = coil_a;\n}\n";
     let source = |path: &str| Source {
         path: path.to_owned(),

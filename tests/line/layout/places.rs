@@ -1,9 +1,9 @@
-//! What stands where: the top level, the length of files, their names.
+//! Entries of the top level, length of files, names of files.
 
 use super::tree::{assert_none, files, has_word, root, rust_files};
 use std::process::Command;
 
-/// All that may stand at the top of the repository.
+/// Allowed entries at the top of the repository.
 const TOP: &[&str] = &[
     ".ci",
     ".gitattributes",
@@ -30,19 +30,19 @@ const TOP: &[&str] = &[
     "tests",
 ];
 
-/// Past this a file has a second idea.
+/// Longest file, lines.
 const LONGEST: usize = 500;
 
-/// Tables of cases may be longer, but not without end.
+/// Longest file of test cases, lines.
 const LONGEST_TEST: usize = 900;
 
-/// Names that say nothing about what is inside.
+/// File names that say nothing about the content.
 const EMPTY_NAMES: &[&str] = &[
     "utils", "util", "common", "helpers", "helper", "manager", "misc", "types",
 ];
 
 #[test]
-fn the_top_level_holds_what_it_should_and_nothing_else() {
+fn the_top_level_holds_the_listed_entries_only() {
     let stray: Vec<String> = top_level()
         .into_iter()
         .filter(|name| !TOP.contains(&name.as_str()))
@@ -53,7 +53,7 @@ fn the_top_level_holds_what_it_should_and_nothing_else() {
     );
 }
 
-/// What is under version control; without it, what lies there and is no product of a build or a run.
+/// Lists the files under version control; without git, all files but products of builds and runs.
 fn top_level() -> Vec<String> {
     let git = Command::new("git")
         .args(["ls-files", "-z"])
@@ -135,9 +135,9 @@ fn every_module_says_what_it_is() {
     assert_none(&broken);
 }
 
-/// Nothing of the place where it was written: no path of a home, no note to oneself.
+/// Texts that belong to a private workplace: home paths, notes.
 #[test]
-fn the_text_belongs_to_the_project_and_to_nobodys_desk() {
+fn documents_name_no_private_path_or_person() {
     let homes = ["root", "home", "Users", "work"].map(|home| format!("/{home}/"));
     let notes = [
         concat!("TO", "DO"),

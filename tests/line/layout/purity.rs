@@ -1,8 +1,8 @@
-//! What the pure modules may not name, where `unsafe` may stand, and what no test does; failures have types.
+//! Forbidden names in pure modules, places of `unsafe`, forbidden habits of tests, typed failures.
 
 use super::tree::{assert_none, has_word, rust_files};
 
-/// No clock, no socket, no file, no `async`, no logging.
+/// Names of clocks, sockets, files, `async` and logging.
 const PURE: &[&str] = &[
     "units",
     "form",
@@ -21,7 +21,7 @@ const PURE: &[&str] = &[
     "report",
 ];
 
-/// What only the outer modules may name.
+/// Names that only outer modules may use.
 const OUTSIDE: &[&str] = &[
     "std::fs",
     "std::net",
@@ -41,7 +41,7 @@ const OUTSIDE: &[&str] = &[
     "dbg",
 ];
 
-/// Matches without `_`: a new state of the machine must be thought of everywhere.
+/// Modules whose matches have no `_` arm, so that the compiler finds every place for a new state.
 const TOTAL: &[&str] = &[
     "handling",
     "station",
@@ -53,7 +53,7 @@ const TOTAL: &[&str] = &[
 ];
 
 #[test]
-fn pure_modules_have_no_clock_no_file_no_socket_no_async_and_no_log() {
+fn pure_modules_use_neither_clock_nor_io_nor_async() {
     let mut broken = Vec::new();
     for source in rust_files(&["src", "crates"]) {
         let Some(module) = source.room().filter(|name| PURE.contains(name)) else {
@@ -71,7 +71,7 @@ fn pure_modules_have_no_clock_no_file_no_socket_no_async_and_no_log() {
     assert_none(&broken);
 }
 
-/// The keyword as code uses it; the word may stand in a text.
+/// The keyword as it appears in code, not in texts.
 const UNSAFE: [&str; 6] = ["{", "fn", "impl", "trait", "extern", "("];
 
 #[test]

@@ -1,16 +1,16 @@
-//! Texts that people read stand in the catalogue, none of them in the code.
+//! Texts for people are in the catalogue only.
 
 use super::tree::{Source, assert_none, files, rust_files};
 use std::collections::BTreeSet;
 use texts::Lang;
 
-/// Where texts are looked up.
+/// Folders whose files use texts.
 const USERS: [&str; 3] = ["src", "crates", "config"];
 
-/// Longest text that two sources may have in common by chance, characters.
+/// Longest coincidence between a text and code, characters.
 const CHANCE: usize = 24;
 
-/// Code without its tests, with its lines.
+/// Returns the lines of code before the tests, with numbers.
 fn code(source: &Source) -> impl Iterator<Item = (usize, &str)> {
     let tests = source.text.find("\n#[cfg(test)]\nmod ");
     let last = source.text[..tests.unwrap_or(source.text.len())]
@@ -40,7 +40,7 @@ fn no_chinese_stands_in_the_code() {
 }
 
 #[test]
-fn no_text_of_an_alarm_or_a_refusal_stands_in_the_code() {
+fn no_alarm_or_refusal_text_stands_in_code() {
     let ours = |id: &&str| id.starts_with("alarm-") || id.starts_with("refusal-");
     let spoken: BTreeSet<&str> = texts::plain()
         .filter(|it| ours(&it.id))
@@ -66,13 +66,13 @@ fn no_text_of_an_alarm_or_a_refusal_stands_in_the_code() {
     assert_none(&broken);
 }
 
-/// The states of the outer machine are named by their words in PackML.
+/// Returns the PackML spelling of a state.
 fn capital(code: &str) -> String {
     let (first, rest) = code.split_at(1);
     first.to_uppercase() + rest
 }
 
-/// A text is used where its id stands, or its code behind a family; what an enum or the plant names is data.
+/// A text counts as used where its id or its code appears.
 #[test]
 fn no_text_is_left_without_use() {
     let written: String = files(&USERS)

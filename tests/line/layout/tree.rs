@@ -1,4 +1,4 @@
-//! The source tree as text: files, lines, and lines without their comments.
+//! The source tree: files, lines, lines without comments.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,20 +7,20 @@ use std::path::{Path, PathBuf};
 pub struct Source {
     /// Path from the root of the repository, with `/`.
     pub path: String,
-    /// Everything.
+    /// Whole text.
     pub text: String,
 }
 
 impl Source {
-    /// Lines with their numbers from 1, without comments and without blank ones.
+    /// Returns non-blank lines without comments, with numbers from 1.
     pub fn code(&self) -> impl Iterator<Item = (usize, &str)> {
         let numbered = self.text.lines().enumerate();
         let code = numbered.map(|(index, line)| (index + 1, without_comment(line)));
         code.filter(|(_, line)| !line.trim().is_empty())
     }
 
-    /// The room that a file lies in: its crate, or the module where a crate has several rooms. `gauge` of
-    /// `crates/machine/src/gauge/budget.rs`, `bus` of `crates/bus/src/line.rs`, `cli` of `src/cli/run.rs`.
+    /// Returns crate or module of a file: `gauge` for `crates/machine/src/gauge/budget.rs`, `bus` for
+    /// `crates/bus/src/line.rs`, `cli` for `src/cli/run.rs`.
     pub fn room(&self) -> Option<&str> {
         let Some(inside) = self.path.strip_prefix("crates/") else {
             return first_module(self.path.strip_prefix("src/")?);
@@ -33,7 +33,7 @@ impl Source {
         }
     }
 
-    /// A file of nothing but tests.
+    /// Returns true for a file of tests only.
     pub fn is_test(&self) -> bool {
         let path = self.path.as_str();
         let name = path.rsplit('/').next().unwrap_or(path);
@@ -49,7 +49,7 @@ fn first_module(path: &str) -> Option<&str> {
     Some(first.strip_suffix(".rs").unwrap_or(first))
 }
 
-/// `//` begins a comment unless it stands in a text such as "http://".
+/// Removes a comment; `//` inside a string such as "http://" begins none.
 fn without_comment(line: &str) -> &str {
     if line.trim_start().starts_with("//") {
         return "";
@@ -57,12 +57,12 @@ fn without_comment(line: &str) -> &str {
     line.split_once(" //").map_or(line, |(code, _)| code)
 }
 
-/// The root of the repository.
+/// Returns the root of the repository.
 pub fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Every Rust file under the given folders, in order of path.
+/// Returns every Rust file under the folders, in order of path.
 pub fn rust_files(folders: &[&str]) -> Vec<Source> {
     let mut found = files(folders);
     found.retain(|source| source.path.ends_with(".rs"));
@@ -70,7 +70,7 @@ pub fn rust_files(folders: &[&str]) -> Vec<Source> {
     found
 }
 
-/// Every text file under the given folders, in order of path.
+/// Returns every text file under the folders, in order of path.
 pub fn files(folders: &[&str]) -> Vec<Source> {
     let mut found = Vec::new();
     for folder in folders {
@@ -99,7 +99,7 @@ fn collect(folder: &Path, found: &mut Vec<Source>) {
     }
 }
 
-/// True when `line` holds `word` as a whole word.
+/// Returns true when `line` has `word` as a whole word.
 pub fn has_word(line: &str, word: &str) -> bool {
     let is_part = |c: char| c.is_alphanumeric() || c == '_';
     line.match_indices(word).any(|(at, _)| {
@@ -115,7 +115,7 @@ pub fn assert_none(broken: &[String]) {
 }
 
 #[test]
-fn a_comment_is_no_code_and_an_address_is_no_comment() {
+fn comments_and_addresses_are_told_apart() {
     assert_eq!(without_comment("    /// uses std::fs"), "");
     assert_eq!(without_comment("let a = 1; // std::fs"), "let a = 1;");
     assert_eq!(

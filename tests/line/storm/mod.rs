@@ -1,15 +1,15 @@
-//! A storm of line faults over the controller's line task. The full one: `cargo bench --bench line_storm`.
+//! A storm of line faults on the line task of the controller. `cargo bench --bench line_storm` runs the full one.
 
 mod rage;
 
 use rage::{EVERY_FAULT, in_virtual_time, rage, storm};
 use std::time::Duration;
 
-/// Enough for every fault to strike some two hundred times.
+/// Transactions of a storm: every fault occurs about two hundred times.
 const TRANSACTIONS: u64 = 20_000;
 
 #[test]
-fn in_a_storm_of_faults_no_value_is_taken_for_another_and_nothing_hangs() {
+fn faults_neither_swap_values_nor_hang_the_bus() {
     let weather = rage(1, TRANSACTIONS, &EVERY_FAULT);
     assert!(weather.is_honest(), "seed 1: {weather:#?}");
     assert_eq!(weather.transactions, TRANSACTIONS);
@@ -25,7 +25,7 @@ fn without_faults_every_transaction_is_believed() {
 }
 
 #[test]
-fn each_fault_alone_is_told_in_its_own_way() {
+fn each_fault_alone_is_reported_as_itself() {
     for fault in EVERY_FAULT {
         let (name, _) = fault.split_once('=').unwrap();
         let often = match name {
@@ -42,12 +42,12 @@ fn each_fault_alone_is_told_in_its_own_way() {
     }
 }
 
-/// A late host runs for so long, 7.3 ms of rig time, and then not at all for longer than any time-out, 95 ms.
+/// Run time and pause of a late host, rig time; the pause exceeds every time-out.
 const RUNS: Duration = Duration::from_millis(7_301);
 const SLEEPS: Duration = Duration::from_millis(95_003);
 
 #[test]
-fn a_host_that_wakes_late_takes_no_module_for_silent() {
+fn a_late_host_takes_no_module_for_silent() {
     let weather = in_virtual_time(async {
         tokio::spawn(async {
             loop {

@@ -1,7 +1,7 @@
-//! A storm on one line: random transactions, every fault of the line now and then, and a judge who knows from the
-//! fingerprint of each value whose it is and when it was taken.
+//! A storm on one line: random transactions under random faults, and a judge that reads from the fingerprint of each value
+//! its module, channel and time.
 //!
-//! The line task of the controller is driven through its public face over an in-process stream in virtual time. Judged:
+//! The line task runs over an in-process stream in virtual time. The rules:
 //!
 //! - a reading must come from the module and channel that were asked (else it is *foreign*), and have been true
 //!   between question and answer (else *stale*; analog inputs: within the age of a free-running conversion);
@@ -51,21 +51,21 @@ const PATIENCE: Duration = Duration::from_millis(5_000_000);
 /// Age of a reading of a free-running converter, microseconds: eight windows of 1/60 s, three of 1/15 s, two steps.
 const CONVERSION_US: u64 = 250_000;
 
-/// Most examples that are kept of each kind of lie.
+/// Most examples of each kind of broken rule.
 const EXAMPLES: usize = 5;
 
-/// What a storm has shown.
+/// Result of a storm.
 #[derive(Debug, Default)]
 pub struct Weather {
-    /// Requests answered.
+    /// Answered requests.
     pub transactions: u64,
-    /// Of them with a reply that was believed.
+    /// Requests whose reply was accepted.
     pub believed: u64,
     /// Failures by kind.
     pub failures: BTreeMap<&'static str, u64>,
     /// Readings of another module or channel.
     pub foreign: u64,
-    /// Readings taken before they were asked for.
+    /// Readings taken before their request.
     pub stale: u64,
     /// Writes accepted and not carried out.
     pub hollow: u64,
@@ -73,7 +73,7 @@ pub struct Weather {
     pub nameless: u64,
     /// Requests that were never answered.
     pub hangs: u64,
-    /// Some of the lies, in words.
+    /// Examples of broken rules.
     pub examples: Vec<String>,
     /// Rig time, seconds.
     pub rig_s: f64,
@@ -82,7 +82,7 @@ pub struct Weather {
 }
 
 impl Weather {
-    /// Nothing false was believed, nothing hung, nothing failed without a name.
+    /// Returns true when no rule was broken.
     pub fn is_honest(&self) -> bool {
         self.foreign + self.stale + self.hollow + self.nameless + self.hangs == 0
     }
@@ -105,12 +105,12 @@ impl Ports for PlugPorts {
     }
 }
 
-/// Lets the storm rage over so many transactions.
+/// Runs a storm of `transactions` transactions.
 pub fn rage(seed: u64, transactions: u64, faults: &[&str]) -> Weather {
     in_virtual_time(storm(seed, transactions, faults))
 }
 
-/// Tokio's paused clock, which jumps to the next deadline whenever every task waits.
+/// Returns a runtime with tokio's paused clock, which jumps to the next deadline when all tasks wait.
 pub fn in_virtual_time<F: Future>(what: F) -> F::Output {
     tokio::runtime::Builder::new_current_thread()
         .enable_time()
@@ -120,7 +120,7 @@ pub fn in_virtual_time<F: Future>(what: F) -> F::Output {
         .block_on(what)
 }
 
-/// As [`rage`], on a runtime that is there already.
+/// As [`rage`], on an existing runtime.
 pub async fn storm(seed: u64, transactions: u64, faults: &[&str]) -> Weather {
     let line = FingerprintLine::build(seed, 115_200, faults).expect("known faults");
     let pace = Pace::virtual_time();
@@ -164,7 +164,7 @@ pub async fn storm(seed: u64, transactions: u64, faults: &[&str]) -> Weather {
     weather
 }
 
-/// Chooses what to ask.
+/// Chooses requests.
 struct Host {
     random: SplitMix64,
     written: u16,
@@ -172,7 +172,7 @@ struct Host {
 }
 
 impl Host {
-    /// A number from 0, below `most`.
+    /// Returns a number from 0 to below `most`.
     fn below(&mut self, most: u8) -> u8 {
         ((self.random.next_u64() >> 32) % u64::from(most)) as u8
     }
@@ -215,7 +215,7 @@ impl Host {
         .to(Address(address))
     }
 
-    /// A word that was never written before, with the mark of its module.
+    /// Returns a new output word with the mark of its module.
     fn word(&mut self, address: u8) -> u16 {
         self.written = self.written % 0xFFF + 1;
         fingerprint::marked(address, self.written)
@@ -237,7 +237,7 @@ impl Host {
         .to(Address(address))
     }
 
-    /// A module that holds its outputs safe is told that the host is back.
+    /// Clears the tripped watchdog of a module.
     fn heed(&mut self, answer: &Answer) {
         if let (
             Err(LineError::Reply {
@@ -371,7 +371,7 @@ fn analog(answer: &Answer, address: u8, channel: u8, value: Value) -> Found {
     told(distance <= CONVERSION_US + taken, Found::Stale)
 }
 
-/// A word of inputs is taken when the request has arrived: after it was asked.
+/// Checks that a word of inputs was taken after the request.
 fn word(answer: &Answer, address: u8, word: u16) -> Found {
     if fingerprint::origin_of_word(word) != address {
         return Found::Foreign;
@@ -381,8 +381,7 @@ fn word(answer: &Answer, address: u8, word: u16) -> Found {
     told(age <= taken + fingerprint::WORD_STEP_US, Found::Stale)
 }
 
-/// What is read back must be what the outputs carried while it was asked: a restart just after the answer makes no
-/// lie of it.
+/// Checks that a read-back matches the outputs during the request; a restart after the answer does not count.
 fn read_back(answer: &Answer, address: u8, word: u16, line: &FingerprintLine) -> Found {
     if fingerprint::origin_of_word(word) != address {
         return Found::Foreign;

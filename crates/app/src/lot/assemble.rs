@@ -6,7 +6,7 @@ use crate::cycle::{Cycle, CycleLinks, LineEnds, mimic};
 use anyhow::Context;
 use bus::Pace;
 use config::Plant;
-use history::AlarmLeft;
+use history::UnacknowledgedAlarm;
 use machine::dut::Recipe;
 use machine::dut::device::{Device, Rig};
 use machine::guard::{Actuator, Guard, PartSize};
@@ -88,7 +88,7 @@ pub fn mimic(plant: &Plant, recipe: &Recipe) -> anyhow::Result<Mimic> {
 }
 
 /// An alarm of a run before stands again, unseen.
-fn inherit(station: &mut Station, left: AlarmLeft, epoch_us: i64) {
+fn inherit(station: &mut Station, left: UnacknowledgedAlarm, epoch_us: i64) {
     let Some(code) = AlarmCode::from_name(&left.code) else {
         return tracing::warn!(code = left.code, "an alarm of another version is left out");
     };

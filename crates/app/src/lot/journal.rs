@@ -229,6 +229,10 @@ mod tests {
         journal
     }
 
+    fn fault() -> texts::Message {
+        texts::Message::new("fault", "line").with("detail", "silent")
+    }
+
     fn states(rows: &[Row]) -> Vec<LotState> {
         let state = |row: &Row| match row {
             Row::LotState(it) => Some(it.state),
@@ -240,7 +244,7 @@ mod tests {
     #[test]
     fn a_failed_check_holds_the_lot_until_the_alarm_is_cleared() {
         let mut journal = journal();
-        let alarm = Alarm::reference_check_failed("G-12-1 reads high");
+        let alarm = Alarm::reference_check_failed(&fault());
         let mut list = Annunciator::default();
         list.raise(&alarm, RigTime(1));
         assert_eq!(states(&journal.alarm(&alarm, 1)), [LotState::Held]);
@@ -271,7 +275,7 @@ mod tests {
     #[test]
     fn between_lots_an_alarm_belongs_to_the_rig_and_no_lot_changes() {
         let mut journal = Journal::new(false);
-        let rows = journal.alarm(&Alarm::reference_check_failed("G-12-1 reads high"), 1);
+        let rows = journal.alarm(&Alarm::reference_check_failed(&fault()), 1);
         assert!(matches!(&rows[..], [Row::Alarm(it)] if it.lot.is_none()));
         let ended = journal.ended(&Ending::Stopped, &Exit::Stopped, 2);
         assert!(ended.is_empty());

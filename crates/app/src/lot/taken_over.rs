@@ -2,7 +2,7 @@
 
 use super::{LotContext, Purpose};
 use anyhow::Context;
-use history::{AlarmLeft, Store};
+use history::{Store, UnacknowledgedAlarm};
 use machine::dut::Calibration;
 use machine::handling::inside::Inside;
 use machine::handling::wear::Uses;
@@ -14,7 +14,7 @@ pub(super) struct TakenOver {
     /// Uses of what wears.
     pub worn: Uses,
     /// Alarms that nobody has seen yet.
-    pub alarms: Vec<AlarmLeft>,
+    pub alarms: Vec<UnacknowledgedAlarm>,
     /// What the run before left inside.
     pub left: Inside,
 }
@@ -36,7 +36,7 @@ impl TakenOver {
         Ok(Self {
             calibration,
             worn: worn(store, simulated)?,
-            alarms: store.alarms_left(simulated)?,
+            alarms: store.unacknowledged_alarms(simulated)?,
             left,
         })
     }

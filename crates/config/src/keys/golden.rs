@@ -3,18 +3,8 @@
 use machine::dut::em_relay::keys::golden::PART;
 use machine::form::{Form, Key, from_to, key};
 
-/// The whole file.
-pub const FILE: &[Key] = &[
-    key(
-        "reference_temperature_c",
-        from_to(-40.0, 85.0, "C"),
-        "gauge",
-        "temperature of the certified values",
-    ),
-    key(
-        "golden",
-        Form::List(&Form::Table(PART)),
-        "gauge",
-        "the golden parts",
-    ),
-];
+/// Keys of the whole file.
+pub const FILE: &[Key] = keys! {
+    key("reference_temperature_c", from_to(-40.0, 85.0, "C"), "gauge", "temperature of the certified values");
+    key("golden", Form::List(&Form::Table(PART)), "gauge", "the reference parts");
+};

@@ -2,72 +2,28 @@
 
 use machine::form::{Form, Key, above_zero, optional, whole};
 
-const GOLDEN_CHECK: &[Key] = &[
-    optional(
-        "at_start",
-        Form::Flag,
-        "station",
-        "before a lot that runs on a stored calibration",
-    ),
-    optional(
-        "after_parts",
-        whole(1, 1_000_000, ""),
-        "station",
-        "after so many parts of the lot; the golden part lies there in the magazine",
-    ),
-    optional(
-        "after_h",
-        above_zero(1000.0, "h"),
-        "station",
-        "after so many hours; the line holds and asks for the golden part",
-    ),
-];
+const GOLDEN_CHECK: &[Key] = keys! {
+    optional("at_start", Form::Flag, "station", "check before a lot that runs on a stored calibration");
+    optional("after_parts", whole(1, 1_000_000, ""), "station",
+        "number of parts between checks; the reference part lies there in the magazine");
+    optional("after_h", above_zero(1000.0, "h"), "station",
+        "hours between checks; the line holds until the reference part is loaded");
+};
 
-const WEAR: &[Key] = &[
-    optional(
-        "probe_touches",
-        whole(1, 1_000_000_000, ""),
-        "station",
-        "times that the probes rise before they are worn",
-    ),
-    optional(
-        "jaw_closings",
-        whole(1, 1_000_000_000, ""),
-        "station",
-        "times that the jaws close before they are worn",
-    ),
-    optional(
-        "probe_contact_ohm",
-        above_zero(20.0, "ohm"),
-        "station",
-        "both force contacts of the coil in series, mean over the last parts, beyond what they were at the calibration",
-    ),
-];
+const WEAR: &[Key] = keys! {
+    optional("probe_touches", whole(1, 1_000_000_000, ""), "station", "times that the probes rise before they are worn");
+    optional("jaw_closings", whole(1, 1_000_000_000, ""), "station", "times that the jaws close before they are worn");
+    optional("probe_contact_ohm", above_zero(20.0, "ohm"), "station",
+        "both force contacts of the coil in series, mean over the last parts, beyond what they were at the calibration");
+};
 
-/// The whole file.
-pub const FILE: &[Key] = &[
-    optional(
-        "first_article_parts",
-        whole(0, 1000, ""),
-        "station",
-        "parts at the begin of a run that are measured by the slow strategy; 0 without it",
-    ),
-    optional(
-        "discard_limit_pct",
-        above_zero(100.0, "%"),
-        "station",
-        "failed parts that a lot may have, of its size; one more holds the line",
-    ),
-    optional(
-        "golden_check",
-        Form::Table(GOLDEN_CHECK),
-        "station",
-        "when a golden part is measured and compared with its certificate",
-    ),
-    optional(
-        "wear",
-        Form::Table(WEAR),
-        "station",
-        "uses of probes and jaws at which the line says that they are worn",
-    ),
-];
+/// Keys of the whole file.
+pub const FILE: &[Key] = keys! {
+    optional("first_article_parts", whole(0, 1000, ""), "station",
+        "parts at the begin of a run that get confirmation measurements; 0 without it");
+    optional("discard_limit_pct", above_zero(100.0, "%"), "station",
+        "reject-rate limit: failed parts that a lot may have, of its size; one more holds the line");
+    optional("golden_check", Form::Table(GOLDEN_CHECK), "station",
+        "when a reference part is measured and compared with its certificate");
+    optional("wear", Form::Table(WEAR), "station", "uses of probes and jaws at which an alarm says that they are worn");
+};

@@ -1,4 +1,9 @@
-//! Every key that may stand in the files of `config/`, file by file.
+//! Keys of the files of `config/`, file by file.
+
+/// Keys of a table, one a row: name, form, the part of the program that reads it, meaning.
+macro_rules! keys {
+    ($($row:expr;)*) => { &[$($row),*] };
+}
 
 pub mod card;
 pub mod golden;

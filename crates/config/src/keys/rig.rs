@@ -12,7 +12,7 @@ use measuring::{ACCURACY, CALIBRATION};
 use modules::{BUS, LINE, MODULE, SAFETY};
 use points::{ACTUATOR, ACTUATORS, ANALOG_IN, ANALOG_OUT, BIN, CHANNEL, DIGITAL_IN, STATION};
 
-/// Points that only kinds of device declare.
+/// Form of points that only kinds of device declare.
 const fn of_kinds(may: fn() -> Vec<&'static str>, entry: &'static Form) -> Form {
     Form::Points(Points {
         must: &[],
@@ -22,7 +22,7 @@ const fn of_kinds(may: fn() -> Vec<&'static str>, entry: &'static Form) -> Form 
     })
 }
 
-/// What the kinds declare, each name once.
+/// Returns the names that the kinds declare, each once.
 fn declared(names: impl Fn(&Fixture) -> Vec<&'static str>) -> Vec<&'static str> {
     let mut all: Vec<&str> = Vec::new();
     for name in FIXTURES.iter().flat_map(names) {
@@ -57,112 +57,25 @@ fn counter() -> Vec<&'static str> {
     declared(|kind| kind.counter.to_vec())
 }
 
-/// The whole file.
-pub const FILE: &[Key] = &[
-    key(
-        "line",
-        Form::Named(&Form::Table(LINE)),
-        "bus",
-        "RS-485 lines by name",
-    ),
-    key(
-        "bus",
-        Form::Table(BUS),
-        "bus, cycle",
-        "times and counts of every line",
-    ),
-    key(
-        "safety",
-        Form::Table(SAFETY),
-        "rig",
-        "what the plant demands of the emergency stop",
-    ),
-    key(
-        "module",
-        Form::Named(&Form::Table(MODULE)),
-        "rig",
-        "modules by name",
-    ),
-    optional(
-        "analog_in",
-        of_kinds(analog_in, &Form::Table(ANALOG_IN)),
-        "rig",
-        "analog inputs by point",
-    ),
-    optional(
-        "temperature",
-        of_kinds(temperature, &Form::Table(CHANNEL)),
-        "rig",
-        "thermometers by point",
-    ),
-    optional(
-        "analog_out",
-        of_kinds(analog_out, &Form::Table(ANALOG_OUT)),
-        "rig",
-        "analog outputs by point",
-    ),
-    optional(
-        "counter",
-        of_kinds(counter, &Form::Table(CHANNEL)),
-        "rig",
-        "gated counters by point",
-    ),
-    key(
-        "digital_in",
-        Form::Points(Points {
-            must: DigitalIn::NAMES,
-            may: digital_in,
-            free: true,
-            entry: &Form::Table(DIGITAL_IN),
-        }),
-        "rig",
-        "digital inputs by point",
-    ),
-    key(
-        "digital_out",
-        Form::Points(Points {
-            must: DigitalOut::NAMES,
-            may: digital_out,
-            free: false,
-            entry: &Form::Table(CHANNEL),
-        }),
-        "rig",
-        "digital outputs by point",
-    ),
-    key(
-        "actuator",
-        Form::Each(ACTUATORS, &Form::Table(ACTUATOR)),
-        "station",
-        "supervision of strokes",
-    ),
-    key(
-        "axis",
-        Form::Each(&["nest", "park"], &Form::Table(STATION)),
-        "rig",
-        "places of the sort axis that are not bins",
-    ),
-    key(
-        "bin",
-        Form::NamedWith(&["pass", "retest"], &Form::Table(BIN)),
-        "rig, station",
-        "bins by name",
-    ),
-    optional(
-        "reference",
-        Form::Table(REFERENCE),
-        "gauge",
-        "references on the interface board, for recipes that need them; tolerances are half widths",
-    ),
-    key(
-        "accuracy",
-        Form::Table(ACCURACY),
-        "gauge",
-        "promised before calibration; half widths unless said otherwise",
-    ),
-    key(
-        "calibration",
-        Form::Table(CALIBRATION),
-        "gauge",
-        "how long a calibration holds",
-    ),
-];
+/// Keys of the whole file.
+pub const FILE: &[Key] = keys! {
+    key("line", Form::Named(&Form::Table(LINE)), "bus", "RS-485 lines by name");
+    key("bus", Form::Table(BUS), "bus, cycle", "times and counts of every line");
+    key("safety", Form::Table(SAFETY), "rig", "what the plant demands of the emergency stop");
+    key("module", Form::Named(&Form::Table(MODULE)), "rig", "modules by name");
+    optional("analog_in", of_kinds(analog_in, &Form::Table(ANALOG_IN)), "rig", "analog inputs by point");
+    optional("temperature", of_kinds(temperature, &Form::Table(CHANNEL)), "rig", "thermometers by point");
+    optional("analog_out", of_kinds(analog_out, &Form::Table(ANALOG_OUT)), "rig", "analog outputs by point");
+    optional("counter", of_kinds(counter, &Form::Table(CHANNEL)), "rig", "gated counters by point");
+    key("digital_in", Form::Points(Points { must: DigitalIn::NAMES, may: digital_in, free: true, entry: &Form::Table(DIGITAL_IN) }), "rig",
+        "digital inputs by point");
+    key("digital_out", Form::Points(Points { must: DigitalOut::NAMES, may: digital_out, free: false, entry: &Form::Table(CHANNEL) }), "rig",
+        "digital outputs by point");
+    key("actuator", Form::Each(ACTUATORS, &Form::Table(ACTUATOR)), "station", "supervision of strokes");
+    key("axis", Form::Each(&["nest", "park"], &Form::Table(STATION)), "rig", "places of the sort axis that are not bins");
+    key("bin", Form::NamedWith(&["pass", "retest"], &Form::Table(BIN)), "rig, station", "bins by name");
+    optional("reference", Form::Table(REFERENCE), "gauge",
+        "references on the interface board, for recipes that need them; tolerances are half widths");
+    key("accuracy", Form::Table(ACCURACY), "gauge", "promised before calibration; half widths unless said otherwise");
+    key("calibration", Form::Table(CALIBRATION), "gauge", "how long a calibration holds");
+};

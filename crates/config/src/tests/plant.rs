@@ -84,7 +84,7 @@ fn a_missing_file_is_named() {
     std::fs::remove_file(copy.0.path().join("golden.toml")).unwrap();
     assert_eq!(
         copy.refused(),
-        "golden.toml: found no readable file, expected the golden parts"
+        "golden.toml: found no readable file, expected the reference parts"
     );
 }
 

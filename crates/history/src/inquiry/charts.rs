@@ -1,32 +1,32 @@
-//! Control charts: level and spread of a parameter, or the share of every bin from run to run.
+//! Control charts: level and spread of a parameter, or the share of each bin by run.
 
 use super::{InquiryError, Result, checks};
 use crate::report::Paper;
-use crate::report::spc::{Named, spc};
+use crate::report::spc::{NamedChart, spc};
 use crate::{Archive, Filter, LotSummary};
 use quality::chart::{Chart, individuals, shares, subgroups};
 use quality::rules::Rules;
 use serde::Serialize;
 use std::collections::BTreeSet;
 
-/// Parts of a subgroup that control charts have factors for; 1 is individuals.
+/// Allowed subgroup sizes, parts; 1 gives charts of individuals.
 pub const SUBGROUPS: std::ops::RangeInclusive<u8> = 1..=10;
 
-/// A chart and what it is of.
+/// A chart with its subject.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Charted {
-    /// Parameter key, or name of a bin.
+    /// Parameter key or name of a bin.
     pub of: String,
-    /// Points that were left out in front.
+    /// Number of points left out before the first one.
     pub first: usize,
-    /// `lot/run` of each point; none where points have numbers only.
+    /// `lot/run` of each point; empty where points have numbers only.
     pub names: Vec<String>,
     /// The chart.
     #[serde(flatten)]
     pub chart: Chart,
 }
 
-/// Of `param`, or without one of the share of every bin; limits come from all points.
+/// Computes the charts of `param`, or of the share of each bin without one. Limits come from all points.
 pub fn charts(
     archive: &Archive,
     filter: &Filter,
@@ -51,11 +51,11 @@ pub fn charts(
     Ok(charts)
 }
 
-/// The page for the wall; of every chart the last `shown` points are drawn.
+/// Returns the printable page with the last `shown` points of every chart.
 pub fn page(paper: &Paper, about: &str, charts: &[Charted], shown: usize) -> String {
-    let named: Vec<Named<'_>> = charts
+    let named: Vec<NamedChart<'_>> = charts
         .iter()
-        .map(|it| Named {
+        .map(|it| NamedChart {
             of: &it.of,
             chart: &it.chart,
             names: &it.names,
@@ -74,7 +74,7 @@ impl Charted {
         }
     }
 
-    /// Only the last `shown` points with their names and signals, which count from the first one kept.
+    /// Keeps the last `shown` points with their names and signals. Signals count from the first point kept.
     #[must_use]
     pub fn last(mut self, shown: usize) -> Self {
         let left_out = self.chart.points.len().saturating_sub(shown);
@@ -104,7 +104,7 @@ fn of_parameter(
     Ok(charts.into_iter().flatten().map(charted).collect())
 }
 
-/// A chart for each bin that any of the runs has parts for.
+/// Computes a chart for each bin with parts in any of the runs.
 fn of_bins(runs: &[LotSummary]) -> Vec<Charted> {
     let bins: BTreeSet<&String> = runs.iter().flat_map(|run| run.bins.keys()).collect();
     let names: Vec<String> = runs

@@ -1,15 +1,15 @@
-//! A filter that nothing can pass because of a slip of the hand is refused by name, not answered with nothing.
+//! Checks of a filter: a mistyped member is refused by name instead of answered with an empty result.
 
 use super::{InquiryError, Result};
 use crate::{Archive, Filter};
 
-/// The verdicts that a part may have.
+/// All verdicts.
 pub const VERDICTS: [&str; 4] = ["pass", "fail", "void", "unjudged"];
-/// The kinds of parts that a filter may ask for.
+/// Values of the member `kind`.
 pub const KINDS: [&str; 3] = ["lot", "golden", "all"];
 
-/// Refuses words that do not exist and ranges that nothing can lie in.
-pub fn sensible(filter: &Filter) -> Result<()> {
+/// Refuses unknown words and empty ranges.
+pub fn validate(filter: &Filter) -> Result<()> {
     one_of("verdict", filter.verdict.as_deref(), &VERDICTS)?;
     one_of("kind", filter.kind.as_deref(), &KINDS)?;
     for (field, value) in [("min", filter.min), ("max", filter.max)] {
@@ -30,7 +30,7 @@ pub fn sensible(filter: &Filter) -> Result<()> {
     }
 }
 
-/// Refuses what the question does not use: an answer that ignores a member would mislead.
+/// Refuses members that the inquiry does not use, since ignoring one would mislead.
 pub fn only(filter: &Filter, question: &str, used: &[&str]) -> Result<()> {
     match filter
         .members()
@@ -45,7 +45,7 @@ pub fn only(filter: &Filter, question: &str, used: &[&str]) -> Result<()> {
     }
 }
 
-/// Refuses a word that is not among `known`; what was found is shortened to what a line can hold.
+/// Refuses a word that is not among `known`. The message shows its first 40 characters.
 pub fn one_of(field: &'static str, found: Option<&str>, known: &[&str]) -> Result<()> {
     match found {
         Some(found) if !known.contains(&found) => {
@@ -57,7 +57,7 @@ pub fn one_of(field: &'static str, found: Option<&str>, known: &[&str]) -> Resul
     }
 }
 
-/// Refuses a parameter that the history has never seen; gives all keys in the order of columns.
+/// Refuses a parameter that the history does not have. Returns all keys in the order of columns.
 pub fn parameters(archive: &Archive, asked: Option<&str>) -> Result<Vec<String>> {
     let known = archive.parameters()?;
     let names: Vec<&str> = known.iter().map(String::as_str).collect();
@@ -65,7 +65,7 @@ pub fn parameters(archive: &Archive, asked: Option<&str>) -> Result<Vec<String>>
     Ok(known)
 }
 
-/// Refuses a lot, run or recipe that never was: that is not an empty answer.
+/// Refuses a lot, run or recipe that does not exist.
 pub fn known_runs(archive: &Archive, filter: &Filter) -> Result<()> {
     let named = filter.lot.is_some() || filter.recipe.is_some() || filter.run.is_some();
     if named && !archive.has_runs(filter)? {

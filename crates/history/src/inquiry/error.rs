@@ -1,28 +1,28 @@
-//! Why a question has no answer.
+//! Errors of inquiries.
 
 use crate::HistoryError;
 
-/// What was asked cannot be meant, is not there, or could not be read.
+/// Why an inquiry has no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum InquiryError {
-    /// A member of the question that cannot be meant.
+    /// A member of the filter is invalid.
     #[error("{field}: {reason}")]
     Member {
-        /// Its name: an option of the command line, a key of the query string.
+        /// Name of the option or of the key in the query string.
         field: &'static str,
-        /// Found and expected.
+        /// What was found and expected.
         reason: String,
     },
-    /// The lot, recipe or part asked for never was.
+    /// The lot, recipe or part does not exist.
     #[error("{what}")]
     NotThere {
-        /// What is not there.
+        /// Description of the missing thing.
         what: String,
     },
     /// The history could not be read.
     #[error(transparent)]
     History(#[from] HistoryError),
-    /// The answer could not be handed on.
+    /// The answer could not be written.
     #[error("writing the answer")]
     Write(#[from] std::io::Error),
     /// The spreadsheet could not be made.
@@ -30,17 +30,17 @@ pub enum InquiryError {
     Sheet(#[from] rust_xlsxwriter::XlsxError),
 }
 
-/// Shorthand of this module.
+/// Result of an inquiry.
 pub type Result<T> = std::result::Result<T, InquiryError>;
 
 impl InquiryError {
-    /// Found and expected of one member of a question.
+    /// Makes the error of one member.
     pub fn member(field: &'static str, reason: impl Into<String>) -> Self {
         let reason = reason.into();
         Self::Member { field, reason }
     }
 
-    /// What never was.
+    /// Makes the error of a missing lot, recipe or part.
     pub fn not_there(what: impl Into<String>) -> Self {
         Self::NotThere { what: what.into() }
     }

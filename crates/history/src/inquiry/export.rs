@@ -1,4 +1,4 @@
-//! All parts that a filter leaves, as CSV or as a spreadsheet; memory does not grow with their number.
+//! Export of the selected parts as CSV or spreadsheet, with constant memory.
 
 use super::Result;
 use crate::columns::{self, Cell};
@@ -9,7 +9,7 @@ use jiff::tz::TimeZone;
 use rust_xlsxwriter::Workbook;
 use std::io::Write;
 
-/// One line per part under the header. Reads back with `history import`. A text never becomes a formula.
+/// Writes the header and a line per part. `history import` reads the file back; no text becomes a formula.
 pub fn csv_lines(
     archive: &Archive,
     filter: &Filter,
@@ -20,7 +20,7 @@ pub fn csv_lines(
     csv::write(out, &header)?;
     archive.each(filter, |part| {
         let cells = columns::row(&part, parameters).map(|cell| match cell {
-            Cell::Text(text) => csv::harmless(&text).into_owned(),
+            Cell::Text(text) => csv::escape_formula(&text).into_owned(),
             figure => figure.to_string(),
         });
         csv::write(out, cells)
@@ -28,7 +28,7 @@ pub fn csv_lines(
     Ok(())
 }
 
-/// A spreadsheet with a summary and native charts; `each` hears of every part that was written.
+/// Returns a spreadsheet with a summary and native charts, and calls `each` for every part.
 pub fn spreadsheet(
     archive: &Archive,
     filter: &Filter,

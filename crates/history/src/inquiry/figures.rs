@@ -1,4 +1,4 @@
-//! Figures of one parameter over the parts that a filter leaves.
+//! Statistics of one parameter over the selected parts.
 
 use super::{Result, checks};
 use crate::{Archive, Filter, LimitsSeen};
@@ -6,19 +6,19 @@ use quality::ordered::Histogram;
 use quality::{Limits, Ordered, Summary};
 use serde::Serialize;
 
-/// Classes of a histogram, about.
+/// Approximate number of classes of a histogram.
 const CLASSES: usize = 30;
 
-/// The figures, and whether a capability could be told.
+/// Statistics of one parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figures {
     /// Moments and capability.
     pub summary: Summary,
-    /// The runs were judged by different limits: no capability over all of them.
+    /// True when the runs have different limits, so that there is no capability.
     pub limits_differ: bool,
 }
 
-/// Figures of `param`, by the limits of its runs unless others are given.
+/// Computes the statistics of `param`, by the limits of its runs unless others are given.
 pub fn figures(
     archive: &Archive,
     param: &str,
@@ -36,18 +36,18 @@ pub fn figures(
     })
 }
 
-/// A histogram with the limits beside it.
+/// A histogram with limits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Classes {
-    /// Classes of equal width; absent without spread.
+    /// Classes of equal width; `None` without spread.
     #[serde(flatten)]
     pub histogram: Option<Histogram>,
-    /// Limits that all runs agree on.
+    /// Limits, when all runs have the same.
     #[serde(flatten)]
     pub limits: Limits,
 }
 
-/// How the values of `param` are spread, in some thirty classes on round numbers.
+/// Computes a histogram of `param` in about thirty classes at round numbers.
 pub fn histogram(archive: &Archive, param: &str, filter: &Filter) -> Result<Classes> {
     checks::parameters(archive, Some(param))?;
     checks::known_runs(archive, filter)?;
@@ -58,7 +58,7 @@ pub fn histogram(archive: &Archive, param: &str, filter: &Filter) -> Result<Clas
     })
 }
 
-/// The limits that all runs agree on; none when they differ, for then a capability means nothing.
+/// Returns the limits that all runs share; none when they differ, since a capability then has no meaning.
 pub(super) fn agreed(seen: LimitsSeen) -> Limits {
     match seen {
         LimitsSeen::Same { low, high } => Limits { low, high },

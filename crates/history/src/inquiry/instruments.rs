@@ -1,5 +1,4 @@
-//! What the rig's instruments were found to do, how well that is known, and until when it may be used; and what golden parts
-//! read when they were measured last.
+//! Calibration factors of the rig with uncertainty and due date, and the last readings of its reference parts.
 
 use super::Result;
 use crate::{Archive, CalibrationRecord, Moment, Part, ReferenceCheck};
@@ -9,86 +8,86 @@ use machine::dut::instruments::{Certificate, factors};
 use serde::Serialize;
 use units::Unit;
 
-/// Coverage factor of what is told.
+/// Coverage factor of the uncertainties in the answer.
 const K: f64 = 2.0;
 
-/// Everything that a measurement leans on.
+/// Calibrations and reference parts of a rig.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Instruments {
-    /// The calibration made last for each coil voltage.
-    pub calibrations: Vec<Held>,
-    /// The golden parts of the plant.
-    pub golden: Vec<Golden>,
-    /// The golden check made last.
+    /// Newest calibration of each coil voltage.
+    pub calibrations: Vec<CalibrationStatus>,
+    /// Reference parts of the plant.
+    pub golden: Vec<ReferencePartStatus>,
+    /// Latest reference check.
     pub check: Option<ReferenceCheck>,
 }
 
-/// A calibration and whether it holds.
+/// A calibration with its validity.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Held {
-    /// Nominal voltage whose golden parts it rests on, V.
+pub struct CalibrationStatus {
+    /// Nominal coil voltage of its reference parts, V.
     pub nominal_v: Option<f64>,
-    /// When the factors were found.
+    /// Time of the calibration.
     pub made: Moment,
-    /// When they may no longer be used.
+    /// End of validity.
     pub due: Moment,
-    /// That time is over.
+    /// True after the end of validity.
     pub overdue: bool,
-    /// The verification after it, if any, has passed.
+    /// False when the last verification failed.
     pub verified: bool,
-    /// SHA-256, as runs name it.
+    /// SHA-256, by which runs refer to it.
     pub hash: String,
-    /// Every factor that was measured; none when another program wrote them in a form that this one does not read.
-    pub factors: Vec<Told>,
+    /// Measured factors; empty when this program cannot read them.
+    pub factors: Vec<ShownFactor>,
 }
 
-/// A factor as it is told.
+/// A factor with expanded uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Told {
-    /// Its name.
+pub struct ShownFactor {
+    /// Name of the factor.
     pub name: &'static str,
-    /// Unit of the figures, `1` for a ratio.
+    /// Unit of value and uncertainty, `1` for a ratio.
     pub unit: Unit,
-    /// Value.
+    /// Value of the factor.
     pub value: f64,
     /// Expanded uncertainty, k = 2.
     pub uncertainty: f64,
 }
 
-/// A golden part: what its certificate says and what was read last.
+/// A reference part with its certificate and last readings.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Golden {
+pub struct ReferencePartStatus {
     /// Serial number.
     pub serial: String,
-    /// Nominal voltage of the recipes that it serves, V.
+    /// Nominal coil voltage of its recipes, V.
     pub nominal_v: f64,
-    /// When it was measured last; none when it never was.
+    /// Time of its last test, if any.
     pub seen: Option<Moment>,
-    /// Lot and run in which.
+    /// Lot and run of that test.
     pub run: Option<(String, u32)>,
-    /// Every certified quantity.
-    pub values: Vec<Against>,
+    /// Certified quantities with their readings.
+    pub values: Vec<CertifiedReading>,
 }
 
-/// One quantity of a golden part.
+/// A certified quantity with its last reading.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Against {
-    /// What it is.
+pub struct CertifiedReading {
+    /// The characteristic.
     pub parameter: Characteristic,
-    /// Of the certificate.
+    /// Certified value.
     pub certified: f64,
     /// Expanded uncertainty of the certificate, k = 2.
     pub certified_uncertainty: f64,
-    /// Read last.
+    /// Last reading.
     pub value: Option<f64>,
-    /// Its expanded uncertainty, k = 2.
+    /// Expanded uncertainty of the reading, k = 2.
     pub uncertainty: Option<f64>,
 }
 
-/// Of the rig, or of the simulated one, with the golden parts of the plant.
+/// Collects calibrations and readings of a rig; `golden` are the certificates of the plant.
 ///
 /// # Errors
-/// Of the history.
+/// The history cannot be read.
 pub fn instruments(
     archive: &Archive,
     simulated: bool,
@@ -97,7 +96,7 @@ pub fn instruments(
     let now_us = Timestamp::now().as_microsecond();
     let stored = archive.calibrations(simulated)?;
     let held = stored.into_iter().map(|it| held(it, now_us));
-    let golden = golden.iter().map(|part| of_reference_part(archive, part));
+    let golden = golden.iter().map(|part| reference_part(archive, part));
     Ok(Instruments {
         calibrations: held.collect(),
         golden: golden.collect::<Result<_>>()?,
@@ -105,16 +104,16 @@ pub fn instruments(
     })
 }
 
-fn held(record: CalibrationRecord, now_us: i64) -> Held {
+fn held(record: CalibrationRecord, now_us: i64) -> CalibrationStatus {
     let body: serde_json::Value = serde_json::from_str(&record.body).unwrap_or_default();
     let nominal_v = body["nominal_v"].as_f64();
-    let factors = factors(body).into_iter().map(|it| Told {
+    let factors = factors(body).into_iter().map(|it| ShownFactor {
         name: it.name,
         unit: it.unit,
         value: it.factor.value,
         uncertainty: K * it.factor.u,
     });
-    Held {
+    CalibrationStatus {
         nominal_v,
         made: Moment(record.made_at_us),
         due: Moment(record.due_at_us),
@@ -125,11 +124,11 @@ fn held(record: CalibrationRecord, now_us: i64) -> Held {
     }
 }
 
-fn of_reference_part(archive: &Archive, part: &Certificate) -> Result<Golden> {
-    let seen = archive.golden_part(&part.serial)?;
+fn reference_part(archive: &Archive, part: &Certificate) -> Result<ReferencePartStatus> {
+    let seen = archive.reference_part(&part.serial)?;
     let values = part.values.iter().map(|(parameter, certified)| {
         let read = seen.as_ref().and_then(|it| read(it, *parameter));
-        Against {
+        CertifiedReading {
             parameter: *parameter,
             certified: certified.value,
             certified_uncertainty: K * certified.u,
@@ -137,7 +136,7 @@ fn of_reference_part(archive: &Archive, part: &Certificate) -> Result<Golden> {
             uncertainty: read.map(|it| it.1),
         }
     });
-    Ok(Golden {
+    Ok(ReferencePartStatus {
         serial: part.serial.clone(),
         nominal_v: part.nominal_v,
         seen: seen.as_ref().map(|it| it.time),
@@ -146,7 +145,7 @@ fn of_reference_part(archive: &Archive, part: &Certificate) -> Result<Golden> {
     })
 }
 
-/// Value and expanded uncertainty; what has no uncertainty only teaches, and says nothing against a certificate.
+/// Returns value and expanded uncertainty. A value without uncertainty only teaches a calibration and is left out.
 fn read(part: &Part, parameter: Characteristic) -> Option<(f64, f64)> {
     let number =
         |map: &serde_json::Map<String, serde_json::Value>| map.get(parameter.key())?.as_f64();

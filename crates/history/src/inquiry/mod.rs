@@ -1,18 +1,18 @@
-//! Inquiry: what may be asked of the history, answered alike for command line, screens and sheets.
+//! Inquiries into the history, with the same answer for command line, page and exports.
 //!
-//! | question | file |
+//! | answer | file |
 //! |---|---|
-//! | is this filter meant as it stands? | [`checks`] |
-//! | figures of one parameter | [`figures`] |
+//! | checks of a filter | [`checks`] |
+//! | statistics of one parameter | [`figures`] |
 //! | control charts of a parameter, or of the share of every bin | [`charts`] |
 //! | lot report, certificate, list of alarms | [`paper`] |
-//! | how the time of a lot was used | [`use_of_time`] |
-//! | calibrations with their due dates, golden parts | [`instruments`] |
-//! | what another recipe would have said of a lot | [`rejudge`] |
+//! | use of the time of a lot (OEE) | [`use_of_time`] |
+//! | calibrations with their due dates, reference parts | [`instruments`] |
+//! | verdicts of another recipe on a lot | [`rejudge`] |
 //! | all parts of a filter as CSV or spreadsheet | [`export`] |
 //!
-//! Between the history (rows), quality (arithmetic) and report (pages): each answer is put together here
-//! once, so that a figure on the screen, on paper and in `--json` is the same figure. Nothing is written.
+//! An inquiry combines rows of the history with the arithmetic of `quality`, so that page, paper and `--json` show the same
+//! figure. Inquiries write nothing.
 
 pub mod charts;
 pub mod checks;

@@ -1,4 +1,4 @@
-//! Pages about what is in the history.
+//! Printable pages from the history.
 
 use super::figures::agreed;
 use super::use_of_time::use_of_time;
@@ -9,7 +9,7 @@ use crate::report::{Lang, Paper, alarms};
 use crate::{Archive, Filter};
 use jiff::{Timestamp, tz::TimeZone};
 
-/// Paper with the zone of this computer, and a foot with time and version.
+/// Returns paper with the time zone of this computer and a foot with time and version.
 pub fn paper(language: Lang) -> Paper {
     let zone = TimeZone::system();
     let now = Timestamp::now().to_zoned(zone.clone());
@@ -22,7 +22,8 @@ pub fn paper(language: Lang) -> Paper {
     }
 }
 
-/// The report of a lot. `ideal_cycle_s` is the shortest cycle the line can keep; the quickest 5 % when absent.
+/// Returns the report of a lot. `ideal_cycle_s` is the shortest cycle that the line can keep; without it the 5 % quantile
+/// of the cycle times counts.
 pub fn lot_report(
     archive: &Archive,
     filter: &Filter,
@@ -67,7 +68,7 @@ fn measured(archive: &Archive, filter: &Filter) -> Result<Vec<ParameterValues>> 
     Ok(measured)
 }
 
-/// The certificate of part `seq` of the lot, of its latest run unless the filter names one.
+/// Returns the certificate of part `seq` of the lot, from its latest run unless the filter names one.
 pub fn part_certificate(
     archive: &Archive,
     filter: &Filter,
@@ -97,7 +98,7 @@ pub fn part_certificate(
     }
 }
 
-/// The list of alarms that the filter leaves.
+/// Returns the list of the selected alarms.
 pub fn alarm_list(archive: &Archive, filter: &Filter, paper: &Paper) -> Result<String> {
     checks::known_runs(archive, filter)?;
     let about = filter.lot.as_deref().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! What another recipe would have said of the parts of a lot. The history stays as it is.
+//! Verdicts of another recipe on the parts of a lot. Nothing is written.
 
 use super::{InquiryError, Result, checks};
 use crate::{Archive, Filter, Part, rejudged};
@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 /// A part, judged again.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Again {
+pub struct RejudgedPart {
     /// Always `part`.
     #[serde(rename = "type")]
     pub tag: &'static str,
@@ -21,26 +21,26 @@ pub struct Again {
     pub seq: u64,
     /// Name of the recipe judged by.
     pub recipe: String,
-    /// The verdict that stands.
+    /// Verdict of the run.
     pub verdict_was: String,
-    /// The one by this recipe.
+    /// Verdict by this recipe.
     pub verdict: &'static str,
-    /// The bin it asks for.
+    /// Bin of that verdict.
     pub bin: String,
-    /// Why it is not a pass.
+    /// Reasons against a pass, in the strings of rows.
     pub reasons: Vec<String>,
-    /// Their codes, in the same order.
+    /// The same reasons as codes.
     pub reason_codes: Vec<Reason>,
 }
 
-impl Again {
-    /// Whether the verdicts differ.
+impl RejudgedPart {
+    /// Returns true when the verdicts differ.
     pub fn changes(&self) -> bool {
         self.verdict != self.verdict_was
     }
 }
 
-/// All parts together.
+/// Summary of all parts.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Changes {
     /// Always `summary`.
@@ -50,35 +50,35 @@ pub struct Changes {
     pub recipe: String,
     /// SHA-256 of its text.
     pub recipe_hash: String,
-    /// How many went from which verdict to which.
+    /// Numbers of parts by old and new verdict.
     pub changes: Vec<Change>,
 }
 
-/// Parts with the same two verdicts.
+/// Number of parts with the same old and new verdict.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Change {
-    /// The verdict that stands.
+    /// Verdict of the run.
     pub was: String,
-    /// The one by the other recipe.
+    /// Verdict by the other recipe.
     pub now: &'static str,
-    /// How many.
+    /// Number of parts.
     pub parts: u64,
 }
 
-/// A question that can be answered: its lot is there, and the recipe fits what was measured.
+/// A lot and a recipe that fits what was measured.
 #[derive(Debug)]
 pub struct Rejudging {
     recipe: Recipe,
     filter: Filter,
-    /// What the values of each run refer to; an import without a recipe is taken to refer to the same.
+    /// Basis of the values by run; an import without a recipe has the basis of `recipe`.
     bases: BTreeMap<u32, Basis>,
 }
 
 impl Rejudging {
-    /// The parts of `lot`, or only those of one `run`, held against `recipe`.
+    /// Selects the parts of `lot`, or of one `run`, for judgement by `recipe`.
     ///
     /// # Errors
-    /// A lot or run that never was; one that holds another kind of part, or was measured at another nominal voltage.
+    /// The lot or run does not exist, holds another kind of part, or was measured at another nominal voltage.
     pub fn of(archive: &Archive, lot: String, run: Option<u32>, recipe: Recipe) -> Result<Self> {
         let filter = Filter {
             lot: Some(lot),
@@ -105,14 +105,15 @@ impl Rejudging {
         })
     }
 
-    /// Hands every part to `each`, in order of judgement, and sums up. Ends early when `each` fails, with its error.
+    /// Calls `each` for every part in order of judgement and returns the summary. Stops at the first error of `each` and
+    /// returns it.
     ///
     /// # Errors
-    /// Of the history.
+    /// The history cannot be read.
     pub fn each<E>(
         &self,
         archive: &Archive,
-        mut each: impl FnMut(Again) -> std::result::Result<(), E>,
+        mut each: impl FnMut(RejudgedPart) -> std::result::Result<(), E>,
     ) -> Result<std::result::Result<Changes, E>>
     where
         E: From<InquiryError>,
@@ -134,12 +135,12 @@ impl Rejudging {
         }))
     }
 
-    fn again(&self, archive: &Archive, part: Part) -> Result<Again> {
+    fn again(&self, archive: &Archive, part: Part) -> Result<RejudgedPart> {
         let basis = self.bases.get(&part.run).copied();
         let basis = basis.unwrap_or_else(|| Basis::of_recipe(&self.recipe));
         let curves = archive.curves(&part)?;
         let verdict = rejudged(&part, &curves, basis, &self.recipe);
-        Ok(Again {
+        Ok(RejudgedPart {
             tag: "part",
             lot: part.lot,
             run: part.run,

@@ -1,7 +1,7 @@
 //! Facts about answers.
 #![allow(clippy::unwrap_used)]
 
-use super::checks::{only, sensible};
+use super::checks::{only, validate};
 use crate::columns::{COLUMNS, header, row};
 use crate::{Filter, Part};
 
@@ -28,15 +28,15 @@ fn every_member_of_the_filter_has_its_name() {
     members.sort_unstable();
     let names: Vec<&String> = json.as_object().unwrap().keys().collect();
     assert_eq!(members, names);
-    assert!(sensible(&filter).is_ok());
+    assert!(validate(&filter).is_ok());
     assert!(Filter::default().members().is_empty());
 }
 
 #[test]
 fn a_part_has_a_cell_under_every_column_and_none_is_named_twice() {
     let keys = ["operate_voltage_v".to_owned()];
-    let mut part = Part::of_paper("批次", 7, "fail");
-    part = part.because(["a", "b"].map(machine::dut::Reason::unclassified).into());
+    let mut part = Part::fixture("批次", 7, "fail");
+    part = part.with_reasons(["a", "b"].map(machine::dut::Reason::unclassified).into());
     part.values.insert(keys[0].clone(), 7.5.into());
     part.uncertainty.insert(keys[0].clone(), 0.01.into());
     let names = header(&keys);

@@ -1,15 +1,15 @@
-//! How the time of a lot was used: what the history says of it, for [`quality::effectiveness`].
+//! Use of the time of a lot: the input of [`quality::effectiveness`] from the history.
 
 use super::Result;
 use crate::{Archive, Filter, LotSummary, Moment};
 use quality::Ordered;
 use quality::effectiveness::{Effectiveness, Observed, effectiveness};
 
-/// The quickest share of cycles that stands for the ideal one when none is given.
+/// Quantile of the cycle times that replaces a missing ideal cycle.
 const QUICKEST: f64 = 0.05;
 
-/// Planned is from opening to end of each run; no alarm stood longer than its run.
-/// None for imports, which have no time of their own.
+/// Computes the use of time. Planned time is from start to end of each run; an alarm ends with its run at the latest. Returns
+/// `None` for imports, which have no times.
 pub(super) fn use_of_time(
     archive: &Archive,
     filter: &Filter,
@@ -44,7 +44,7 @@ pub(super) fn use_of_time(
     Ok(effectiveness(observed))
 }
 
-/// Time in which at least one of the spans stood: alarms that stand together stop the line once.
+/// Returns the time that the spans cover, s; overlapping alarms count once.
 fn covered_s(mut spans: Vec<(Moment, Moment)>) -> f64 {
     spans.sort_unstable();
     let mut covered = 0.0;

@@ -1,4 +1,4 @@
-//! The list of alarms, each with its state by ISA-18.2: seen by whom, shelved why.
+//! List of alarms with state (ISA-18.2), acknowledgement and shelving.
 
 use super::Paper;
 use super::page::{Format, head, page};
@@ -7,7 +7,7 @@ use crate::{Alarm, AlarmState};
 use maud::{Markup, html};
 use texts::Lang;
 
-/// A page of alarms; `about` says of what.
+/// Returns the page; `about` is its subtitle.
 pub fn list(paper: &Paper, about: &str, alarms: &[Alarm]) -> String {
     let language = paper.language;
     let title = language.text("paper-alarm_list");
@@ -24,7 +24,7 @@ pub(super) fn table(paper: &Paper, alarms: &[Alarm]) -> Markup {
         } @else {
             table {
                 thead { tr {
-                    th { (say("paper-raised")) } th.n { (say("paper-stood")) }
+                    th { (say("paper-raised")) } th.n { (say("paper-duration")) }
                     th { (say("paper-state")) } th { (say("paper-lot")) }
                     th { (say("paper-code")) } th { (say("paper-message")) }
                 } }
@@ -32,7 +32,7 @@ pub(super) fn table(paper: &Paper, alarms: &[Alarm]) -> Markup {
                     td { (paper.time(it.raised)) }
                     td.n { @match it.cleared {
                         Some(at) => { (span((at.0 - it.raised.0) as f64 / 1e6)) }
-                        None => { (say("paper-end")) }
+                        None => { (say("paper-to_the_end")) }
                     } }
                     td.state { (state(paper, it)) }
                     td.text { (it.lot.as_deref().unwrap_or("–")) @if let Some(run) = it.run { " / " (run) } }
@@ -44,7 +44,8 @@ pub(super) fn table(paper: &Paper, alarms: &[Alarm]) -> Markup {
     }
 }
 
-/// The message in the language of the page; a row of before its arguments were kept says its cause beside it.
+/// Returns the message in the language of the page; a Chinese page shows cause and English message of a row without
+/// arguments.
 fn text(language: Lang, alarm: &Alarm) -> Markup {
     html! {
         @match (language, &alarm.text_zh, alarm.cause_zh) {
@@ -55,7 +56,7 @@ fn text(language: Lang, alarm: &Alarm) -> Markup {
     }
 }
 
-/// The state by ISA-18.2, who acknowledged when, and how it was shelved.
+/// Returns state, acknowledgement and shelving.
 fn state(paper: &Paper, alarm: &Alarm) -> Markup {
     let say = |id| paper.language.text(id);
     let name = match alarm.state {
@@ -67,7 +68,7 @@ fn state(paper: &Paper, alarm: &Alarm) -> Markup {
     html! {
         (name)
         @if let Some(at) = alarm.acknowledged {
-            br; (say("paper-seen")) " " (paper.time(at))
+            br; (say("paper-acknowledged_at")) " " (paper.time(at))
             @if let Some(by) = &alarm.acknowledged_by { ", " (by) }
         }
         @if let Some(shelf) = &alarm.shelf {

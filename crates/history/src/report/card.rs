@@ -1,19 +1,18 @@
-//! The operation process card of a recipe: what is done to a part, with what, by which figures, in which
-//! time. The form is the customary one of machining (header, steps, tooling, parameters, time quota,
-//! sign-off), its columns for spindle and feed replaced by drive, limits and decision.
+//! The operation process card of a recipe: steps with tooling, drive, limits and time quota. The form is that of machining,
+//! with drive, limits and decision instead of spindle and feed.
 //!
-//! Steps, rating and drive come from the kind ([`Card`]), limits from the recipe, the plant's own figures from `card.toml`
+//! Steps, rating and drive come from the kind ([`Card`]), limits from the recipe, figures of the plant from `card.toml`
 //! ([`CardSettings`]).
 
 use super::page::{Format, page};
 use super::words::{figure, parameter};
-use machine::dut::card::{Card, CardSettings, Demand, Piece};
+use machine::dut::card::{Card, CardSettings, Demand, Piece, Step};
 use machine::dut::{Characteristic, Recipe};
 use machine::gauge::Rule;
 use maud::{Markup, html};
 use texts::Lang;
 
-/// The card as one page of HTML, A4 lengthwise.
+/// Returns the card as an HTML page, A4 landscape.
 pub fn card(language: Lang, recipe: &Recipe, plant: &CardSettings, made: &str) -> String {
     let title = language.text("paper-operation_process_card");
     let kind = Card::of(recipe);
@@ -41,31 +40,31 @@ fn header(language: Lang, recipe: &Recipe, kind: &Card, plant: &CardSettings) ->
             }
             tr {
                 th { (say("paper-product")) } td { (title(language, recipe)) }
-                th { (say("paper-page")) } td { (say("paper-1_1")) }
+                th { (say("paper-page")) } td { (say("paper-page_count")) }
             }
             tr {
                 th { (say("paper-workshop")) } th { (say("paper-operation_no")) }
                 th colspan="2" { (say("paper-operation")) }
-                th { (language.text(rating)) } th { (say("paper-body_x_y_z_mm")) }
-                th { (say("paper-pins_mm")) } th { (say("paper-reference_temp")) }
+                th { (language.text(rating)) } th { (say("paper-body_mm")) }
+                th { (say("paper-pin_length_mm")) } th { (say("paper-reference_temperature")) }
             }
             tr {
                 td { (plant.workshop) } td { (plant.operation_no) }
-                td colspan="2" { (say("paper-performance_test_sorting")) }
+                td colspan="2" { (say("paper-operation_name")) }
                 td { (joined(language, rated)) }
                 td { (figure(Some(x))) " × " (figure(Some(y))) " × " (figure(Some(z))) }
                 td { (figure(Some(body.pin_length_mm))) } td { (figure(Some(recipe.reference_temperature_c()))) " °C" }
             }
             tr {
-                th { (say("paper-equipment")) } th { (say("paper-type")) }
-                th { (say("paper-card_no")) } th { (say("paper-parts_at_once")) }
+                th { (say("paper-equipment")) } th { (say("paper-equipment_type")) }
+                th { (say("paper-equipment_no")) } th { (say("paper-parts_at_once")) }
                 th { (say("paper-fixture")) } th { (say("paper-fixture_no")) }
                 th { (say("paper-preparation_min")) } th { (say("paper-per_part_s")) }
             }
             tr {
-                td { (say("paper-relay_performance_tester")) } td { (plant.equipment_model) }
+                td { (say("paper-equipment_name")) } td { (plant.equipment_model) }
                 td { (plant.equipment_no) } td { (plant.pieces_at_once) }
-                td { (say("paper-nest_kelvin_pin_block")) } td { (plant.fixture_no) }
+                td { (say("paper-fixture_name")) } td { (plant.fixture_no) }
                 td { (figure(Some(plant.preparation_min))) } td { (format!("{quota:.2}")) }
             }
         }
@@ -79,7 +78,7 @@ fn title(language: Lang, recipe: &Recipe) -> &str {
     }
 }
 
-/// Sum of all quotas, s.
+/// Returns the sum of all quotas, s.
 fn total(plant: &CardSettings) -> f64 {
     plant
         .quota
@@ -94,11 +93,11 @@ fn steps(language: Lang, recipe: &Recipe, kind: &Card, plant: &CardSettings) -> 
         table.card {
             thead {
                 tr {
-                    th rowspan="2" { (say("paper-card_no_2")) }
+                    th rowspan="2" { (say("paper-step_no")) }
                     th rowspan="2" { (say("paper-step")) }
                     th rowspan="2" { (say("paper-tooling")) }
                     th rowspan="2" { (say("paper-drive")) }
-                    th rowspan="2" { (say("paper-demand")) }
+                    th rowspan="2" { (say("paper-requirement")) }
                     th colspan="2" { (say("paper-time_quota_s")) }
                 }
                 tr { th { (say("paper-machine")) } th { (say("paper-auxiliary")) } }
@@ -107,10 +106,10 @@ fn steps(language: Lang, recipe: &Recipe, kind: &Card, plant: &CardSettings) -> 
                 @for (number, step) in (1..).zip(&kind.steps) {
                     @let quota = plant.quota.get(step.name).copied().unwrap_or_default();
                     tr {
-                        td { (number) } td.text { (language.text(step.what)) }
-                        td.text { (language.text(step.tooling)) }
+                        td { (number) } td.text { (language.attribute(step.text, "what")) }
+                        td.text { (language.attribute(step.text, "tooling")) }
                         td.text { (joined(language, &step.drive)) }
-                        td.text { (demanded(language, recipe, &step.demand)) }
+                        td.text { (demanded(language, recipe, step)) }
                         td { (format!("{:.2}", quota.machine_s)) } td { (format!("{:.2}", quota.auxiliary_s)) }
                     }
                 }
@@ -128,9 +127,9 @@ fn joined(language: Lang, pieces: &[Piece]) -> String {
     pieces.iter().map(one).collect()
 }
 
-fn demanded(language: Lang, recipe: &Recipe, demand: &Demand) -> String {
-    match demand {
-        Demand::Seen(words) => language.text(words).to_owned(),
+fn demanded(language: Lang, recipe: &Recipe, step: &Step) -> String {
+    match &step.demand {
+        Demand::Sensors => language.attribute(step.text, "requirement").to_owned(),
         Demand::Within(characteristics) => demands(language, recipe, characteristics),
     }
 }
@@ -156,10 +155,10 @@ fn demands(language: Lang, recipe: &Recipe, characteristics: &[Characteristic]) 
 fn remarks(language: Lang, recipe: &Recipe, kind: &Card) -> String {
     let decision = &recipe.decision;
     let rule = match decision.rule {
-        Rule::GuardBand => language.text("paper-decision_limits_are_moved_inwards"),
-        Rule::Simple => language.text("paper-decision_bare_value"),
+        Rule::GuardBand => language.text("paper-decision_guard_band"),
+        Rule::Simple => language.text("paper-decision_simple"),
     };
-    let repeats = language.text("paper-slow_repetitions_near_limit");
+    let repeats = language.text("paper-confirmations");
     let counts = kind.counts.iter();
     let counts: String = counts
         .map(|(words, count)| format!("; {} {count}", language.text(words)))

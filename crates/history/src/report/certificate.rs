@@ -1,5 +1,4 @@
-//! The certificate of one part: every result with its uncertainty and limits, what they rest on, and the
-//! line that says what was not tested.
+//! Certificate of one part: results with uncertainty and limits, calibration, and what was not tested.
 
 use super::lot::{limits, source};
 use super::page::{Format, facts, head, page, sign_off};
@@ -10,7 +9,7 @@ use maud::{Markup, html};
 use quality::Limits;
 use texts::Lang;
 
-/// The certificate of `part`, which must carry its measurements, of the run `run`.
+/// Returns the certificate of `part`, with its measurements, of the run `run`.
 pub fn certificate(paper: &Paper, part: &Part, run: &LotSummary) -> String {
     let language = paper.language;
     let title = language.text("paper-test_certificate");
@@ -20,12 +19,12 @@ pub fn certificate(paper: &Paper, part: &Part, run: &LotSummary) -> String {
     };
     let number = format!("{}-{}-{:06}", part.lot, part.run, part.seq);
     let body = html! {
-        (head(title, &format!("{} {number}", language.text("paper-no"))))
+        (head(title, &format!("{} {number}", language.text("paper-number"))))
         (facts(&about(paper, part, run)))
         div class={ "verdict " (part.verdict) } { (language.name("paper_verdict", &part.verdict)) }
         @for reason in &part.reason_codes { p { (words::reason(language, reason)) } }
         (results(language, part))
-        p.note { (language.text("paper-u_expanded_uncertainty_k_2")) }
+        p.note { (language.text("paper-uncertainty_note")) }
         p.remark { (language.text("paper-not_tested")) }
         (sign_off(language))
     };
@@ -68,7 +67,7 @@ fn about(paper: &Paper, part: &Part, run: &LotSummary) -> Vec<(&'static str, Str
                 .map_or_else(none, |bin| language.name("bin", bin).to_owned()),
         ),
         (
-            say("paper-seen_bin"),
+            say("paper-landed_bin"),
             part.landed_bin
                 .as_deref()
                 .map_or_else(none, |bin| language.name("bin", bin).to_owned()),
@@ -98,7 +97,7 @@ fn results(language: Lang, part: &Part) -> Markup {
     }
 }
 
-/// The uncertainty to two significant digits, the value to the same place (GUM 7.2.6).
+/// Rounds the uncertainty to two significant digits and the value to the same place (GUM 7.2.6).
 fn rounded(value: Option<f64>, uncertainty: Option<f64>) -> (String, String) {
     let Some(doubt) = uncertainty.filter(|it| it.is_finite() && *it > 0.0) else {
         return (figure(value), figure(uncertainty));
@@ -108,7 +107,7 @@ fn rounded(value: Option<f64>, uncertainty: Option<f64>) -> (String, String) {
     (value, format!("{doubt:.decimals$}"))
 }
 
-/// Attempts that were superseded are in the history, not on paper.
+/// Returns the last attempt of each parameter.
 fn last_attempts(all: &[Measurement]) -> impl Iterator<Item = &Measurement> {
     let superseded = |it: &Measurement| {
         all.iter()

@@ -6,11 +6,11 @@ use quality::chart::Chart;
 use quality::ordered::{Histogram, round_step};
 use quality::{Limits, Ordered};
 
-/// Of a control chart: as wide as a sheet that lies, so high that two of them and what is told of them fill it.
+/// Size of a control chart, px: two of them with their legend fill a landscape sheet.
 const WIDE: [f64; 2] = [1000.0, 200.0];
 
-/// The last `shown` points of a control chart with its limits; points that a rule objects to stand out
-/// and bear the number of the rule. `names` are told under every few points.
+/// Draws the last `shown` points of a control chart with its limits. Points that violate a rule are red and show its number;
+/// every few points have their name below.
 pub(super) fn control(chart: &Chart, shown: usize, names: &[String]) -> String {
     let first = chart.points.len().saturating_sub(shown);
     let points = &chart.points[first..];
@@ -80,7 +80,7 @@ fn point(plot: &mut Plot, chart: &Chart, first: usize, at: usize, value: f64, ra
     plot.svg.text([x, y - 6.0], &style, &rules.join(","));
 }
 
-/// As many names as have room; numbers from 1 where there are none.
+/// Writes names, or numbers from 1, below as many points as have room.
 fn named(plot: &mut Plot, shown: usize, first: usize, names: &[String]) {
     let longest = names
         .iter()
@@ -96,7 +96,7 @@ fn named(plot: &mut Plot, shown: usize, first: usize, names: &[String]) {
     }
 }
 
-/// Counts as columns, limits as upright lines where they are near the values.
+/// Draws counts as columns, and limits near the values as vertical lines. Returns `None` without spread.
 pub(super) fn histogram(values: &Ordered, limits: Limits) -> Option<String> {
     let it = values.histogram(24)?;
     let end = it.from + it.width * it.counts.len() as f64;
@@ -135,7 +135,7 @@ fn columns(plot: &mut Plot, it: &Histogram) {
     }
 }
 
-/// A horizontal bar of a share, 0 to 1, for a cell of a table.
+/// Draws a share, 0 to 1, as a bar for a table cell.
 pub(super) fn share(share: f64) -> String {
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 100 6\" preserveAspectRatio=\"none\" \

@@ -1,4 +1,4 @@
-//! The report of a lot: what was tested, what came out, how able the process is, what went wrong.
+//! Report of a lot: counts, capability, use of time, alarms.
 
 use super::charts;
 use super::page::{Format, facts, head, page, sign_off};
@@ -11,7 +11,7 @@ use quality::effectiveness::Effectiveness;
 use quality::{Capability, Limits, Ordered, Spread, capability::D2_PAIR, spread};
 use texts::Lang;
 
-/// Everything that the report says.
+/// Data of a lot report.
 #[derive(Debug, Clone)]
 pub struct LotReport<'a> {
     /// Name of the lot.
@@ -22,13 +22,13 @@ pub struct LotReport<'a> {
     pub passed: Passed,
     /// Values in order of time, by parameter.
     pub parameters: Vec<ParameterValues>,
-    /// Use of the time, when the lot ran on a rig.
+    /// Use of the time; `None` for an import.
     pub effectiveness: Option<Effectiveness>,
     /// Alarms in order of time.
     pub alarms: &'a [Alarm],
 }
 
-/// What was measured of one parameter.
+/// Values of one parameter.
 #[derive(Debug, Clone)]
 pub struct ParameterValues {
     /// Parameter key.
@@ -40,7 +40,7 @@ pub struct ParameterValues {
 }
 
 impl LotReport<'_> {
-    /// The report as a file of HTML.
+    /// Returns the report as HTML.
     pub fn html(&self, paper: &Paper) -> String {
         let language = paper.language;
         let title = language.text("paper-lot_report");
@@ -51,7 +51,7 @@ impl LotReport<'_> {
             (self.counts(language))
             h2 { (language.text("paper-parameters")) }
             (self.table(language))
-            p.note { (language.text("paper-cpk_from_mean_moving_range_ppk")) }
+            p.note { (language.text("paper-capability_note")) }
             (self.histograms(language))
             @if let Some(it) = &self.effectiveness { (use_of_time(language, it)) }
             h2 { (language.text("paper-alarms")) }
@@ -110,7 +110,7 @@ impl LotReport<'_> {
                 all(&|it| source(language, &it.source).to_owned()),
             ),
             (
-                say("paper-golden_parts"),
+                say("paper-reference_parts"),
                 self.runs
                     .iter()
                     .map(|it| it.golden)
@@ -233,7 +233,7 @@ fn index(index: Option<Index>) -> Markup {
     }
 }
 
-/// As a mathematician writes it.
+/// Formats limits as `≥ low`, `≤ high` or `low … high`.
 pub(super) fn limits(limits: Limits) -> String {
     match (limits.low, limits.high) {
         (None, None) => "–".to_owned(),
@@ -243,7 +243,7 @@ pub(super) fn limits(limits: Limits) -> String {
     }
 }
 
-/// Where the values of a run come from.
+/// Returns the name of the source of a run.
 pub(super) fn source(language: Lang, source: &str) -> &str {
     match source {
         "rig" => language.text("paper-test_rig"),
@@ -257,7 +257,7 @@ fn use_of_time(language: Lang, it: &Effectiveness) -> Markup {
     let say = |id| language.text(id);
     let share = |part: f64| format!("{:.1} %", 100.0 * part);
     html! {
-        h2 { (say("paper-use_time_oee")) }
+        h2 { (say("paper-oee")) }
         table {
             thead { tr {
                 th.n { "OEE" } th.n { (say("paper-availability")) }

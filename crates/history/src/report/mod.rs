@@ -1,4 +1,4 @@
-//! Paper: what is printed, hung up or handed on. Pure: data in, text out; the command line writes files.
+//! Printable pages and spreadsheets. Functions here turn data into text and open no file.
 //!
 //! | page | file |
 //! |---|---|
@@ -9,9 +9,8 @@
 //! | operation process card of a recipe | [`card`] |
 //! | spreadsheet with native charts | [`sheet`] |
 //!
-//! Every page is one HTML file for A4, complete in itself ([`page`]): no script, no font, no picture from
-//! elsewhere, charts as SVG inside. Chinese or English ([`words`]); texts of operators are escaped, never
-//! interpreted.
+//! A page is one self-contained HTML file for A4 ([`page`]), without scripts, fonts or external pictures; charts are inline
+//! SVG. Pages are Chinese or English ([`words`]); texts typed by people are escaped.
 
 pub mod alarms;
 pub mod card;
@@ -30,19 +29,19 @@ pub use texts::Lang;
 use crate::Moment;
 use jiff::{Timestamp, tz::TimeZone};
 
-/// What all pages need to know beside their data.
+/// Settings of a page.
 #[derive(Debug, Clone)]
 pub struct Paper {
-    /// Lang of the words.
+    /// Language of the page.
     pub language: Lang,
-    /// Zone of the times; the history keeps UTC.
+    /// Time zone of the page; the history has UTC.
     pub zone: TimeZone,
-    /// Foot of the page: when and by which program it was made.
+    /// Foot of the page: time and program version.
     pub made: String,
 }
 
 impl Paper {
-    /// Local time with its offset, to the second.
+    /// Formats an instant as local time with offset, to the second.
     pub fn time(&self, at: Moment) -> String {
         match Timestamp::from_microsecond(at.0) {
             Ok(stamp) => {

@@ -1,9 +1,9 @@
-//! The sheet of paper: A4, one style for all pages, head, foot, sign-off.
+//! Frame of a page: A4, one style, head, foot, sign-off.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use texts::Lang;
 
-/// How the sheet lies.
+/// Orientation of the sheet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Format {
     /// Upright.
@@ -14,7 +14,7 @@ pub(super) enum Format {
 
 const STYLE: &str = include_str!("page.css");
 
-/// A complete file. `made` stands at its foot: when and by which program.
+/// Returns a complete HTML file with `made` at its foot.
 pub(super) fn page(
     language: Lang,
     format: Format,
@@ -48,7 +48,7 @@ pub(super) fn page(
     whole.into_string()
 }
 
-/// Title with what it is about under it.
+/// Title with a subtitle.
 pub(super) fn head(title: &str, about: &str) -> Markup {
     html! {
         header {
@@ -58,7 +58,7 @@ pub(super) fn head(title: &str, about: &str) -> Markup {
     }
 }
 
-/// Names and their texts in two columns of pairs.
+/// Pairs of name and text in two columns.
 pub(super) fn facts(pairs: &[(&str, String)]) -> Markup {
     html! {
         dl.facts {

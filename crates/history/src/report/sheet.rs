@@ -1,9 +1,7 @@
-//! The spreadsheet of an export: one row per part, and in front a summary with native charts.
+//! Spreadsheet of an export: a summary with native charts, then a row per part.
 //!
-//! Parts are taken one at a time and leave the program at once (the library keeps the rows of a sheet in a
-//! temporary file); of a parameter only its [`Tally`] stays. So memory does not grow with the number of
-//! parts. A sheet ends at the [`ROWS`] that spreadsheets can hold, and the next one begins. Texts are
-//! written as texts: what looks like a formula is none.
+//! Memory does not grow with the number of parts: the library writes rows to a temporary file, and only a [`Tally`] of each
+//! parameter stays. After [`ROWS`] rows the next sheet begins. Texts are written as texts, never as formulas.
 
 use super::words::parameter;
 use crate::columns::{self, Cell};
@@ -16,11 +14,11 @@ use rust_xlsxwriter::{Chart, ChartType, Format, Workbook, Worksheet, XlsxError};
 use std::collections::BTreeMap;
 use texts::Lang;
 
-/// Rows of parts on one sheet; spreadsheets hold 1,048,576 with the header.
+/// Parts on one sheet; spreadsheets hold 1,048,576 rows.
 const ROWS: u32 = 1_000_000;
 /// Days from the epoch of spreadsheets to 1970.
 const EPOCH_DAYS: f64 = 25_569.0;
-/// Rows of the summary that a chart takes.
+/// Height of a chart in rows of the summary.
 const CHART_ROWS: u32 = 16;
 
 /// A spreadsheet under construction.
@@ -37,7 +35,7 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// An empty one with columns for these parameters.
+    /// Makes a spreadsheet with columns for these parameters.
     pub fn new(language: Lang, zone: TimeZone, parameters: &[String]) -> Result<Self, XlsxError> {
         let mut workbook = Workbook::new();
         workbook
@@ -77,7 +75,7 @@ impl Sheet {
         Ok(())
     }
 
-    /// The finished workbook, to be saved.
+    /// Writes the summary and returns the workbook.
     pub fn finish(mut self) -> Result<Workbook, XlsxError> {
         let name = self.language.text("paper-summary").to_owned();
         let bold = Format::new().set_bold();
@@ -141,7 +139,7 @@ impl Sheet {
     }
 }
 
-/// A table of names and counts with a column chart beside it; gives the row after both.
+/// Writes a table of counts with a column chart beside it. Returns the first row below both.
 fn counted(
     to: &mut Worksheet,
     sheet: &str,
@@ -171,7 +169,7 @@ fn counted(
     Ok((last + 2).max(row + CHART_ROWS))
 }
 
-/// Every class by its lower edge.
+/// Returns the classes with their lower edge as name.
 fn classes(it: &Histogram) -> Vec<(String, u64)> {
     let edge = |at: usize| super::plot::ticked(it.from + at as f64 * it.width, it.width);
     it.counts
@@ -181,7 +179,7 @@ fn classes(it: &Histogram) -> Vec<(String, u64)> {
         .collect()
 }
 
-/// A cell of a part; an instant beyond the calendar stays empty.
+/// Writes a cell; an instant beyond the calendar stays empty.
 fn written(
     to: &mut Worksheet,
     (row, column): (u32, u16),
@@ -216,7 +214,7 @@ fn number(to: &mut Worksheet, row: u32, column: u16, value: Option<f64>) -> Resu
     Ok(())
 }
 
-/// Local time as spreadsheets count it, to the second; none beyond the calendar.
+/// Returns local time as days since the epoch of spreadsheets, to the second; `None` beyond the calendar.
 fn serial(at: Moment, zone: &TimeZone) -> Option<f64> {
     let stamp = Timestamp::from_microsecond(at.0).ok()?;
     let stamp = stamp.round(Unit::Second).ok()?;

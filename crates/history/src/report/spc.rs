@@ -1,4 +1,4 @@
-//! Control charts for the wall: one parameter's level and spread, or the share of a bin from lot to lot.
+//! Printable control charts of a parameter, or of the share of a bin.
 
 use super::Paper;
 use super::charts;
@@ -9,19 +9,19 @@ use quality::chart::Chart;
 use quality::rules::Signal;
 use texts::{Lang, Message};
 
-/// A chart with the names of its points, if they have any.
+/// A chart with names of its points.
 #[derive(Debug, Clone)]
-pub struct Named<'a> {
-    /// A parameter key, or a bin.
+pub struct NamedChart<'a> {
+    /// Parameter key or name of a bin.
     pub of: &'a str,
     /// The chart.
     pub chart: &'a Chart,
-    /// Under the points; numbers from 1 where there are none.
+    /// Names of the points; empty for numbers from 1.
     pub names: &'a [String],
 }
 
-/// The page; of every chart the last `shown` points are drawn.
-pub fn spc(paper: &Paper, about: &str, charts: &[Named<'_>], shown: usize) -> String {
+/// Returns the page with the last `shown` points of every chart.
+pub fn spc(paper: &Paper, about: &str, charts: &[NamedChart<'_>], shown: usize) -> String {
     let language = paper.language;
     let heading = language.text("paper-control_charts");
     let body = html! {
@@ -37,8 +37,8 @@ pub fn spc(paper: &Paper, about: &str, charts: &[Named<'_>], shown: usize) -> St
     page(language, Format::Landscape, heading, &paper.made, &body)
 }
 
-/// What the chart is of, and its kind.
-fn title(language: Lang, it: &Named<'_>) -> String {
+/// Returns subject and kind of a chart.
+fn title(language: Lang, it: &NamedChart<'_>) -> String {
     let share = Message::new("paper", "bin_share").with("bin", it.of);
     let of = match it.chart.kind {
         "share" => share.say(language),
@@ -47,7 +47,7 @@ fn title(language: Lang, it: &Named<'_>) -> String {
     format!("{of} – {}", kind(language, it.chart.kind))
 }
 
-/// Says that there are more points than are drawn.
+/// Returns a remark when not all points are drawn.
 fn cut(language: Lang, points: usize, shown: usize) -> String {
     let cut = Message::new("paper", "last_points")
         .with("shown", shown)
@@ -58,19 +58,19 @@ fn cut(language: Lang, points: usize, shown: usize) -> String {
     }
 }
 
-/// Name of a kind of chart.
+/// Returns the name of a kind of chart.
 fn kind(language: Lang, kind: &str) -> &str {
     match kind {
         "individuals" => language.text("paper-individuals"),
         "moving range" => language.text("paper-moving_range"),
-        "means" => language.text("paper-means_subgroups"),
-        "ranges" => language.text("paper-ranges_subgroups"),
-        "share" => language.text("paper-share_parts_p"),
+        "means" => language.text("paper-means"),
+        "ranges" => language.text("paper-ranges"),
+        "share" => language.text("paper-shares"),
         other => other,
     }
 }
 
-fn legend(language: Lang, charts: &[Named<'_>]) -> Markup {
+fn legend(language: Lang, charts: &[NamedChart<'_>]) -> Markup {
     html! { div.together {
         table {
             thead { tr {
@@ -83,7 +83,7 @@ fn legend(language: Lang, charts: &[Named<'_>]) -> Markup {
                 td.text { (told(language, &it.chart.signals)) }
             } } }
         }
-        p.note { (language.text("paper-limits_at_three_deviations_from")) }
+        p.note { (language.text("paper-chart_note")) }
     } }
 }
 

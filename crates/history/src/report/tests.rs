@@ -4,7 +4,7 @@
 use super::card::card;
 use super::certificate::certificate;
 use super::lot::{LotReport, ParameterValues};
-use super::spc::{Named, spc};
+use super::spc::{NamedChart, spc};
 use super::*;
 use crate::{Alarm, AlarmState, LotSummary, Measurement, Part, Passed, Shelf, Yield};
 use config::load_recipe;
@@ -66,7 +66,7 @@ fn part(verdict: &str) -> Part {
         budget: None,
         samples: Vec::new(),
     };
-    let mut part = Part::of_paper(EVIL, 7, verdict);
+    let mut part = Part::fixture(EVIL, 7, verdict);
     part.measurements = vec![measurement(1, 8.123_456), measurement(2, 7.704_22)];
     part.values
         .insert("operate_voltage_v".into(), 7.704_22.into());
@@ -121,7 +121,7 @@ fn lot_report(language: Lang) -> String {
 fn a_text_of_an_operator_stays_text_on_every_page() {
     let [chart, _] = individuals(&[1.0, 2.0, 3.0], Rules::Nelson).unwrap();
     let names = [EVIL.to_owned(), EVIL.to_owned(), EVIL.to_owned()];
-    let named = Named {
+    let named = NamedChart {
         of: EVIL,
         chart: &chart,
         names: &names,
@@ -166,7 +166,7 @@ fn a_part_that_failed_gets_a_record_and_no_certificate() {
 #[test]
 fn a_record_says_in_its_language_why_the_part_failed() {
     let why = ["operate_voltage_v high", "coil open"].map(Reason::from_text);
-    let failed = part("fail").because(why.into());
+    let failed = part("fail").with_reasons(why.into());
     for (language, words) in [
         (
             Lang::En,
@@ -182,14 +182,14 @@ fn a_record_says_in_its_language_why_the_part_failed() {
 #[test]
 fn a_chart_of_a_bin_bears_its_name_and_says_what_it_leaves_out() {
     let chart = shares(&[(100, 3), (100, 5), (100, 4)]).unwrap();
-    let named = Named {
+    let named = NamedChart {
         of: "coil",
         chart: &chart,
         names: &[],
     };
     let page = spc(&paper(Lang::Zh), "", &[named], 2);
     assert!(
-        page.contains("料箱：线圈 – 占比图 (p)，共 3 点，图示最后 2 点"),
+        page.contains("料箱：线圈不良箱 – 占比图（p），共 3 点，图示最后 2 点"),
         "{page}"
     );
 }
@@ -207,7 +207,7 @@ fn a_certificate_shows_the_last_attempt_rounded_by_its_uncertainty() {
 #[test]
 fn a_simulated_lot_says_so() {
     assert!(lot_report(Lang::En).contains("SIMULATED RIG"));
-    assert!(lot_report(Lang::Zh).contains("仿真台"));
+    assert!(lot_report(Lang::Zh).contains("仿真测试机"));
 }
 
 #[test]

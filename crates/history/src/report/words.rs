@@ -1,9 +1,9 @@
-//! Names and figures as paper shows them.
+//! Names and figures on paper.
 
 use machine::dut::{Characteristic, Reason};
 use texts::{Lang, Message};
 
-/// Name of a parameter with its unit; the key itself for one that only a recipe knows.
+/// Returns the name of a parameter with its unit; the key itself for an unknown one.
 pub fn parameter(lang: Lang, key: &str) -> String {
     match Characteristic::from_key(key) {
         Some(known) => format!("{} / {}", known.name(lang), known.unit().sign()),
@@ -11,7 +11,7 @@ pub fn parameter(lang: Lang, key: &str) -> String {
     }
 }
 
-/// Why a part did not pass.
+/// Returns a reason with the name of its characteristic.
 pub fn reason(lang: Lang, reason: &Reason) -> String {
     let text = reason.text(lang);
     match reason.characteristic() {
@@ -23,12 +23,12 @@ pub fn reason(lang: Lang, reason: &Reason) -> String {
     }
 }
 
-/// A name whose unit stays beside it where the line breaks.
+/// Joins name and unit so that no line breaks between them.
 pub(super) fn unbroken(name: &str) -> String {
     name.replace(" / ", "\u{a0}/\u{a0}")
 }
 
-/// Five significant digits without trailing zeros; a dash for nothing.
+/// Formats five significant digits without trailing zeros; a dash for `None`.
 pub(super) fn figure(value: Option<f64>) -> String {
     let Some(value) = value.filter(|it| it.is_finite()) else {
         return "–".to_owned();
@@ -49,7 +49,7 @@ pub(super) fn figure(value: Option<f64>) -> String {
     }
 }
 
-/// A share as percent with two decimals; a dash for nothing.
+/// Formats a share as percent with two decimals; a dash for a share of 0.
 pub(super) fn percent(part: u64, of: u64) -> String {
     if of == 0 {
         return "–".to_owned();
@@ -57,7 +57,7 @@ pub(super) fn percent(part: u64, of: u64) -> String {
     format!("{:.2} %", 100.0 * part as f64 / of as f64)
 }
 
-/// Seconds as hours, minutes and seconds.
+/// Formats seconds as `h:mm:ss`.
 pub(super) fn span(seconds: f64) -> String {
     let whole = seconds.round().max(0.0) as u64;
     format!("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60)

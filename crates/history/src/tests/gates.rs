@@ -253,18 +253,21 @@ fn an_alarm_that_nobody_has_seen_is_left_over_until_somebody_has() {
         reason: "sensor ordered".into(),
     };
     store.record(&[change(Some("air_lost"), shelved)]).unwrap();
-    let left = store.alarms_left(true).unwrap();
+    let left = store.unacknowledged_alarms(true).unwrap();
     let seen: Vec<_> = left
         .iter()
         .map(|it| (it.code.as_str(), it.count, it.shelved_until_us))
         .collect();
     assert_eq!(seen, [("air_lost", 1, Some(99)), ("door_open", 2, None)]);
-    assert!(store.alarms_left(false).unwrap().is_empty(), "another rig");
+    assert!(
+        store.unacknowledged_alarms(false).unwrap().is_empty(),
+        "another rig"
+    );
     let by = || AlarmChange::Acknowledged { by: "li".into() };
     store.record(&[change(Some("door_open"), by())]).unwrap();
-    assert_eq!(store.alarms_left(true).unwrap().len(), 1);
+    assert_eq!(store.unacknowledged_alarms(true).unwrap().len(), 1);
     store.record(&[change(None, by())]).unwrap();
-    assert!(store.alarms_left(true).unwrap().is_empty());
+    assert!(store.unacknowledged_alarms(true).unwrap().is_empty());
     let query =
         "SELECT count(*) FROM alarm_state WHERE acknowledged_by = 'li' AND acknowledged_at_us = 50";
     assert_eq!(

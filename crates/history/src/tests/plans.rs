@@ -205,7 +205,7 @@ fn what_is_read_or_deleted_part_by_part_is_found_by_its_key() {
         values::LIMITS,
         series::PACKED,
     ];
-    let golden = filter::golden_part();
+    let golden = filter::reference_part();
     let all = fixed.into_iter().chain([golden.as_str()]);
     for sql in all.chain(retention::EMPTYING) {
         let plan = explained(&by_hand, sql);

@@ -17,7 +17,7 @@ fn recipe() -> Recipe {
 
 /// A part in the middle of every limit but for its operate voltage.
 fn part(operate_v: f64, verdict: &str, reasons: &[&str]) -> Part {
-    let mut part = Part::of_paper("A", 1, verdict);
+    let mut part = Part::fixture("A", 1, verdict);
     for (key, value) in [
         ("coil_resistance_ohm", 400.0),
         ("operate_voltage_v", operate_v),
@@ -32,7 +32,7 @@ fn part(operate_v: f64, verdict: &str, reasons: &[&str]) -> Part {
         part.values.insert(key.into(), value.into());
         part.uncertainty.insert(key.into(), 0.02.into());
     }
-    part.because(reasons.iter().map(|it| Reason::from_text(it)).collect())
+    part.with_reasons(reasons.iter().map(|it| Reason::from_text(it)).collect())
 }
 
 fn relay(recipe: &mut Recipe) -> &mut RelayRecipe {

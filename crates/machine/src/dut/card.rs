@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 /// Steps of every kind by the names of `card.toml`, in the order of the card.
 pub const STEPS: &[&str] = &em_relay::card::STEPS;
 
-/// Id of a text of the catalogue, of the family `card`.
+/// Id of a text of the catalogue.
 pub type TextId = &'static str;
 
 /// What the kind says.
@@ -26,12 +26,10 @@ pub struct Card {
 /// One line of the card.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
-    /// Its name in `card.toml`.
+    /// Key of its time quota in `card.toml`.
     pub name: &'static str,
-    /// What is done.
-    pub what: TextId,
-    /// With what.
-    pub tooling: TextId,
+    /// Text of the catalogue: `.what` is done, with which `.tooling`, and the `.requirement` on sensors.
+    pub text: TextId,
     /// How the part is driven; empty where it is not.
     pub drive: Vec<Piece>,
     /// What must come out.
@@ -52,9 +50,9 @@ pub enum Piece {
 /// What must come out of a step.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Demand {
-    /// What sensors say.
-    Seen(TextId),
-    /// The limits of these.
+    /// Sensors report what the text of the step says.
+    Sensors,
+    /// Values lie within the limits of these characteristics.
     Within(Vec<Characteristic>),
 }
 
@@ -99,36 +97,13 @@ impl Card {
 }
 
 impl Step {
-    /// From the magazine into the nest.
-    pub fn load() -> Self {
+    /// A step of the handling, which drives no part and measures nothing.
+    pub fn handling(name: &'static str, text: TextId) -> Self {
         Self {
-            name: "load",
-            what: "card-let_one_part_into_pocket_push_it",
-            tooling: "card-escapement_pusher",
+            name,
+            text,
             drive: Vec::new(),
-            demand: Demand::Seen("card-part_present"),
-        }
-    }
-
-    /// Jaws and probes.
-    pub fn clamp() -> Self {
-        Self {
-            name: "clamp",
-            what: "card-close_both_jaws_raise_pin_block",
-            tooling: "card-jaws_probe_lift",
-            drive: Vec::new(),
-            demand: Demand::Seen("card-closed_up_their_sensors"),
-        }
-    }
-
-    /// From the nest into a bin.
-    pub fn sort() -> Self {
-        Self {
-            name: "sort",
-            what: "card-carry_part_bin_its_verdict_confirm",
-            tooling: "card-gripper_sort_axis",
-            drive: Vec::new(),
-            demand: Demand::Seen("card-one_count_beam"),
+            demand: Demand::Sensors,
         }
     }
 }

@@ -13,6 +13,7 @@ use crate::instrument::readings::Readings;
 use crate::rig::point::MissingPoint;
 use crate::rig::wiring::Wiring;
 use std::sync::Arc;
+use texts::Message;
 use thiserror::Error;
 use units::{Ohm, RigTime};
 
@@ -60,6 +61,16 @@ pub enum CalibrationFault {
     /// A reference part.
     #[error(transparent)]
     ReferencePart(#[from] em_relay::reference_part::Misfit),
+}
+
+impl CalibrationFault {
+    /// Its text of the family `fault`, with its figures.
+    pub fn message(&self) -> Message {
+        match self {
+            Self::Reference(fault) => fault.message(),
+            Self::ReferencePart(misfit) => misfit.message(),
+        }
+    }
 }
 
 const NO_REFERENCE_PARTS: &str = "a resistor has no reference parts, so none was planned";

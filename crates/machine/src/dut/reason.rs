@@ -1,8 +1,8 @@
 //! Why a part is not a pass: a code with its side and detail.
 //!
 //! Programs compare codes; a history keeps them, and JSON carries them as `{"code", "param", "side", "detail", "en", "zh"}`.
-//! [`Reason`] prints as the string of rows, files and API, for example `operate_voltage_v high`. That string is read back in
-//! two places, once each: where a history from before codes is migrated, and where a file of another system is imported.
+//! [`Reason`] prints as the string of rows, files and API, for example `operate_voltage_v high`. The import of a CSV file alone
+//! reads that string back.
 
 use super::characteristic::Characteristic;
 use super::verdict::Bin;
@@ -22,7 +22,7 @@ pub enum Code {
     NotProven(Characteristic),
     /// No usable value.
     NotMeasured(Characteristic),
-    /// The sequence was cut off; detail: by what.
+    /// The sequence was cut off; detail: the code of an alarm or of an order, a text of the family `interruption`.
     Interrupted,
     /// A line or module failed in the middle of the test; detail: which, and how.
     RigTrouble,
@@ -197,6 +197,7 @@ impl Reason {
             .with("param", param)
             .with("detail", &self.detail);
         match (self.code, self.side) {
+            (Code::Interrupted, _) => message.with("interruption", &self.detail),
             (_, None) => message,
             (Code::OutsideLimit(_) | Code::NotProven(_), Some(side)) => {
                 message.case(side.name()).with("side", side)
@@ -205,7 +206,6 @@ impl Reason {
                 Code::NotMeasured(_)
                 | Code::EmRelay(_)
                 | Code::Resistor(_)
-                | Code::Interrupted
                 | Code::RigTrouble
                 | Code::Unclassified,
                 Some(side),

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use units::{RigTime, Second};
 
 /// Reason why a part found inside is not tested.
-const FOUND: &str = "found inside at the reset";
+const FOUND: &str = "found_inside";
 
 /// Role of a part in the lot.
 #[derive(Debug, Clone, PartialEq, Eq)]

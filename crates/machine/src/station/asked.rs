@@ -229,7 +229,7 @@ impl Station {
     fn command(&mut self, command: Command, now: RigTime, wants: &mut Wants) {
         self.machine.fresh = false;
         match command {
-            Command::Abort => return self.abort("abort ordered", now, wants),
+            Command::Abort => return self.abort("abort_ordered", now, wants),
             Command::Clear | Command::Unhold | Command::Reset => self.alarms.annunciator.cleared(),
             Command::Suspend => self.machine.suspended_by_order = true,
             Command::Start

@@ -210,7 +210,7 @@ impl Station {
                 self.begin_check();
                 wants
                     .trouble
-                    .push(Alarm::reference_check_failed(&why.to_string()));
+                    .push(Alarm::reference_check_failed(&why.message()));
             }
         }
     }

@@ -90,6 +90,6 @@ fn calibrated(
 ) {
     match learned {
         Ok(complete) => *calibration = complete.or(calibration.take()),
-        Err(why) => told.trouble.push(Alarm::calibration(&why.to_string())),
+        Err(why) => told.trouble.push(Alarm::calibration(&why.message())),
     }
 }

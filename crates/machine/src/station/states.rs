@@ -12,12 +12,13 @@ use crate::handling::wants::{Interrupted, Judged, NestJob};
 use crate::handling::{Move, NestId, Place};
 use crate::instrument::act::{Doing, Runner};
 use crate::rig::bin::Bin;
+use texts::Message;
 use units::{RigTime, Span};
 
 /// Outputs that did not confirm their safe value in this time are told, and the abort goes on without.
 const SAFE_WITHIN: Span = Span::ms(2000);
 /// Why a part is not tested that nothing had interrupted before.
-const BY_A_RESET: &str = "by a reset";
+const BY_A_RESET: &str = "reset";
 /// Nobody is there to fill a magazine or empty a bin: after so long the run ends.
 const ALONE: Span = Span::ms(60_000);
 
@@ -34,7 +35,7 @@ impl Station {
             }
         }
         if inputs.abort && !packml::is_aborted(self.machine.state) {
-            self.make_safe("stopped by the operator", now, wants);
+            self.make_safe("stopped_by_operator", now, wants);
             self.end(Ending::Stopped, now, wants);
         }
         let rests = matches!(
@@ -62,7 +63,7 @@ impl Station {
             }
             (false, _, State::Idle) if self.machine.fresh => self.enter(Command::Start, now, wants),
             (false, false, State::Suspended) if now.since(self.machine.entered) > ALONE => {
-                self.make_safe("suspended for too long", now, wants);
+                self.make_safe("suspended_too_long", now, wants);
                 self.end(Ending::Alarm, now, wants);
             }
             (..) => {}
@@ -308,10 +309,13 @@ impl Station {
             }
             Doing::Wait(until) => wants.rig.wake_at = Some(until),
             Doing::Busy => {}
-            Doing::Trouble(why) => wants.notes.trouble.push(Alarm::calibration(&why)),
+            Doing::Trouble(why) => {
+                let fault = Message::new("fault", "line").with("detail", why);
+                wants.notes.trouble.push(Alarm::calibration(&fault));
+            }
             Doing::Done => {
                 if let Err(why) = self.conclude_references(now, &runner) {
-                    let alarm = Alarm::calibration(&why.to_string());
+                    let alarm = Alarm::calibration(&why.message());
                     wants.notes.trouble.push(alarm);
                     return;
                 }

@@ -78,6 +78,12 @@ impl Alarm {
         }
     }
 
+    /// The text of `fault` speaks in that of the alarm, with its arguments.
+    fn of_a_fault(code: AlarmCode, fault: &Message) -> Self {
+        let args = fault.args().clone().with("fault", fault.code());
+        Self { code, args }
+    }
+
     /// An actuator did not show the end of its motion in time.
     pub fn not_reached(movement: Move, limit: Span) -> Self {
         let wanted = movement.arrival();
@@ -153,8 +159,8 @@ impl Alarm {
     }
 
     /// A golden part does not read as certified.
-    pub fn reference_check_failed(why: &str) -> Self {
-        Self::from(AlarmCode::ReferenceCheckFailed).with("detail", why)
+    pub fn reference_check_failed(fault: &Message) -> Self {
+        Self::of_a_fault(AlarmCode::ReferenceCheckFailed, fault)
     }
 
     /// The test of a golden part was cut off and begins anew.
@@ -185,9 +191,9 @@ impl Alarm {
         Self::from(AlarmCode::CalibrationCutOff).with("module", module)
     }
 
-    /// Calibration did not come out.
-    pub fn calibration(why: &str) -> Self {
-        Self::from(AlarmCode::CalibrationFailed).with("detail", why)
+    /// The references or the reference parts give no calibration.
+    pub fn calibration(fault: &Message) -> Self {
+        Self::of_a_fault(AlarmCode::CalibrationFailed, fault)
     }
 
     /// The stored calibration may not be used, so that no lot begins.

@@ -9,6 +9,7 @@ use rusqlite::{Connection, OptionalExtension, params};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
+use std::fs::OpenOptions;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -50,6 +51,7 @@ impl Register {
     /// A file of another program or a later version is refused and left untouched.
     pub fn open(path: &Path) -> Result<Self> {
         const DOING: &str = "opening the list of people";
+        own(path);
         let connection = Connection::open(path).doing(DOING)?;
         connection
             .busy_timeout(Duration::from_secs(5))
@@ -218,6 +220,16 @@ impl Register {
             .query_row(sql, [], |row| row.get(0))
             .doing(doing)
     }
+}
+
+/// Makes a missing file that only this user can read and write: it holds hashes of passwords. When it cannot be made,
+/// opening it names the reason.
+fn own(path: &Path) {
+    let mut options = OpenOptions::new();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+    let _ = options.open(path);
 }
 
 fn make(connection: &Connection) -> rusqlite::Result<()> {

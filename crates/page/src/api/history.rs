@@ -11,6 +11,10 @@ const UNTIL: Member = may("until", "Before, RFC 3339.");
 const VERDICT: Member = may("verdict", "`pass`, `fail`, `void`, `unjudged`.");
 const BIN: Member = may("bin", "Bin that the verdict asks for.");
 const KIND: Member = may("kind", "`lot` (without it), `golden`, `all`.");
+const SUSPECT: Member = may(
+    "suspect",
+    "`true`: only parts between a passed reference check and a failed one.",
+);
 const PARAM: Member = may("param", "Parameter key with its unit, as in an export.");
 const MIN: Member = may("min", "Least value of `param`.");
 const MAX: Member = may("max", "Largest value of `param`.");
@@ -23,7 +27,7 @@ const LAST: Member = may("last", "Only the last so many points; 200 without it."
 
 const RUNS: [Member; 3] = [LOT, RUN, RECIPE];
 const PAGE: [Member; 2] = [LIMIT, OFFSET];
-const FILTER: [Member; 8] = [LOT, RUN, RECIPE, SINCE, UNTIL, VERDICT, BIN, KIND];
+const FILTER: [Member; 9] = [LOT, RUN, RECIPE, SINCE, UNTIL, VERDICT, BIN, KIND, SUSPECT];
 const RANGE: [Member; 3] = [PARAM, MIN, MAX];
 const CHART: [Member; 3] = [SUBGROUP, RULES, LAST];
 

@@ -45,7 +45,7 @@ pub(in super::super) async fn csv(
     filter: super::Filtered,
 ) -> Result<Response, HmiError> {
     let filter = filter?.0;
-    checks::sensible(&filter)?;
+    checks::validate(&filter)?;
     let (archive, place) = desk.readers.open().await?;
     let asked = filter.clone();
     let known = move || {
@@ -67,7 +67,7 @@ pub(in super::super) async fn xlsx(
     uri: Uri,
 ) -> Result<(Saved, Vec<u8>), HmiError> {
     let (filter, own) = asked::<Printed>(&uri)?;
-    checks::sensible(&filter)?;
+    checks::validate(&filter)?;
     super::paper::refuse("seq", own.seq.is_some())?;
     super::paper::refuse("ideal_cycle_s", own.ideal_cycle_s.is_some())?;
     let made = move |archive: &history::Archive| {

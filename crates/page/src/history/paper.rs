@@ -65,7 +65,7 @@ pub(in super::super) async fn alarms(State(desk): State<Desk>, uri: Uri) -> Resu
 /// `GET /api/history/report/chart`.
 pub(in super::super) async fn chart(State(desk): State<Desk>, uri: Uri) -> Result<Page, HmiError> {
     let (filter, how) = asked::<Charting>(&uri)?;
-    checks::sensible(&filter)?;
+    checks::validate(&filter)?;
     let last = how.last()?;
     page(desk, move |archive| {
         let on = paper::paper(language(how.lang));

@@ -9,7 +9,7 @@ use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 use config::load_recipe;
 use history::Archive;
-use history::inquiry::rejudge::{Again, Rejudging};
+use history::inquiry::rejudge::{RejudgedPart, Rejudging};
 use serde::Deserialize;
 use std::io::{self, Write};
 use tokio::task::spawn_blocking;
@@ -60,7 +60,7 @@ fn written(
 ) -> io::Result<()> {
     type Lost = Box<dyn std::error::Error + Send + Sync>;
     out.write_all(b"[\n")?;
-    let each = |part: Again| -> Result<(), Lost> {
+    let each = |part: RejudgedPart| -> Result<(), Lost> {
         if part.changes() || !changed {
             serde_json::to_writer(&mut *out, &part)?;
             out.write_all(b",\n")?;

@@ -1,7 +1,7 @@
 //! Recipes: everybody reads, an engineer revises, and nobody gets past what loading refuses.
 
 use super::*;
-use ::history::{Archive, Filter, Ordered};
+use ::history::{Archive, Filter, OrderEntry};
 use serde_json::{Value, json};
 
 impl Bench {
@@ -45,7 +45,7 @@ impl Bench {
         .unwrap()
     }
 
-    fn audit(&self) -> Vec<Ordered> {
+    fn audit(&self) -> Vec<OrderEntry> {
         let archive = Archive::open(&self.db).unwrap();
         archive.orders(&Filter::default(), None).unwrap()
     }

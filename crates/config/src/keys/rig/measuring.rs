@@ -3,82 +3,24 @@
 use machine::dut::em_relay::keys::board::{GATE_DELAY, OPERATION_SCATTER};
 use machine::form::{Form, Key, above_zero, from_to, key, optional};
 
-pub(super) const ACCURACY: &[Key] = &[
-    key(
-        "ai_gain_pct",
-        from_to(0.0, 10.0, "%"),
-        "gauge",
-        "gain of analog inputs, of reading",
-    ),
-    key(
-        "ai_offset_pct_of_range",
-        from_to(0.0, 10.0, "%"),
-        "gauge",
-        "offset of analog inputs, of range",
-    ),
-    key(
-        "ai_noise_lsb",
-        from_to(0.0, 100.0, "LSB"),
-        "gauge",
-        "noise of analog inputs, standard deviation",
-    ),
-    key(
-        "ao_gain_pct",
-        from_to(0.0, 10.0, "%"),
-        "gauge",
-        "gain of analog outputs",
-    ),
-    key(
-        "ao_offset_mv",
-        from_to(0.0, 1000.0, "mV"),
-        "gauge",
-        "offset of analog outputs at the terminal",
-    ),
-    key(
-        "ao_slope_pct",
-        from_to(0.0, 50.0, "%"),
-        "gauge",
-        "slope of ramps",
-    ),
-    optional(
-        "ao_refresh_ms",
-        from_to(0.0, 100.0, "ms"),
-        "gauge",
-        "time between two steps of a ramping analog output; above 2 no coarse ramp is trusted",
-    ),
-    GATE_DELAY,
-    key(
-        "rtd_k",
-        from_to(0.0, 10.0, "K"),
-        "gauge",
-        "thermometers, standard deviation",
-    ),
-    key(
-        "part_minus_track_k",
-        from_to(0.0, 10.0, "K"),
-        "gauge",
-        "part against track, standard deviation",
-    ),
-    OPERATION_SCATTER,
-    key(
-        "conversions_per_s",
-        above_zero(10_000.0, "1/s"),
-        "station",
-        "of an I-7017F in fast mode, all enabled channels together",
-    ),
-];
+pub(super) const ACCURACY: &[Key] = keys! {
+    key("ai_gain_pct", from_to(0.0, 10.0, "%"), "gauge", "gain of analog inputs, of reading");
+    key("ai_offset_pct_of_range", from_to(0.0, 10.0, "%"), "gauge", "offset of analog inputs, of range");
+    key("ai_noise_lsb", from_to(0.0, 100.0, "LSB"), "gauge", "noise of analog inputs, standard deviation");
+    key("ao_gain_pct", from_to(0.0, 10.0, "%"), "gauge", "gain of analog outputs");
+    key("ao_offset_mv", from_to(0.0, 1000.0, "mV"), "gauge", "offset of analog outputs at the terminal");
+    key("ao_slope_pct", from_to(0.0, 50.0, "%"), "gauge", "slope of ramps");
+    optional("ao_refresh_ms", from_to(0.0, 100.0, "ms"), "gauge",
+        "time between two steps of a ramping analog output; above 2 no coarse ramp is trusted");
+    GATE_DELAY;
+    key("rtd_k", from_to(0.0, 10.0, "K"), "gauge", "thermometers, standard deviation");
+    key("part_minus_track_k", from_to(0.0, 10.0, "K"), "gauge", "part against track, standard deviation");
+    OPERATION_SCATTER;
+    key("conversions_per_s", above_zero(10_000.0, "1/s"), "station",
+        "of an I-7017F in fast mode, all enabled channels together");
+};
 
-pub(super) const CALIBRATION: &[Key] = &[
-    key(
-        "valid_h",
-        above_zero(8760.0, "h"),
-        "gauge",
-        "age at which a calibration no longer holds",
-    ),
-    optional(
-        "golden",
-        Form::Text,
-        "config",
-        "file of the golden parts, beside rig.toml, for recipes that need them",
-    ),
-];
+pub(super) const CALIBRATION: &[Key] = keys! {
+    key("valid_h", above_zero(8760.0, "h"), "gauge", "age at which a calibration no longer holds");
+    optional("golden", Form::Text, "config", "file of the reference parts, beside rig.toml, for recipes that need them");
+};

@@ -62,25 +62,59 @@ impl CardStep {
         }
     }
 
-    /// The limits of the characteristics that belong to it.
-    fn demand(self) -> Demand {
-        let all = Parameter::ALL.into_iter();
-        let own = all.filter(|parameter| parameter.facts().card.contains(&self));
-        Demand::Within(own.map(Characteristic::from).collect())
+    const fn text(self) -> TextId {
+        match self {
+            Self::Load => "card-load",
+            Self::Clamp => "card-clamp",
+            Self::Kelvin => "card-kelvin",
+            Self::OperateTime => "card-operate_time",
+            Self::ReleaseTime => "card-release_time",
+            Self::Coil => "card-coil",
+            Self::OperateVoltage => "card-operate_voltage",
+            Self::ReleaseVoltage => "card-release_voltage",
+            Self::Unclamp => "card-unclamp",
+            Self::Sort => "card-sort",
+        }
+    }
+
+    /// How the coil is driven, or the contact fed.
+    fn drive(self, relay: &RelayRecipe) -> Vec<Piece> {
+        let (test, nominal) = (&relay.test, Piece::Figure(relay.part.nominal_v));
+        let prebias = Piece::Figure(test.prebias_v);
+        match self {
+            Self::Load | Self::Clamp | Self::Unclamp | Self::Sort => Vec::new(),
+            Self::Kelvin => vec![literal("1 A, ±")],
+            Self::OperateTime => vec![literal("0 → "), nominal, literal(" V")],
+            Self::ReleaseTime => {
+                let suppression = match test.clamp {
+                    Clamp::Zener => "card-zener",
+                    Clamp::Diode => "card-diode",
+                };
+                vec![nominal, literal(" → 0 V, "), Piece::Text(suppression)]
+            }
+            Self::Coil => vec![prebias, literal(" V")],
+            Self::OperateVoltage => {
+                let top = Piece::Figure(test.prebias_v + test.coarse_span_v);
+                vec![prebias, literal(" → "), top, literal(" V")]
+            }
+            Self::ReleaseVoltage => {
+                let seal = Piece::Figure(SEAL * relay.part.nominal_v);
+                vec![seal, literal(" V → 0")]
+            }
+        }
     }
 
     fn of(self, relay: &RelayRecipe) -> Step {
-        match self {
-            Self::Load => Step::load(),
-            Self::Clamp => Step::clamp(),
-            Self::Kelvin => kelvin(),
-            Self::OperateTime => operate_time(relay),
-            Self::ReleaseTime => release_time(relay),
-            Self::Coil => coil(relay),
-            Self::OperateVoltage => operate_voltage(relay),
-            Self::ReleaseVoltage => release_voltage(relay),
-            Self::Unclamp => unclamp(),
-            Self::Sort => Step::sort(),
+        let all = Parameter::ALL.into_iter();
+        let own = all.filter(|parameter| parameter.facts().card.contains(&self));
+        let own: Vec<_> = own.map(Characteristic::from).collect();
+        Step {
+            drive: self.drive(relay),
+            demand: match own.is_empty() {
+                true => Demand::Sensors,
+                false => Demand::Within(own),
+            },
+            ..Step::handling(self.name(), self.text())
         }
     }
 }
@@ -90,13 +124,13 @@ pub fn card(relay: &RelayRecipe) -> Card {
     let part = &relay.part;
     let rating = vec![
         Piece::Figure(part.nominal_v),
-        text(" V, "),
+        literal(" V, "),
         Piece::Figure(part.nominal_coil_ohm),
-        text(" Ω"),
+        literal(" Ω"),
     ];
-    let conditioning = "card-operations_before_test";
+    let conditioning = "card-conditioning";
     Card {
-        rating: ("card-coil_nominal", rating),
+        rating: ("card-rated_coil", rating),
         steps: steps(relay),
         counts: vec![(conditioning, relay.test.conditioning_operations)],
     }
@@ -117,97 +151,6 @@ fn steps(relay: &RelayRecipe) -> Vec<Step> {
     steps.into_iter().map(|step| step.of(relay)).collect()
 }
 
-fn kelvin() -> Step {
-    Step {
-        name: CardStep::Kelvin.name(),
-        what: "card-check_all_five_kelvin_connections",
-        tooling: "card-pin_block_1_source",
-        drive: vec![text("1 A, ±")],
-        demand: CardStep::Kelvin.demand(),
-    }
-}
-
-fn coil(relay: &RelayRecipe) -> Step {
-    Step {
-        name: CardStep::Coil.name(),
-        what: "card-measure_coil_below_pickup",
-        tooling: "card-coil_supply_current_shunt",
-        drive: vec![Piece::Figure(relay.test.prebias_v), text(" V")],
-        demand: CardStep::Coil.demand(),
-    }
-}
-
-fn operate_voltage(relay: &RelayRecipe) -> Step {
-    let test = &relay.test;
-    Step {
-        name: CardStep::OperateVoltage.name(),
-        what: "card-operate_threshold_coarse_ramp_then",
-        tooling: RAMP,
-        drive: vec![
-            Piece::Figure(test.prebias_v),
-            text(" → "),
-            Piece::Figure(test.prebias_v + test.coarse_span_v),
-            text(" V"),
-        ],
-        demand: CardStep::OperateVoltage.demand(),
-    }
-}
-
-fn operate_time(relay: &RelayRecipe) -> Step {
-    Step {
-        name: CardStep::OperateTime.name(),
-        what: "card-timed_operate_with_bounce_no",
-        tooling: TIMER,
-        drive: vec![
-            text("0 → "),
-            Piece::Figure(relay.part.nominal_v),
-            text(" V"),
-        ],
-        demand: CardStep::OperateTime.demand(),
-    }
-}
-
-fn release_time(relay: &RelayRecipe) -> Step {
-    let suppression = match relay.test.clamp {
-        Clamp::Zener => "card-60_v_zener",
-        Clamp::Diode => "card-diode",
-    };
-    Step {
-        name: CardStep::ReleaseTime.name(),
-        what: "card-timed_release_with_bounce_nc",
-        tooling: TIMER,
-        drive: vec![
-            Piece::Figure(relay.part.nominal_v),
-            text(" → 0 V, "),
-            Piece::Text(suppression),
-        ],
-        demand: CardStep::ReleaseTime.demand(),
-    }
-}
-
-fn release_voltage(relay: &RelayRecipe) -> Step {
-    Step {
-        name: CardStep::ReleaseVoltage.name(),
-        what: "card-release_threshold_coarse_ramp_then",
-        tooling: RAMP,
-        drive: vec![Piece::Figure(SEAL * relay.part.nominal_v), text(" V → 0")],
-        demand: CardStep::ReleaseVoltage.demand(),
-    }
-}
-
-fn unclamp() -> Step {
-    Step {
-        name: CardStep::Unclamp.name(),
-        what: "card-coil_off_current_1_ma_pin_block",
-        tooling: "card-probe_lift_jaws",
-        drive: Vec::new(),
-        demand: Demand::Seen("card-down_open_their_sensors"),
-    }
-}
-
-const RAMP: TextId = "card-coil_supply_gated_counter";
-const TIMER: TextId = "card-counters_1_source";
-
-fn text(same: &'static str) -> Piece {
+fn literal(same: &'static str) -> Piece {
     Piece::Literal(same)
 }

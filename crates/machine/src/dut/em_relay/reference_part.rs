@@ -14,6 +14,7 @@ use crate::dut::em_relay::probe_contact::Trend;
 use crate::dut::em_relay::settings::{Certified, ReferencePart};
 use crate::gauge::Factor;
 use crate::gauge::Reading;
+use texts::{Lang, Message};
 use thiserror::Error;
 use units::{Celsius, Ohm, Unit};
 
@@ -22,25 +23,26 @@ const BAND_V: f64 = 0.060;
 
 /// Why a golden part does not calibrate the rig, or does not read as certified.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[error("{}", self.message().say(Lang::En))]
 pub enum Misfit {
     /// No certificate of this serial number.
-    #[error("golden part {serial} has no certificate")]
     NoCertificate {
         /// Its serial number.
         serial: String,
     },
     /// Something was not measured.
-    #[error("golden part {serial}: no {what}")]
     Without {
         /// Its serial number.
         serial: String,
         /// What is missing.
-        what: &'static str,
+        characteristic: Parameter,
+    },
+    /// The temperature of the part is unknown.
+    WithoutTemperature {
+        /// Its serial number.
+        serial: String,
     },
     /// The coil is not the one of the certificate.
-    #[error(
-        "golden part {serial}: coil reads {ohm:.2} ohm, certificate {certified_ohm:.2} +- {allowed_ohm:.2}. Is it the part named?"
-    )]
     OtherCoil {
         /// Its serial number.
         serial: String,
@@ -52,13 +54,11 @@ pub enum Misfit {
         allowed_ohm: f64,
     },
     /// Too few were measured.
-    #[error("{measured} golden parts were measured, at least 3 are needed")]
     TooFew {
         /// How many.
         measured: usize,
     },
     /// One overshoots differently.
-    #[error("golden part {serial} is {off_mv:+.1} mV away from the others")]
     Outlier {
         /// Its serial number.
         serial: String,
@@ -66,14 +66,11 @@ pub enum Misfit {
         off_mv: f64,
     },
     /// A check against the certificate failed.
-    #[error(
-        "golden part {serial}: {name} reads {found:.4} {unit}, certificate {certified:.4} +- {allowed:.4}"
-    )]
     Reads {
         /// Its serial number.
         serial: String,
-        /// Key of the characteristic.
-        name: &'static str,
+        /// What reads differently.
+        characteristic: Parameter,
         /// Value found, in `unit`.
         found: f64,
         /// Unit of the values.
@@ -83,6 +80,49 @@ pub enum Misfit {
         /// Difference allowed.
         allowed: f64,
     },
+}
+
+impl Misfit {
+    /// Its text of the family `fault`, with its figures.
+    pub fn message(&self) -> Message {
+        let of = |code, serial| Message::new("fault", code).with("serial", serial);
+        match self {
+            Self::NoCertificate { serial } => of("no_certificate", serial),
+            Self::Without {
+                serial,
+                characteristic,
+            } => of("without", serial).with("characteristic", characteristic.name()),
+            Self::WithoutTemperature { serial } => of("without_temperature", serial),
+            Self::OtherCoil {
+                serial,
+                ohm,
+                certified_ohm,
+                allowed_ohm,
+            } => of("other_coil", serial)
+                .with("ohm", format!("{ohm:.2}"))
+                .with("certified_ohm", format!("{certified_ohm:.2}"))
+                .with("allowed_ohm", format!("{allowed_ohm:.2}")),
+            Self::TooFew { measured } => {
+                Message::new("fault", "too_few").with("measured", measured)
+            }
+            Self::Outlier { serial, off_mv } => {
+                of("outlier", serial).with("off_mv", format!("{off_mv:+.1}"))
+            }
+            Self::Reads {
+                serial,
+                characteristic,
+                found,
+                unit,
+                certified,
+                allowed,
+            } => of("reads_off", serial)
+                .with("characteristic", characteristic.name())
+                .with("found", format!("{found:.4}"))
+                .with("unit", unit)
+                .with("certified", format!("{certified:.4}"))
+                .with("allowed", format!("{allowed:.4}")),
+        }
+    }
 }
 
 /// Indications of one golden part in both directions, minus certificate, at the part's temperature.
@@ -112,18 +152,20 @@ impl ReferenceRun {
         seen: &Seen,
     ) -> Result<(), Misfit> {
         let serial = &part.serial;
-        let without = |what| Misfit::Without {
+        let without = |characteristic| Misfit::Without {
             serial: serial.clone(),
-            what,
+            characteristic,
         };
-        let track = seen.track.ok_or_else(|| without("temperature"))?;
+        let track = seen.track.ok_or_else(|| Misfit::WithoutTemperature {
+            serial: serial.clone(),
+        })?;
         let fine = |ramp: Option<Ramp>| ramp.and_then(|ramp| ramp.fine);
         let over = |ramp: Option<Ramp>| {
             ramp.and_then(|it| Some((it.coarse.indicated - it.fine?).0))
                 .unwrap_or(f64::NAN)
         };
-        let operate = fine(seen.operate).ok_or_else(|| without("operate voltage"))?;
-        let release = fine(seen.release).ok_or_else(|| without("release voltage"))?;
+        let operate = fine(seen.operate).ok_or_else(|| without(Parameter::OperateVoltage))?;
+        let release = fine(seen.release).ok_or_else(|| without(Parameter::ReleaseVoltage))?;
         check_coil(part, record)?;
         seen.probe_contact
             .into_iter()
@@ -241,7 +283,7 @@ fn check_coil<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<(), Mis
         .result(Parameter::CoilResistance)
         .ok_or_else(|| Misfit::Without {
             serial: serial.clone(),
-            what: "coil resistance",
+            characteristic: Parameter::CoilResistance,
         })?;
     let certified = part.coil_resistance_ohm;
     let allowed = 2.0 * coil.budget.combined().hypot(certified.u) * 2.0;
@@ -269,13 +311,12 @@ pub fn check<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<(), Misf
     ];
     let serial = &part.serial;
     for (parameter, certified) in certified {
-        let name = parameter.name();
         let found = record
             .result(parameter)
             .filter(Reading::is_usable)
             .ok_or_else(|| Misfit::Without {
                 serial: serial.clone(),
-                what: name,
+                characteristic: parameter,
             })?;
         let allowed = CHECK_K * found.budget.combined().hypot(certified.u);
         let off = found.value - certified.value;
@@ -283,7 +324,7 @@ pub fn check<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<(), Misf
         if !within {
             return Err(Misfit::Reads {
                 serial: serial.clone(),
-                name,
+                characteristic: parameter,
                 found: found.value,
                 unit: found.unit,
                 certified: certified.value,

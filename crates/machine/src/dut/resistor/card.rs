@@ -10,14 +10,18 @@ pub fn card(resistor: &ResistorRecipe) -> Card {
     let drive = vec![Piece::Figure(level), Piece::Literal(" V")];
     let measure = Step {
         name: "coil",
-        what: "card-measure_resistance_between_coil",
-        tooling: "card-i_7017f_coil_supply",
+        text: "card-resistance",
         drive: drive.clone(),
         demand: Demand::Within(vec![Parameter::Resistance.into()]),
     };
     Card {
         rating: ("card-test_voltage", drive),
-        steps: vec![Step::load(), Step::clamp(), measure, Step::sort()],
+        steps: vec![
+            Step::handling("load", "card-load"),
+            Step::handling("clamp", "card-clamp"),
+            measure,
+            Step::handling("sort", "card-sort"),
+        ],
         counts: Vec::new(),
     }
 }

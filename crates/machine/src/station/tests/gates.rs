@@ -61,7 +61,7 @@ fn a_golden_part_agrees_with_its_certificate_within_three_standard_deviations() 
         }
     }
     let nothing = check(part, &TestRecord::default());
-    assert!(nothing.is_err_and(|why| why.to_string().contains("coil_resistance_ohm")));
+    assert!(nothing.is_err_and(|why| why.to_string().contains("Coil resistance")));
 }
 
 /// Every part of this magazine has a broken coil, the golden one too: no check can be passed.

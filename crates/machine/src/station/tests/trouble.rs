@@ -10,10 +10,10 @@ use crate::handling::wear::Wearing;
 use crate::rig::axis::AxisStation;
 use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
-use crate::station::catalogue::AlarmCode;
+use crate::station::catalogue::{AlarmCode, Stops};
 use crate::station::trouble::Alarm;
 use std::collections::BTreeSet;
-use texts::Lang;
+use texts::{Lang, Message};
 use units::Span;
 
 const MOVES: [Move; 13] = [
@@ -60,6 +60,7 @@ fn every_alarm() -> Vec<Alarm> {
             Alarm::fall_unseen(bin),
         ]
     };
+    let few = Message::new("fault", "too_few").with("measured", 2);
     let others = [
         Alarm::bus("silent"),
         Alarm::stale(DigitalIn::AirOk),
@@ -67,10 +68,10 @@ fn every_alarm() -> Vec<Alarm> {
         Alarm::part_sticks(),
         Alarm::step_too_long("probing", after),
         Alarm::watchdog_tripped("mech_do_a"),
-        Alarm::calibration("odd"),
+        Alarm::calibration(&Message::new("fault", "line").with("detail", "odd")),
         Alarm::calibration_invalid("odd"),
         Alarm::reference_check_due("G-12-1"),
-        Alarm::reference_check_failed("odd"),
+        Alarm::reference_check_failed(&few),
         Alarm::reference_repeated("G-12-1", "odd"),
         Alarm::discard_limit(3, 40, 5.0),
         Alarm::worn(Wearing::Probes, 8, 8),
@@ -101,7 +102,11 @@ fn every_alarm_has_both_texts_with_its_arguments() {
         assert!(en.is_some_and(|it| it.is_ascii()), "{alarm:?}");
         assert!(zh.is_some(), "{alarm:?}");
         let case = alarm.args.get("case");
-        let wanted = texts::arguments(Lang::En, &message.id(), case).unwrap();
+        let mut wanted = texts::arguments(Lang::En, &message.id(), case).unwrap();
+        if let Some(fault) = alarm.args.get("fault") {
+            let of_fault = texts::arguments(Lang::En, &format!("fault-{fault}"), None);
+            wanted.append(&mut of_fault.unwrap());
+        }
         let given: BTreeSet<&str> = alarm.args.names().filter(|it| *it != "case").collect();
         let unused: Vec<_> = given
             .difference(&wanted)
@@ -119,6 +124,17 @@ fn every_code_is_read_back_from_its_name() {
         assert_eq!(AlarmCode::from_name(&code.name()), Some(code));
     }
     assert_eq!(AlarmCode::from_name("of_tomorrow"), None);
+}
+
+#[test]
+fn every_alarm_that_ends_a_test_names_the_interruption() {
+    let ends = |it: &AlarmCode| matches!(it.entry().stops, Stops::Abort | Stops::Hold);
+    for code in AlarmCode::all().filter(ends) {
+        let name = code.name();
+        for lang in Lang::ALL {
+            assert_ne!(lang.name("interruption", &name), name, "{lang:?}");
+        }
+    }
 }
 
 #[test]

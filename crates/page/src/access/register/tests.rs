@@ -11,6 +11,15 @@ fn fresh() -> (Register, tempfile::TempDir) {
     (register, folder)
 }
 
+#[cfg(unix)]
+#[test]
+fn nobody_else_may_read_the_file() {
+    use std::os::unix::fs::PermissionsExt;
+    let (_register, folder) = fresh();
+    let file = std::fs::metadata(folder.path().join("people.db")).unwrap();
+    assert_eq!(file.permissions().mode() & 0o777, 0o600);
+}
+
 #[test]
 fn the_first_start_makes_one_engineer_whose_password_is_told_once() {
     let (mut register, folder) = fresh();

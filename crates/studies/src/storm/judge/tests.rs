@@ -25,7 +25,7 @@ fn row(
     bin: &str,
     landed_s: Option<u64>,
 ) -> Part {
-    let mut row = Part::of_paper(lot, seq, verdict);
+    let mut row = Part::fixture(lot, seq, verdict);
     row.time = at(judged_s);
     row.bin = Some(bin.to_owned());
     row.test_s = Some(0.7);

@@ -1,35 +1,31 @@
 //! Why the references on the interface board do not calibrate the rig.
 
-use crate::rig::sample::{Quality, Sample};
+use crate::rig::sample::Sample;
+use texts::{Lang, Message};
 use thiserror::Error;
 
 /// Why the references do not calibrate the rig.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[error("{}", self.message().say(Lang::En))]
 pub enum ReferenceFault {
     /// A channel gave no number.
-    #[error("{name} reads {raw} ({quality:?})")]
     Reads {
         /// The channel.
         name: &'static str,
         /// The reply.
         raw: String,
-        /// Why it is no number.
-        quality: Quality,
     },
     /// A channel is masked out.
-    #[error("{name} is not enabled")]
     NotEnabled {
         /// The channel.
         name: &'static str,
     },
     /// A channel has no scan.
-    #[error("{name} was not read")]
     NotRead {
         /// The channel.
         name: &'static str,
     },
     /// Scans are missing.
-    #[error("{found} scans where {expected} were expected")]
     Scans {
         /// Scans read.
         found: usize,
@@ -37,7 +33,6 @@ pub enum ReferenceFault {
         expected: usize,
     },
     /// The converter is outside its promise by half.
-    #[error("coil converter gain is off by {off_pct:.3} %, promised {promised_pct:.3} %")]
     Gain {
         /// Found minus 1, %.
         off_pct: f64,
@@ -45,13 +40,11 @@ pub enum ReferenceFault {
         promised_pct: f64,
     },
     /// Too few readings between the ends of the fine ramp.
-    #[error("only {readings} readings on the fine ramp")]
     FewOnRamp {
         /// Readings that count.
         readings: usize,
     },
     /// The fine ramp is not the one of its slew code.
-    #[error("slope of the fine ramp is {v_per_s:.4} V/s where {nominal_v_per_s} V/s was expected")]
     Slope {
         /// Slope found.
         v_per_s: f64,
@@ -59,7 +52,6 @@ pub enum ReferenceFault {
         nominal_v_per_s: f64,
     },
     /// The source or the amplifier is not right.
-    #[error("reference contact drops {volts:.3} V where {expected_v:.3} V was expected")]
     Drop {
         /// Drop found, V at the terminal.
         volts: f64,
@@ -67,10 +59,8 @@ pub enum ReferenceFault {
         expected_v: f64,
     },
     /// Counters were not read before and after the pulses.
-    #[error("gate counters not read")]
     GatesNotRead,
     /// A counter does not count the reference pulse.
-    #[error("a pulse of 1.000 ms at gate {gate} counts {each_us:.1} us")]
     Pulse {
         /// Which counter.
         gate: usize,
@@ -84,7 +74,39 @@ impl ReferenceFault {
         Self::Reads {
             name,
             raw: sample.origin.raw.to_string(),
-            quality: sample.quality,
+        }
+    }
+
+    /// Its text of the family `fault`, with its figures.
+    pub fn message(&self) -> Message {
+        let of = |code| Message::new("fault", code);
+        match self {
+            Self::Reads { name, raw } => of("reads").with("name", name).with("raw", raw),
+            Self::NotEnabled { name } => of("not_enabled").with("name", name),
+            Self::NotRead { name } => of("not_read").with("name", name),
+            Self::Scans { found, expected } => {
+                of("scans").with("found", found).with("expected", expected)
+            }
+            Self::Gain {
+                off_pct,
+                promised_pct,
+            } => of("gain")
+                .with("off_pct", format!("{off_pct:.3}"))
+                .with("promised_pct", format!("{promised_pct:.3}")),
+            Self::FewOnRamp { readings } => of("few_on_ramp").with("readings", readings),
+            Self::Slope {
+                v_per_s,
+                nominal_v_per_s,
+            } => of("slope")
+                .with("v_per_s", format!("{v_per_s:.4}"))
+                .with("nominal_v_per_s", nominal_v_per_s),
+            Self::Drop { volts, expected_v } => of("drop")
+                .with("volts", format!("{volts:.3}"))
+                .with("expected_v", format!("{expected_v:.3}")),
+            Self::GatesNotRead => of("gates_not_read"),
+            Self::Pulse { gate, each_us } => of("pulse")
+                .with("gate", gate)
+                .with("each_us", format!("{each_us:.1}")),
         }
     }
 }

@@ -118,10 +118,10 @@ fn a_golden_part_that_was_not_fully_measured_is_refused_by_name() {
     };
     let cases = [
         ("temperature", spoilt(|found| found.own.track = None)),
-        ("operate", spoilt(|found| found.own.operate = None)),
-        ("release", spoilt(|found| found.own.release = None)),
+        ("Operate", spoilt(|found| found.own.operate = None)),
+        ("Release", spoilt(|found| found.own.release = None)),
         (
-            "release",
+            "Release",
             spoilt(|found| found.own.release = found.own.release.map(|r| Ramp { fine: None, ..r })),
         ),
         ("coil", tested(&part, 0.014, -0.009, 3.0)),

@@ -84,7 +84,7 @@ fn ledger(from: &str, part: bool, interrupted: bool, judged: bool) -> Ledger {
         ledger.enter_nest(NestId::FIRST, None);
     }
     if let Some(part) = ledger.part_mut(Place::NEST) {
-        part.interrupted = interrupted.then(|| "by a reset".to_owned());
+        part.interrupted = interrupted.then(|| "reset".to_owned());
         let is_over = matches!(from, "Judged" | "Gripping" | "Unclamping" | "Lifting");
         part.bin = (judged || is_over).then_some(Bin::RETEST);
     }

@@ -1,9 +1,9 @@
-//! What stands beside the parts: the runs, alarms and orders that a filter leaves.
+//! Runs, alarms and orders that a filter selects.
 
 use super::{Filter, Select};
 
 impl Filter {
-    /// The runs that the filter leaves.
+    /// Selects runs.
     pub(in super::super) fn runs(&self) -> Select {
         let mut select = Select::default();
         select.sql.push_str(
@@ -22,7 +22,7 @@ impl Filter {
         select
     }
 
-    /// Alarms in order of time, with name of lot and number of run.
+    /// Selects alarms with lot and run in order of time.
     pub(in super::super) fn alarms(&self) -> Select {
         let mut select = Select::default();
         select.sql.push_str(
@@ -46,7 +46,7 @@ impl Filter {
         select
     }
 
-    /// Orders, with name of lot and number of run, in order of time.
+    /// Selects orders with lot and run in order of time.
     pub(in super::super) fn orders(&self, who: Option<&str>) -> Select {
         let mut select = Select::default();
         select.sql.push_str(
