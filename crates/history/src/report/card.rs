@@ -130,7 +130,7 @@ fn joined(language: Lang, pieces: &[Piece]) -> String {
 
 fn demanded(language: Lang, recipe: &Recipe, demand: &Demand) -> String {
     match demand {
-        Demand::Seen(words) => language.text(words).to_owned(),
+        Demand::Sensors(words) => language.text(words).to_owned(),
         Demand::Within(characteristics) => demands(language, recipe, characteristics),
     }
 }

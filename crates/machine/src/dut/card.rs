@@ -53,7 +53,7 @@ pub enum Piece {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Demand {
     /// What sensors say.
-    Seen(TextId),
+    Sensors(TextId),
     /// The limits of these.
     Within(Vec<Characteristic>),
 }
@@ -106,7 +106,7 @@ impl Step {
             what: "card-let_one_part_into_pocket_push_it",
             tooling: "card-escapement_pusher",
             drive: Vec::new(),
-            demand: Demand::Seen("card-part_present"),
+            demand: Demand::Sensors("card-part_present"),
         }
     }
 
@@ -117,7 +117,7 @@ impl Step {
             what: "card-close_both_jaws_raise_pin_block",
             tooling: "card-jaws_probe_lift",
             drive: Vec::new(),
-            demand: Demand::Seen("card-closed_up_their_sensors"),
+            demand: Demand::Sensors("card-closed_up_their_sensors"),
         }
     }
 
@@ -128,7 +128,7 @@ impl Step {
             what: "card-carry_part_bin_its_verdict_confirm",
             tooling: "card-gripper_sort_axis",
             drive: Vec::new(),
-            demand: Demand::Seen("card-one_count_beam"),
+            demand: Demand::Sensors("card-one_count_beam"),
         }
     }
 }

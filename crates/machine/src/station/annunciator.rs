@@ -11,7 +11,7 @@
 //! while it stands is counted, not listed twice. The first one after a quiet time is the *first-out*
 //! and stays so until the list is empty of causes. Acknowledging resets nothing.
 
-use super::catalogue::{ABOUT_A_BODY, Entry, Goes, Stops};
+use super::catalogue::{ClearedBy, Entry, PER_PART, Reaction};
 use super::trouble::Alarm;
 use units::RigTime;
 
@@ -106,7 +106,7 @@ impl Annunciator {
     /// An alarm is there; true when its cause was not there before, or when it is about a body of its own.
     pub fn raise(&mut self, alarm: &Alarm, now: RigTime) -> bool {
         let quiet = !self.standing.iter().any(Standing::is_active);
-        let at_once = alarm.code.entry().goes == Goes::AtOnce;
+        let at_once = alarm.code.entry().cleared_by == ClearedBy::Itself;
         let condition = if at_once {
             Condition::Returned
         } else {
@@ -135,7 +135,7 @@ impl Annunciator {
             return true;
         };
         let again = !known.is_active();
-        if again || known.entry().goes == Goes::ByClear {
+        if again || known.entry().cleared_by == ClearedBy::Operator {
             self.changed = true;
             known.count += 1;
             known.alarm = alarm.clone();
@@ -145,20 +145,20 @@ impl Annunciator {
             known.first_out = quiet && !at_once;
             known.inherited = false;
         }
-        again || ABOUT_A_BODY.contains(&known.alarm.code)
+        again || PER_PART.contains(&known.alarm.code)
     }
 
     /// Alarms that go by their sensor and whose cause is not among `there` any more have gone.
     pub fn sensed(&mut self, there: &[Alarm]) {
         self.gone(|one| {
-            let by_sensor = one.entry().goes == Goes::BySensor;
+            let by_sensor = one.entry().cleared_by == ClearedBy::Sensor;
             by_sensor && !there.iter().any(|alarm| alarm.code == one.alarm.code)
         });
     }
 
     /// A person says that the causes are gone.
     pub fn cleared(&mut self) {
-        self.gone(|one| one.entry().goes == Goes::ByClear);
+        self.gone(|one| one.entry().cleared_by == ClearedBy::Operator);
     }
 
     fn gone(&mut self, is_gone: impl Fn(&Standing) -> bool) {
@@ -222,17 +222,19 @@ impl Annunciator {
     }
 
     /// The first active alarm that stops as much as this.
-    pub fn stopping(&self, stops: Stops) -> Option<&Standing> {
+    pub fn stopping(&self, stops: Reaction) -> Option<&Standing> {
         self.standing
             .iter()
-            .find(|one| one.is_active() && one.entry().stops == stops)
+            .find(|one| one.is_active() && one.entry().reaction == stops)
     }
 
     /// The first active alarm whose sensor still shows the cause.
     pub fn still_sensed(&self) -> Option<&Standing> {
         self.standing.iter().find(|one| {
             let entry = one.entry();
-            one.is_active() && entry.goes == Goes::BySensor && entry.stops == Stops::Abort
+            one.is_active()
+                && entry.cleared_by == ClearedBy::Sensor
+                && entry.reaction == Reaction::Abort
         })
     }
 }

@@ -98,7 +98,7 @@ impl Station {
             Command::Unsuspend => match self
                 .alarms
                 .annunciator
-                .stopping(super::catalogue::Stops::Suspend)
+                .stopping(super::catalogue::Reaction::Suspend)
             {
                 Some(cause) => Err(Refused::CauseRemains(Box::new(cause.alarm.clone()))),
                 None => Ok(()),

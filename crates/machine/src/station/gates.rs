@@ -35,7 +35,8 @@ pub struct LotSettings {
     /// Parts at the begin of a run that are measured by the slow strategy.
     pub first_article_parts: u64,
     /// Failed parts that a lot may have, % of its size.
-    pub discard_limit_pct: Option<f64>,
+    #[serde(rename = "discard_limit_pct")]
+    pub reject_rate_limit_pct: Option<f64>,
     /// When a golden part is measured.
     pub golden_check: CheckSettings,
     /// Uses after which probes and jaws are worn.
@@ -83,7 +84,7 @@ pub(super) struct Gates {
     judged: u64,
     failed: u64,
     /// The discard limit was told.
-    discarded: bool,
+    reject_rate_reported: bool,
     /// Counters whose limit was told.
     worn: Vec<Wearing>,
     /// The limit of the probes' contact is passed, and was told.
@@ -117,15 +118,20 @@ impl Gates {
     }
 
     /// Counts a part of the lot; true when it is one failed part too many, once.
-    fn discards(&mut self, failed: bool, limit_pct: Option<f64>, count: Option<u64>) -> bool {
+    fn exceeds_reject_rate(
+        &mut self,
+        failed: bool,
+        limit_pct: Option<f64>,
+        count: Option<u64>,
+    ) -> bool {
         self.judged += 1;
         self.failed += u64::from(failed);
         assert!(self.failed <= self.judged, "more failed than judged");
         let size = count.unwrap_or(self.judged).max(self.judged);
         let known = count.is_some() || self.judged >= ENOUGH;
         let over = limit_pct.is_some_and(|pct| self.failed as f64 > size as f64 * pct / 100.0);
-        let first = known && over && !self.discarded;
-        self.discarded |= first;
+        let first = known && over && !self.reject_rate_reported;
+        self.reject_rate_reported |= first;
         first
     }
 }
@@ -186,18 +192,18 @@ impl Station {
     pub(super) fn is_thorough(&self) -> bool {
         match self.line.ledger.part(Place::NEST).map(|part| &part.kind) {
             Some(Kind::Lot(seq)) => *seq <= self.plan.lot.first_article_parts,
-            Some(Kind::Golden(_)) => self.lot.gates.checking,
+            Some(Kind::Reference(_)) => self.lot.gates.checking,
             None => false,
         }
     }
 
     /// A golden part of a check was measured, or was not because it was interrupted.
-    pub(super) fn check(&mut self, judged: &Judged, serial: &str, wants: &mut Told) {
+    pub(super) fn check(&mut self, judged: &Judged, serial: &str, outcome: &mut Outcome) {
         if judged.part.interrupted.is_some() {
             return self.begin_check();
         }
         let read = self.device.check(serial, &judged.record);
-        wants.checked = Some(Checked {
+        outcome.checked = Some(Checked {
             passed: read.is_ok(),
             text: match &read {
                 Ok(()) => serial.to_owned(),
@@ -208,7 +214,7 @@ impl Station {
             Ok(()) => self.lot.gates.good(judged.at, self.line.ledger.lot_parts()),
             Err(why) => {
                 self.begin_check();
-                wants
+                outcome
                     .trouble
                     .push(Alarm::reference_check_failed(&why.to_string()));
             }
@@ -216,12 +222,12 @@ impl Station {
     }
 
     /// Counts a part of the lot against the discard limit.
-    pub(super) fn count_discards(&mut self, judged: &Judged, wants: &mut Told) {
+    pub(super) fn count_rejects(&mut self, judged: &Judged, outcome: &mut Outcome) {
         let failed = matches!(judged.verdict, Verdict::Fail(_));
-        let (limit_pct, count) = (self.plan.lot.discard_limit_pct, self.plan.count);
-        if self.lot.gates.discards(failed, limit_pct, count) {
+        let (limit_pct, count) = (self.plan.lot.reject_rate_limit_pct, self.plan.count);
+        if self.lot.gates.exceeds_reject_rate(failed, limit_pct, count) {
             let (failed, judged) = (self.lot.gates.failed, self.lot.gates.judged);
-            wants.trouble.push(Alarm::discard_limit(
+            outcome.trouble.push(Alarm::reject_rate_limit(
                 failed,
                 judged,
                 limit_pct.unwrap_or_default(),
@@ -270,7 +276,7 @@ impl Station {
 
 /// What the parts judged in a turn have told.
 #[derive(Debug, Default)]
-pub(super) struct Told {
+pub(super) struct Outcome {
     pub trouble: Vec<Alarm>,
     pub checked: Option<Checked>,
 }

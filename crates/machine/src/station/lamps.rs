@@ -8,7 +8,7 @@
 //! | buzzer | the first [`CALL`] of a red light |
 
 use super::annunciator::{Condition, Standing};
-use super::catalogue::Stops;
+use super::catalogue::Reaction;
 use super::packml::{self, State};
 use crate::rig::point::DigitalOut;
 use units::{RigTime, Span};
@@ -50,7 +50,7 @@ impl Lamps {
         if safe {
             self.lit = [false; 4];
         }
-        let stops = |one: &Standing| one.alarm.code.entry().stops != Stops::Nothing;
+        let stops = |one: &Standing| one.alarm.code.entry().reaction != Reaction::Nothing;
         let unseen = standing
             .iter()
             .any(|one| one.condition == Condition::Unacknowledged && stops(one));

@@ -2,7 +2,7 @@
 //! from reference parts and from every part of the lot.
 
 use super::Station;
-use super::gates::Told;
+use super::gates::Outcome;
 use super::trouble::Alarm;
 use super::wants::Wants;
 use crate::dut::device::{CalibrationFault, Made};
@@ -41,44 +41,44 @@ impl Station {
 
     /// What the parts judged in this turn say of the rig and of the lot.
     pub(super) fn learn(&mut self, wants: &mut Wants) {
-        let mut told = Told::default();
+        let mut outcome = Outcome::default();
         for judged in &wants.record.parts.judged {
             match &judged.part.kind {
-                Kind::Golden(serial) if self.lot.gates.is_checking() => {
-                    self.check(judged, serial, &mut told);
+                Kind::Reference(serial) if self.lot.gates.is_checking() => {
+                    self.check(judged, serial, &mut outcome);
                 }
-                Kind::Golden(_) | Kind::Lot(_) if judged.part.interrupted.is_some() => {}
-                Kind::Golden(serial) => {
+                Kind::Reference(_) | Kind::Lot(_) if judged.part.interrupted.is_some() => {}
+                Kind::Reference(serial) => {
                     let last = self.lot.reference_left.is_empty();
                     let learned = self.device.learn_reference(serial, &judged.record, last);
-                    calibrated(learned, &mut wants.record.calibrated, &mut told);
+                    calibrated(learned, &mut wants.record.calibrated, &mut outcome);
                 }
                 Kind::Lot(_) => {
-                    self.count_discards(judged, &mut told);
+                    self.count_rejects(judged, &mut outcome);
                     let pass = judged.verdict == Verdict::Pass;
                     self.device.learn(&judged.record, pass);
                 }
             }
         }
-        wants.notes.trouble.extend(told.trouble);
-        wants.record.checked = told.checked;
+        wants.notes.trouble.extend(outcome.trouble);
+        wants.record.checked = outcome.checked;
     }
 
     /// Serial number of the golden part in the nest, while golden parts teach and are not checked.
     pub(super) fn teaching(&self) -> Option<&str> {
         match self.line.ledger.part(Place::NEST).map(|part| &part.kind) {
-            Some(Kind::Golden(serial)) if !self.lot.gates.is_checking() => Some(serial),
-            Some(Kind::Golden(_) | Kind::Lot(_)) | None => None,
+            Some(Kind::Reference(serial)) if !self.lot.gates.is_checking() => Some(serial),
+            Some(Kind::Reference(_) | Kind::Lot(_)) | None => None,
         }
     }
 
     /// The last golden part was interrupted: what the others taught has to do, or the calibration has failed.
     pub(super) fn end_reference_run(&mut self, wants: &mut Wants) {
         if self.referenced && self.lot.reference_left.is_empty() && self.is_calibrating() {
-            let mut told = Told::default();
+            let mut outcome = Outcome::default();
             let complete = self.device.conclude_reference_parts().map(Some);
-            calibrated(complete, &mut wants.record.calibrated, &mut told);
-            wants.notes.trouble.extend(told.trouble);
+            calibrated(complete, &mut wants.record.calibrated, &mut outcome);
+            wants.notes.trouble.extend(outcome.trouble);
         }
     }
 }
@@ -86,10 +86,10 @@ impl Station {
 fn calibrated(
     learned: Result<Option<Calibration>, CalibrationFault>,
     calibration: &mut Option<Calibration>,
-    told: &mut Told,
+    outcome: &mut Outcome,
 ) {
     match learned {
         Ok(complete) => *calibration = complete.or(calibration.take()),
-        Err(why) => told.trouble.push(Alarm::calibration(&why.to_string())),
+        Err(why) => outcome.trouble.push(Alarm::calibration(&why.to_string())),
     }
 }

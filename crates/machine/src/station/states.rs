@@ -1,6 +1,6 @@
 //! What each state of the outer machine does in a turn, and how it is left.
 
-use super::catalogue::{AlarmCode, Stops};
+use super::catalogue::{AlarmCode, Reaction};
 use super::packml::{self, Command, On, State};
 use super::safety::{FIRST_SCAN, safety_was_read};
 use super::trouble::Alarm;
@@ -173,7 +173,11 @@ impl Station {
             State::Aborting => self.wait_for_safe(now, &inputs, wants),
             State::Clearing => self.clear(now, &inputs, wants),
             State::Suspended => {
-                let cause = self.alarms.annunciator.stopping(Stops::Suspend).is_some();
+                let cause = self
+                    .alarms
+                    .annunciator
+                    .stopping(Reaction::Suspend)
+                    .is_some();
                 if !cause && !self.machine.suspended_by_order {
                     self.enter(Command::Unsuspend, now, wants);
                 }

@@ -1,19 +1,19 @@
-//! What the operation process card says of a relay.
+//! The operation process card of a relay.
 
 use super::Parameter;
 use super::measure::{SEAL, Stage};
-use super::recipe::{Clamp, RelayRecipe};
+use super::recipe::{RelayRecipe, Suppression};
 use crate::dut::Characteristic;
 use crate::dut::card::{Card, Demand, Piece, Step, TextId};
 
 /// A step of the card.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CardStep {
-    /// From the magazine into the nest.
+    /// Feed from the magazine into the nest.
     Load,
-    /// Jaws and probes.
+    /// Close the jaws, raise the probes.
     Clamp,
-    /// Pins and NC contact at rest.
+    /// Kelvin check of the pins, NC contact at rest.
     Kelvin,
     /// Timed operation.
     OperateTime,
@@ -25,9 +25,9 @@ pub enum CardStep {
     OperateVoltage,
     /// Release threshold.
     ReleaseVoltage,
-    /// Off, probes and jaws.
+    /// Coil off, probes down, jaws open.
     Unclamp,
-    /// From the nest into a bin.
+    /// Carry from the nest into a bin.
     Sort,
 }
 
@@ -46,7 +46,7 @@ pub const STEPS: [&str; 10] = [
 ];
 
 impl CardStep {
-    /// Its name in `card.toml`.
+    /// Returns the name of the step in `card.toml`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Load => "load",
@@ -62,30 +62,70 @@ impl CardStep {
         }
     }
 
-    /// The limits of the characteristics that belong to it.
+    /// Returns the limits of its characteristics, or the sensors that confirm it.
     fn demand(self) -> Demand {
+        if self == Self::Unclamp {
+            return Demand::Sensors("card-down_open_their_sensors");
+        }
         let all = Parameter::ALL.into_iter();
         let own = all.filter(|parameter| parameter.facts().card.contains(&self));
         Demand::Within(own.map(Characteristic::from).collect())
     }
 
     fn of(self, relay: &RelayRecipe) -> Step {
-        match self {
-            Self::Load => Step::load(),
-            Self::Clamp => Step::clamp(),
-            Self::Kelvin => kelvin(),
-            Self::OperateTime => operate_time(relay),
-            Self::ReleaseTime => release_time(relay),
-            Self::Coil => coil(relay),
-            Self::OperateVoltage => operate_voltage(relay),
-            Self::ReleaseVoltage => release_voltage(relay),
-            Self::Unclamp => unclamp(),
-            Self::Sort => Step::sort(),
+        let (part, test) = (&relay.part, &relay.test);
+        let nominal = Piece::Figure(part.nominal_v);
+        let prebias = Piece::Figure(test.prebias_v);
+        let (what, tooling, drive) = match self {
+            Self::Load => return Step::load(),
+            Self::Clamp => return Step::clamp(),
+            Self::Sort => return Step::sort(),
+            Self::Kelvin => (
+                "card-check_all_five_kelvin_connections",
+                "card-pin_block_1_source",
+                vec![text("1 A, ±")],
+            ),
+            Self::OperateTime => (
+                "card-timed_operate_with_bounce_no",
+                TIMER,
+                vec![text("0 → "), nominal, text(" V")],
+            ),
+            Self::ReleaseTime => (
+                "card-timed_release_with_bounce_nc",
+                TIMER,
+                vec![nominal, text(" → 0 V, "), suppression(test.suppression)],
+            ),
+            Self::Coil => (
+                "card-measure_coil_below_pickup",
+                "card-coil_supply_current_shunt",
+                vec![prebias, text(" V")],
+            ),
+            Self::OperateVoltage => {
+                let top = Piece::Figure(test.prebias_v + test.coarse_span_v);
+                let drive = vec![prebias, text(" → "), top, text(" V")];
+                ("card-operate_threshold_coarse_ramp_then", RAMP, drive)
+            }
+            Self::ReleaseVoltage => {
+                let drive = vec![Piece::Figure(SEAL * part.nominal_v), text(" V → 0")];
+                ("card-release_threshold_coarse_ramp_then", RAMP, drive)
+            }
+            Self::Unclamp => (
+                "card-coil_off_current_1_ma_pin_block",
+                "card-probe_lift_jaws",
+                Vec::new(),
+            ),
+        };
+        Step {
+            name: self.name(),
+            what,
+            tooling,
+            drive,
+            demand: self.demand(),
         }
     }
 }
 
-/// The card of a recipe.
+/// Returns the card of a recipe.
 pub fn card(relay: &RelayRecipe) -> Card {
     let part = &relay.part;
     let rating = vec![
@@ -102,7 +142,7 @@ pub fn card(relay: &RelayRecipe) -> Card {
     }
 }
 
-/// The steps in the order in which the test enters their stages.
+/// Returns the steps in the order in which the test enters their stages.
 fn steps(relay: &RelayRecipe) -> Vec<Step> {
     let strategy = relay.test.strategy;
     let strategy = [strategy.operate_voltage_v, strategy.release_voltage_v];
@@ -117,97 +157,16 @@ fn steps(relay: &RelayRecipe) -> Vec<Step> {
     steps.into_iter().map(|step| step.of(relay)).collect()
 }
 
-fn kelvin() -> Step {
-    Step {
-        name: CardStep::Kelvin.name(),
-        what: "card-check_all_five_kelvin_connections",
-        tooling: "card-pin_block_1_source",
-        drive: vec![text("1 A, ±")],
-        demand: CardStep::Kelvin.demand(),
-    }
-}
-
-fn coil(relay: &RelayRecipe) -> Step {
-    Step {
-        name: CardStep::Coil.name(),
-        what: "card-measure_coil_below_pickup",
-        tooling: "card-coil_supply_current_shunt",
-        drive: vec![Piece::Figure(relay.test.prebias_v), text(" V")],
-        demand: CardStep::Coil.demand(),
-    }
-}
-
-fn operate_voltage(relay: &RelayRecipe) -> Step {
-    let test = &relay.test;
-    Step {
-        name: CardStep::OperateVoltage.name(),
-        what: "card-operate_threshold_coarse_ramp_then",
-        tooling: RAMP,
-        drive: vec![
-            Piece::Figure(test.prebias_v),
-            text(" → "),
-            Piece::Figure(test.prebias_v + test.coarse_span_v),
-            text(" V"),
-        ],
-        demand: CardStep::OperateVoltage.demand(),
-    }
-}
-
-fn operate_time(relay: &RelayRecipe) -> Step {
-    Step {
-        name: CardStep::OperateTime.name(),
-        what: "card-timed_operate_with_bounce_no",
-        tooling: TIMER,
-        drive: vec![
-            text("0 → "),
-            Piece::Figure(relay.part.nominal_v),
-            text(" V"),
-        ],
-        demand: CardStep::OperateTime.demand(),
-    }
-}
-
-fn release_time(relay: &RelayRecipe) -> Step {
-    let suppression = match relay.test.clamp {
-        Clamp::Zener => "card-60_v_zener",
-        Clamp::Diode => "card-diode",
-    };
-    Step {
-        name: CardStep::ReleaseTime.name(),
-        what: "card-timed_release_with_bounce_nc",
-        tooling: TIMER,
-        drive: vec![
-            Piece::Figure(relay.part.nominal_v),
-            text(" → 0 V, "),
-            Piece::Text(suppression),
-        ],
-        demand: CardStep::ReleaseTime.demand(),
-    }
-}
-
-fn release_voltage(relay: &RelayRecipe) -> Step {
-    Step {
-        name: CardStep::ReleaseVoltage.name(),
-        what: "card-release_threshold_coarse_ramp_then",
-        tooling: RAMP,
-        drive: vec![Piece::Figure(SEAL * relay.part.nominal_v), text(" V → 0")],
-        demand: CardStep::ReleaseVoltage.demand(),
-    }
-}
-
-fn unclamp() -> Step {
-    Step {
-        name: CardStep::Unclamp.name(),
-        what: "card-coil_off_current_1_ma_pin_block",
-        tooling: "card-probe_lift_jaws",
-        drive: Vec::new(),
-        demand: Demand::Seen("card-down_open_their_sensors"),
-    }
+fn suppression(suppression: Suppression) -> Piece {
+    Piece::Text(match suppression {
+        Suppression::Zener => "card-60_v_zener",
+        Suppression::Diode => "card-diode",
+    })
 }
 
 const RAMP: TextId = "card-coil_supply_gated_counter";
 const TIMER: TextId = "card-counters_1_source";
 
-fn text(same: &'static str) -> Piece {
-    Piece::Literal(same)
+fn text(literal: &'static str) -> Piece {
+    Piece::Literal(literal)
 }

@@ -1,4 +1,4 @@
-//! Why the references on the interface board do not calibrate the rig.
+//! Faults of the calibration against the references on the interface board.
 
 use crate::rig::sample::{Quality, Sample};
 use thiserror::Error;
@@ -6,14 +6,14 @@ use thiserror::Error;
 /// Why the references do not calibrate the rig.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ReferenceFault {
-    /// A channel gave no number.
+    /// A channel has no usable reading.
     #[error("{name} reads {raw} ({quality:?})")]
     Reads {
         /// The channel.
         name: &'static str,
         /// The reply.
         raw: String,
-        /// Why it is no number.
+        /// Quality of the reading.
         quality: Quality,
     },
     /// A channel is masked out.
@@ -36,12 +36,12 @@ pub enum ReferenceFault {
         /// Scans asked for.
         expected: usize,
     },
-    /// The converter is outside its promise by half.
+    /// The gain error exceeds 1.5 times the accuracy of the maker.
     #[error("coil converter gain is off by {off_pct:.3} %, promised {promised_pct:.3} %")]
     Gain {
         /// Found minus 1, %.
         off_pct: f64,
-        /// Promised half width, %.
+        /// Accuracy of the maker, half width, %.
         promised_pct: f64,
     },
     /// Too few readings between the ends of the fine ramp.
@@ -50,7 +50,7 @@ pub enum ReferenceFault {
         /// Readings that count.
         readings: usize,
     },
-    /// The fine ramp is not the one of its slew code.
+    /// The slope of the fine ramp does not match its slew code.
     #[error("slope of the fine ramp is {v_per_s:.4} V/s where {nominal_v_per_s} V/s was expected")]
     Slope {
         /// Slope found.
@@ -58,7 +58,7 @@ pub enum ReferenceFault {
         /// Slope of the slew code.
         nominal_v_per_s: f64,
     },
-    /// The source or the amplifier is not right.
+    /// The drop of the reference contact is out of range: a fault of source or amplifier.
     #[error("reference contact drops {volts:.3} V where {expected_v:.3} V was expected")]
     Drop {
         /// Drop found, V at the terminal.
@@ -69,12 +69,12 @@ pub enum ReferenceFault {
     /// Counters were not read before and after the pulses.
     #[error("gate counters not read")]
     GatesNotRead,
-    /// A counter does not count the reference pulse.
+    /// The count of the reference pulse is out of range.
     #[error("a pulse of 1.000 ms at gate {gate} counts {each_us:.1} us")]
     Pulse {
         /// Which counter.
         gate: usize,
-        /// What a pulse counts, us.
+        /// Count of a pulse, us.
         each_us: f64,
     },
 }
