@@ -1,5 +1,5 @@
-//! What the station learns before and during a lot: factors from the references, and whatever the kind of part learns
-//! from reference parts and from every part of the lot.
+//! Learning before and during a lot: factors from the references, and corrections from reference parts and parts of the
+//! lot.
 
 use super::Station;
 use super::gates::Outcome;
@@ -14,7 +14,7 @@ use std::collections::VecDeque;
 use units::RigTime;
 
 impl Station {
-    /// Draws the factors from what was read against the references.
+    /// Computes the factors from the readings of the references.
     pub(super) fn conclude_references(
         &mut self,
         now: RigTime,
@@ -28,7 +28,7 @@ impl Station {
         self.device.conclude_references(&runner.readings, made)
     }
 
-    /// References and golden parts are measured again with the next start; the golden parts have to lie in front.
+    /// Discards the calibration: the next start measures references and reference parts again, which must lie in front.
     pub(super) fn recalibrate(&mut self) {
         self.plan.calibrated = false;
         self.referenced = false;
@@ -39,7 +39,7 @@ impl Station {
         self.device.forget_calibration();
     }
 
-    /// What the parts judged in this turn say of the rig and of the lot.
+    /// Learns from the parts judged in this turn, and checks them against the gates.
     pub(super) fn learn(&mut self, wants: &mut Wants) {
         let mut outcome = Outcome::default();
         for judged in &wants.record.parts.judged {
@@ -64,7 +64,7 @@ impl Station {
         wants.record.checked = outcome.checked;
     }
 
-    /// Serial number of the golden part in the nest, while golden parts teach and are not checked.
+    /// Returns the serial number of the reference part in the nest, unless it is there for a check.
     pub(super) fn teaching(&self) -> Option<&str> {
         match self.line.ledger.part(Place::NEST).map(|part| &part.kind) {
             Some(Kind::Reference(serial)) if !self.lot.gates.is_checking() => Some(serial),
@@ -72,7 +72,7 @@ impl Station {
         }
     }
 
-    /// The last golden part was interrupted: what the others taught has to do, or the calibration has failed.
+    /// Completes the calibration without the last reference part, which was interrupted.
     pub(super) fn end_reference_run(&mut self, wants: &mut Wants) {
         if self.referenced && self.lot.reference_left.is_empty() && self.is_calibrating() {
             let mut outcome = Outcome::default();

@@ -116,7 +116,9 @@ impl Station {
                 self.machine.fresh = false;
                 self.start = Start::Begin;
             }
-            State::Clearing => (self.machine.asked_verify, self.machine.verified) = (false, None),
+            State::Clearing => {
+                (self.machine.verify_requested, self.machine.verified) = (false, None)
+            }
             State::Stopped | State::Complete => self.make_safe("stopped", now, wants),
             State::Idle
             | State::Execute
@@ -363,8 +365,8 @@ impl Station {
             if safety_was_read(inputs.image, at) || now.since(at) > FIRST_SCAN {
                 self.done(now, wants);
             }
-        } else if !self.machine.asked_verify {
-            self.machine.asked_verify = true;
+        } else if !self.machine.verify_requested {
+            self.machine.verify_requested = true;
             wants.rig.verify = true;
         }
     }
