@@ -399,3 +399,23 @@ fn a_rig_without_references_sorts_resistors() {
     let refused = lot.workshop.run("config check").with_status(2);
     assert!(refused.stderr.contains("[reference]"), "{refused}");
 }
+
+#[test]
+fn a_diode_recipe_times_the_release_into_the_diode() {
+    let workshop = Workshop::new("lots_diode");
+    let recipe = "config/recipes/jzc-22f-012.toml";
+    workshop.change(recipe, "clamp = \"zener\"", "clamp = \"diode\"");
+    workshop.change(
+        recipe,
+        "release_time_ms = { high = 5.0 }",
+        "release_time_ms = { high = 25.0 }",
+    );
+    let lot = run_in(workshop, "jzc-22f-012", 4, "");
+    let sound = lot.parts.iter().zip(&lot.truth);
+    for (part, truth) in sound.filter(|(_, truth)| truth["defect"].is_null()) {
+        assert_eq!(part["verdict"], "pass", "{part}");
+        let found_ms = part["values"]["release_time_ms"].as_f64().unwrap();
+        let off_ms = (found_ms - truth["release_time_ms"].as_f64().unwrap()).abs();
+        assert!(found_ms > 8.0 && off_ms < 0.05, "{part} {truth}");
+    }
+}

@@ -8,7 +8,7 @@ use machine::handling::mechanism::SENSOR_AGE;
 use machine::rig::point::DigitalInput;
 use machine::station::Station;
 use machine::station::annunciator::Standing;
-use machine::station::catalogue::Stops;
+use machine::station::catalogue;
 use machine::station::orders::{self, Order, Refused};
 use machine::station::packml::{Command, Mode};
 use machine::view::{self, ActuatorView, AlarmLine, Button, Machine, Reaction, Token};
@@ -208,7 +208,7 @@ fn places(station: &Station) -> BTreeMap<String, Token> {
 
 fn token(part: &Part) -> Token {
     let (kind, name) = match &part.kind {
-        Kind::Golden(serial) => ("golden", serial.clone()),
+        Kind::Reference(serial) => ("golden", serial.clone()),
         Kind::Lot(seq) => ("lot", seq.to_string()),
     };
     Token {
@@ -232,11 +232,11 @@ fn lines(station: &Station, epoch_us: i64) -> Vec<AlarmLine> {
 fn line(one: &Standing, epoch_us: i64) -> AlarmLine {
     let alarm = &one.alarm;
     let help = |lang| alarm.code.help(lang).map(str::to_owned);
-    let stops = match alarm.code.entry().stops {
-        Stops::Abort => "abort",
-        Stops::Hold => "hold",
-        Stops::Suspend => "suspend",
-        Stops::Nothing => "nothing",
+    let stops = match alarm.code.entry().reaction {
+        catalogue::Reaction::Abort => "abort",
+        catalogue::Reaction::Hold => "hold",
+        catalogue::Reaction::Suspend => "suspend",
+        catalogue::Reaction::Nothing => "nothing",
     };
     let raised = epoch_us + i64::try_from(one.raised.0).unwrap_or(i64::MAX);
     AlarmLine {

@@ -16,7 +16,7 @@ use machine::view::AnsweredOrder;
 use texts::Lang;
 
 /// Alarms after which a lot takes no run before somebody releases it.
-const HOLDS: [AlarmCode; 2] = [AlarmCode::ReferenceCheckFailed, AlarmCode::LotDiscardLimit];
+const HOLDS: [AlarmCode; 2] = [AlarmCode::ReferenceCheckFailed, AlarmCode::RejectRateLimit];
 /// The alarm that says that golden parts do not agree with their certificates.
 const NOT_CALIBRATED: AlarmCode = AlarmCode::CalibrationFailed;
 

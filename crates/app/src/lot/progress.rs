@@ -122,7 +122,7 @@ impl<'a> LotProgress<'a> {
     fn judged(&mut self, judged: &Judged) {
         let ordinal = judged.part.ordinal;
         match judged.part.kind {
-            Kind::Golden(_) => self.golden += 1,
+            Kind::Reference(_) => self.golden += 1,
             Kind::Lot(_) => self.counts.add(judged.verdict.name()),
         }
         let part = PartUnderWay {

@@ -14,7 +14,7 @@ use units::RigTime;
 pub fn number(kind: &Kind, golden: u64) -> (u64, &'static str) {
     match kind {
         Kind::Lot(seq) => (*seq, "lot"),
-        Kind::Golden(_) => (golden, "golden"),
+        Kind::Reference(_) => (golden, "golden"),
     }
 }
 
@@ -26,7 +26,7 @@ pub fn part(context: &LotContext, judged: &Judged, golden: u64) -> PartRecord {
         lot: context.order.lot.clone(),
         seq,
         serial: match &judged.part.kind {
-            Kind::Golden(serial) => Some(serial.clone()),
+            Kind::Reference(serial) => Some(serial.clone()),
             Kind::Lot(_) => None,
         },
         verdict: judged.verdict.name().to_string(),

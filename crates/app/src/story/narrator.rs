@@ -191,7 +191,7 @@ impl Narrator {
 
 fn name(part: &Part) -> String {
     match &part.kind {
-        Kind::Golden(serial) => format!("part {serial}"),
+        Kind::Reference(serial) => format!("part {serial}"),
         Kind::Lot(number) => format!("part {number}"),
     }
 }

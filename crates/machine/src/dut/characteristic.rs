@@ -6,7 +6,7 @@
 use super::Kind;
 use super::verdict::Bin;
 use super::{em_relay, resistor};
-use crate::gauge::repetition::SpokenOf;
+use crate::gauge::repetition::MeanOf;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 use texts::Lang;
@@ -20,7 +20,7 @@ pub struct Definition {
     /// Unit in which values and limits are written.
     pub unit: Unit,
     /// What a mean of several readings speaks of.
-    pub spoken_of: SpokenOf,
+    pub mean_of: MeanOf,
     /// Bin of a part that fails this one.
     pub bin: Bin,
 }

@@ -65,6 +65,12 @@ macro_rules! limit {
 }
 pub(crate) use limit;
 
+/// Keys of one table, each on a line of its own.
+macro_rules! table {
+    ($($key:expr;)+) => { &[$($key),+] };
+}
+pub(crate) use table;
+
 #[cfg(test)]
 mod tests {
     use crate::dut::Kind;

@@ -1,7 +1,7 @@
 //! Record of a test of any kind: results, the replies they came from, where the time went, and why it ended early.
 
 use super::characteristic::Characteristic;
-use super::em_relay::Seen;
+use super::em_relay::Observed;
 use super::reason::Reason;
 use crate::gauge::Reading;
 use crate::gauge::repetition::mean;
@@ -47,7 +47,7 @@ pub enum Own {
     #[default]
     Nothing,
     /// Ramps and conditions of an electromagnetic relay.
-    EmRelay(Seen),
+    EmRelay(Observed),
 }
 
 /// What a test has measured so far. `T` is what only its kind sees.
@@ -119,7 +119,7 @@ impl<T> TestRecord<T> {
     pub fn result(&self, of: impl Into<Characteristic>) -> Option<Reading> {
         let of = of.into();
         let repetitions: Vec<Reading> = self.each(of).cloned().collect();
-        mean(&repetitions, of.definition().spoken_of)
+        mean(&repetitions, of.definition().mean_of)
     }
 
     /// The result when it is a number with a finite uncertainty.

@@ -1,7 +1,7 @@
 //! The mean of several readings of one part, and its uncertainty.
 //!
 //! Averaging n readings divides the random terms of the budget by the root of n. If the readings scatter more than
-//! those terms explain, the excess is a term of its own (type A, GUM 4.2); [`SpokenOf`] decides what the mean stands
+//! those terms explain, the excess is a term of its own (type A, GUM 4.2); [`MeanOf`] decides what the mean stands
 //! for and so how large the term is. A standard deviation of few readings is widened to Student's t, so that k = 2
 //! covers as much as with many (GUM G.3).
 
@@ -9,7 +9,7 @@ use super::budget::{Budget, COVERAGE_FACTOR, Reading, Term};
 
 /// Meaning of the mean of several readings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SpokenOf {
+pub enum MeanOf {
     /// A property of the part: a threshold, the coil. Its readings scatter by the random terms of the budget, or more.
     Part,
     /// Any single operation, to which the limit applies: times and bounce. It deviates from the mean as much as the
@@ -33,7 +33,7 @@ fn student(freedom: usize) -> f64 {
 ///
 /// # Panics
 /// Panics when the readings have different units.
-pub fn mean(repetitions: &[Reading], of: SpokenOf) -> Option<Reading> {
+pub fn mean(repetitions: &[Reading], of: MeanOf) -> Option<Reading> {
     let (first, more) = repetitions.split_first()?;
     if more.is_empty() {
         return Some(first.clone());
@@ -47,9 +47,9 @@ pub fn mean(repetitions: &[Reading], of: SpokenOf) -> Option<Reading> {
         .map(|it| (it.value - value).powi(2))
         .sum();
     let (promised, open) = match of {
-        SpokenOf::Part => (first.budget.random(), 1.0 / n),
-        SpokenOf::Operation => (0.0, 1.0 + 1.0 / n),
-        SpokenOf::Closures => (0.0, 0.0),
+        MeanOf::Part => (first.budget.random(), 1.0 / n),
+        MeanOf::Operation => (0.0, 1.0 + 1.0 / n),
+        MeanOf::Closures => (0.0, 0.0),
     };
     let own_2 = (squares / (n - 1.0) - promised.powi(2)).max(0.0);
     let shrink = |term: &Term| Term {
@@ -86,14 +86,14 @@ mod tests {
         values.iter().map(of).collect()
     }
 
-    fn combined(values: &[f64], of: SpokenOf) -> f64 {
+    fn combined(values: &[f64], of: MeanOf) -> f64 {
         mean(&readings(values), of)
             .expect("readings")
             .budget
             .combined()
     }
 
-    const ALL: [SpokenOf; 3] = [SpokenOf::Part, SpokenOf::Operation, SpokenOf::Closures];
+    const ALL: [MeanOf; 3] = [MeanOf::Part, MeanOf::Operation, MeanOf::Closures];
 
     #[test]
     fn repetition_reduces_only_random_terms() {
@@ -108,9 +108,9 @@ mod tests {
     fn expected_scatter_adds_no_uncertainty() {
         // Standard deviation 6.9 of 8.
         let apart = [1.0, 13.0, 1.0, 13.0];
-        assert_eq!(combined(&apart, SpokenOf::Part), 5.0);
-        assert_eq!(combined(&apart, SpokenOf::Closures), 5.0);
-        assert!(combined(&apart, SpokenOf::Operation) > 6.9);
+        assert_eq!(combined(&apart, MeanOf::Part), 5.0);
+        assert_eq!(combined(&apart, MeanOf::Closures), 5.0);
+        assert!(combined(&apart, MeanOf::Operation) > 6.9);
     }
 
     #[test]
@@ -120,15 +120,15 @@ mod tests {
         let promised_2 = 9.0 + 64.0 / 3.0;
         let with = |own_2: f64| (promised_2 + 2.265f64.powi(2) * own_2).sqrt();
         let near = |of, wanted: f64| assert!((combined(&apart, of) - wanted).abs() < 1e-9);
-        near(SpokenOf::Part, with((1e4 - 64.0) / 3.0));
-        near(SpokenOf::Operation, with(1e4 * 4.0 / 3.0));
-        near(SpokenOf::Closures, with(0.0));
+        near(MeanOf::Part, with((1e4 - 64.0) / 3.0));
+        near(MeanOf::Operation, with(1e4 * 4.0 / 3.0));
+        near(MeanOf::Closures, with(0.0));
     }
 
     #[test]
     fn the_uncertainty_of_a_mean_bounce_covers_every_operation() {
         let apart = [1680.0, 1750.0, 1790.0, 1960.0];
-        let mean = mean(&readings(&apart), SpokenOf::Operation).expect("readings");
+        let mean = mean(&readings(&apart), MeanOf::Operation).expect("readings");
         let furthest = apart.map(|it| (it - mean.value).abs());
         assert!(furthest.iter().all(|it| *it < mean.expanded()));
     }

@@ -19,7 +19,7 @@ const FOUND: &str = "found_inside";
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Kind {
     /// A reference part, with its serial number.
-    Golden(String),
+    Reference(String),
     /// A part of the lot, by the order in which it entered the nest, from 1.
     Lot(u64),
 }
@@ -289,7 +289,7 @@ impl Ledger {
     fn number(&mut self, golden: Option<String>, interrupted: Option<String>) -> Part {
         self.numbered += 1;
         let kind = match golden {
-            Some(serial) => Kind::Golden(serial),
+            Some(serial) => Kind::Reference(serial),
             None => {
                 self.lot_numbered += 1;
                 Kind::Lot(self.lot_numbered)

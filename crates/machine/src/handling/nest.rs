@@ -217,7 +217,7 @@ fn testing(
 
 /// Returns the trouble to report before another test of a void reference part; `None` when there is no further test.
 fn repeat_reason(id: NestId, turn: &Turn, test: &Procedure) -> Option<Trouble> {
-    let Kind::Golden(serial) = &turn.ledger.part(Place::Nest(id))?.kind else {
+    let Kind::Reference(serial) = &turn.ledger.part(Place::Nest(id))?.kind else {
         return None;
     };
     // A complete test is inconclusive while overshoots are learned, but needs no repetition.
@@ -235,7 +235,7 @@ fn judged(id: NestId, turn: &mut Turn, test: &mut Procedure) {
     };
     part.test = part.probed_at.map(|at| Second(now.since(at).as_seconds()));
     part.bin = Some(match part.kind {
-        Kind::Golden(_) => Bin::RETEST,
+        Kind::Reference(_) => Bin::RETEST,
         Kind::Lot(_) => verdict.bin(),
     });
     turn.parts.judged.push(Judged {

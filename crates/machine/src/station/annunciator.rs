@@ -1,28 +1,27 @@
-//! Alarms that stand, in the states of ISA-18.2.
+//! List of alarms in the states of ISA-18.2.
 //!
-//! | state | cause there | seen by a person |
+//! | state | cause present | acknowledged |
 //! |---|---|---|
 //! | unacknowledged | yes | no |
 //! | acknowledged | yes | yes |
 //! | returned | no | no |
-//! | shelved | either | not shown until its time is over |
+//! | shelved | either | hidden until its time is over |
 //!
-//! An alarm whose cause is gone and that was seen is normal again and leaves the list. One that comes again
-//! while it stands is counted, not listed twice. The first one after a quiet time is the *first-out*
-//! and stays so until the list is empty of causes. Acknowledging resets nothing.
+//! An acknowledged alarm without cause leaves the list. One that occurs again while it is listed raises its count. The
+//! first active alarm is the *first-out*, and remains so until no alarm is active. Acknowledging resets nothing.
 
-use super::catalogue::{ABOUT_A_BODY, Entry, Goes, Stops};
+use super::catalogue::{ClearedBy, Entry, PER_PART, Reaction};
 use super::trouble::Alarm;
 use units::RigTime;
 
-/// State of a standing alarm.
+/// State of a listed alarm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Condition {
-    /// The cause is there, nobody has seen it.
+    /// The cause is present, no person has acknowledged it.
     Unacknowledged,
-    /// The cause is there, somebody has.
+    /// The cause is present, a person has acknowledged it.
     Acknowledged,
-    /// The cause has gone before anybody saw it.
+    /// The cause has gone before the acknowledgement.
     Returned,
 }
 
@@ -30,7 +29,7 @@ impl Condition {
     /// Every one.
     pub const ALL: [Self; 3] = [Self::Unacknowledged, Self::Acknowledged, Self::Returned];
 
-    /// The name in files and views.
+    /// Returns the name in files and views.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Unacknowledged => "unacknowledged",
@@ -43,24 +42,24 @@ impl Condition {
 /// One alarm of the list.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Standing {
-    /// What happened.
+    /// Code and arguments.
     pub alarm: Alarm,
     /// Its state.
     pub condition: Condition,
-    /// When it came first.
+    /// Time of the first occurrence.
     pub raised: RigTime,
-    /// How often since.
+    /// Number of occurrences.
     pub count: u32,
-    /// It began the trouble.
+    /// True when no other alarm was active before it.
     pub first_out: bool,
-    /// Not shown before this time.
+    /// End of its time on the shelf.
     pub shelved_until: Option<RigTime>,
-    /// Kept from a run before: its times are not of this one.
+    /// True for an alarm of an earlier run, whose times do not apply to this one.
     pub inherited: bool,
 }
 
 impl Standing {
-    /// The cause is there.
+    /// Returns true while the cause is present.
     pub fn is_active(&self) -> bool {
         self.condition != Condition::Returned
     }
@@ -70,7 +69,7 @@ impl Standing {
     }
 }
 
-/// The list.
+/// The list of alarms.
 #[derive(Debug, Clone, Default)]
 pub struct Annunciator {
     standing: Vec<Standing>,
@@ -78,18 +77,18 @@ pub struct Annunciator {
 }
 
 impl Annunciator {
-    /// The list, in order of coming.
+    /// Returns the listed alarms, in order of first occurrence.
     pub fn standing(&self) -> &[Standing] {
         &self.standing
     }
 
-    /// True once after every change.
+    /// Returns true once after every change.
     pub fn take_changed(&mut self) -> bool {
         std::mem::take(&mut self.changed)
     }
 
-    /// Puts in an alarm that nobody had acknowledged when the program ended: what its cause does now is found out
-    /// anew, what nobody has seen stays unseen, and what was shelved stays on the shelf.
+    /// Lists an alarm that was not acknowledged when the program ended, as returned: this run detects the cause again. A
+    /// shelved alarm stays shelved.
     pub fn inherit(&mut self, alarm: Alarm, count: u32, shelved_until: Option<RigTime>) {
         self.changed = true;
         self.standing.push(Standing {
@@ -103,10 +102,10 @@ impl Annunciator {
         });
     }
 
-    /// An alarm is there; true when its cause was not there before, or when it is about a body of its own.
+    /// Lists an alarm or raises its count; returns true when its cause is new, or when it concerns a part of its own.
     pub fn raise(&mut self, alarm: &Alarm, now: RigTime) -> bool {
         let quiet = !self.standing.iter().any(Standing::is_active);
-        let at_once = alarm.code.entry().goes == Goes::AtOnce;
+        let at_once = alarm.code.entry().cleared_by == ClearedBy::Itself;
         let condition = if at_once {
             Condition::Returned
         } else {
@@ -116,7 +115,7 @@ impl Annunciator {
             .standing
             .iter()
             .filter(|one| one.alarm.code == alarm.code);
-        assert!(twice.count() <= 1, "{} stands twice", alarm.code);
+        assert!(twice.count() <= 1, "{} is listed twice", alarm.code);
         let known = self
             .standing
             .iter_mut()
@@ -135,7 +134,7 @@ impl Annunciator {
             return true;
         };
         let again = !known.is_active();
-        if again || known.entry().goes == Goes::ByClear {
+        if again || known.entry().cleared_by == ClearedBy::Operator {
             self.changed = true;
             known.count += 1;
             known.alarm = alarm.clone();
@@ -145,20 +144,20 @@ impl Annunciator {
             known.first_out = quiet && !at_once;
             known.inherited = false;
         }
-        again || ABOUT_A_BODY.contains(&known.alarm.code)
+        again || PER_PART.contains(&known.alarm.code)
     }
 
-    /// Alarms that go by their sensor and whose cause is not among `there` any more have gone.
+    /// Clears the alarms that a sensor clears and whose cause is not among `there`.
     pub fn sensed(&mut self, there: &[Alarm]) {
         self.gone(|one| {
-            let by_sensor = one.entry().goes == Goes::BySensor;
+            let by_sensor = one.entry().cleared_by == ClearedBy::Sensor;
             by_sensor && !there.iter().any(|alarm| alarm.code == one.alarm.code)
         });
     }
 
-    /// A person says that the causes are gone.
+    /// Clears the alarms that an order of the operator clears.
     pub fn cleared(&mut self) {
-        self.gone(|one| one.entry().goes == Goes::ByClear);
+        self.gone(|one| one.entry().cleared_by == ClearedBy::Operator);
     }
 
     fn gone(&mut self, is_gone: impl Fn(&Standing) -> bool) {
@@ -166,7 +165,6 @@ impl Annunciator {
             if one.is_active() && is_gone(one) {
                 self.changed = true;
                 one.condition = match one.condition {
-                    // Marked here, taken out below.
                     Condition::Acknowledged => {
                         one.count = 0;
                         Condition::Returned
@@ -180,10 +178,10 @@ impl Annunciator {
             .standing
             .iter()
             .any(|one| one.is_active() && is_gone(one));
-        assert!(!active, "an alarm stands whose cause is gone");
+        assert!(!active, "an alarm without cause is active");
     }
 
-    /// A person has seen the alarm of this code, or all; false when there is none.
+    /// Acknowledges the alarm of this code, or all; returns false when there is none.
     pub fn acknowledge(&mut self, code: Option<&str>) -> bool {
         let mut found = false;
         for one in &mut self.standing {
@@ -201,7 +199,7 @@ impl Annunciator {
         found
     }
 
-    /// Shelves the alarm of this code; false when there is none.
+    /// Shelves the alarm of this code; returns false when there is none.
     pub fn shelve(&mut self, code: &str, until: RigTime) -> bool {
         let one = self
             .standing
@@ -211,7 +209,7 @@ impl Annunciator {
         one.map(|one| one.shelved_until = Some(until)).is_some()
     }
 
-    /// Alarms whose time on the shelf is over are shown again.
+    /// Shows the alarms again whose time on the shelf is over.
     pub fn unshelve(&mut self, now: RigTime) {
         for one in &mut self.standing {
             if one.shelved_until.is_some_and(|until| until <= now) {
@@ -221,18 +219,20 @@ impl Annunciator {
         }
     }
 
-    /// The first active alarm that stops as much as this.
-    pub fn stopping(&self, stops: Stops) -> Option<&Standing> {
+    /// Returns the first active alarm with this reaction.
+    pub fn stopping(&self, stops: Reaction) -> Option<&Standing> {
         self.standing
             .iter()
-            .find(|one| one.is_active() && one.entry().stops == stops)
+            .find(|one| one.is_active() && one.entry().reaction == stops)
     }
 
-    /// The first active alarm whose sensor still shows the cause.
+    /// Returns the first active alarm with an abort whose sensor still shows the cause.
     pub fn still_sensed(&self) -> Option<&Standing> {
         self.standing.iter().find(|one| {
             let entry = one.entry();
-            one.is_active() && entry.goes == Goes::BySensor && entry.stops == Stops::Abort
+            one.is_active()
+                && entry.cleared_by == ClearedBy::Sensor
+                && entry.reaction == Reaction::Abort
         })
     }
 }

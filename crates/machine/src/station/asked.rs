@@ -1,4 +1,4 @@
-//! Orders answered: what may be done now, and why not.
+//! Answers to orders: performs an order, or refuses it with the reason.
 
 use super::Station;
 use super::orders::{Order, Refused, shelf_minutes};
@@ -11,7 +11,7 @@ use crate::rig::image::Image;
 use units::{RigTime, Span};
 
 impl Station {
-    /// Takes an order or says why not.
+    /// Performs an order, or returns why not.
     pub(super) fn order(
         &mut self,
         order: Order,
@@ -69,22 +69,22 @@ impl Station {
         Ok(())
     }
 
-    /// Buttons at the machine: their orders are answered here; what is stuck is given back.
+    /// Answers the orders of the push buttons; returns the alarms of stuck ones.
     pub(super) fn pressed(&mut self, now: RigTime, image: &Image, wants: &mut Wants) -> Vec<Alarm> {
         let (commands, stuck) = self.alarms.panel.look(now, image, self.machine.state);
         for command in commands {
             let answer = self.order(Order::Command(command), now, wants);
-            // Nobody is there to start again.
+            // An unattended machine has no person to start it again.
             self.machine.stopping |= command == Command::Stop && !self.plan.stays;
             wants.pressed.push((command, answer));
         }
         stuck
     }
 
-    /// Whether a command would be taken now; the reason stands beside its button.
+    /// Checks that the state allows a command now; a screen shows the reason beside the button.
     ///
     /// # Errors
-    /// The reason why not.
+    /// Returns the reason.
     pub fn may(&self, command: Command) -> Result<(), Refused> {
         if packml::next(self.machine.state, On::Command(command)).is_none() {
             return Err(Refused::WrongState(command, self.machine.state));
@@ -98,7 +98,7 @@ impl Station {
             Command::Unsuspend => match self
                 .alarms
                 .annunciator
-                .stopping(super::catalogue::Stops::Suspend)
+                .stopping(super::catalogue::Reaction::Suspend)
             {
                 Some(cause) => Err(Refused::CauseRemains(Box::new(cause.alarm.clone()))),
                 None => Ok(()),
@@ -125,10 +125,10 @@ impl Station {
         Ok(())
     }
 
-    /// Whether the lot may be left where it is, so that another one can begin.
+    /// Checks that the operator may leave the lot as it is, so that another one can begin.
     ///
     /// # Errors
-    /// The reason why not.
+    /// Returns the reason.
     pub fn may_leave(&self) -> Result<(), Refused> {
         if self.machine.mode != Mode::Production {
             return Err(self.wrong_mode("start", Mode::Production));
@@ -154,7 +154,7 @@ impl Station {
         }
     }
 
-    /// Names what a person does first, too.
+    /// Returns the refusal with the command that leads to rest.
     fn not_at_rest(&self) -> Refused {
         let state = self.machine.state;
         let first = if packml::is_aborted(state) {
@@ -166,18 +166,18 @@ impl Station {
         Refused::NotAtRest(state, first)
     }
 
-    /// Whether the lot may be ended although its count is not reached.
+    /// Checks that the lot may end before its count.
     ///
     /// # Errors
-    /// The reason why not.
+    /// Returns the reason.
     pub fn may_close(&self) -> Result<(), Refused> {
         self.may(Command::Complete).or_else(|_| self.may_leave())
     }
 
-    /// Whether the mode may be changed now.
+    /// Checks that the state allows a change of mode.
     ///
     /// # Errors
-    /// The reason why not.
+    /// Returns the reason.
     pub fn may_change_mode(&self) -> Result<(), Refused> {
         if packml::may_change_mode(self.machine.state) {
             return Ok(());
@@ -185,10 +185,10 @@ impl Station {
         Err(Refused::ModeLocked(self.machine.state))
     }
 
-    /// Whether an actuator may be moved by hand now; what it would touch is the guard's to say.
+    /// Checks that an actuator may be jogged now; the guard checks the motion itself.
     ///
     /// # Errors
-    /// The reason why not.
+    /// Returns the reason.
     pub fn may_jog(&self) -> Result<(), Refused> {
         if self.machine.mode == Mode::Production {
             return Err(self.wrong_mode("jog", Mode::Manual));
@@ -202,10 +202,10 @@ impl Station {
         Ok(())
     }
 
-    /// Whether there is a motion to be released by hand.
+    /// Checks that a motion of the sequence waits for a step.
     ///
     /// # Errors
-    /// The reason why not.
+    /// Returns the reason.
     pub fn may_step(&self) -> Result<(), Refused> {
         if self.machine.mode != Mode::Maintenance {
             return Err(self.wrong_mode("step", Mode::Maintenance));
@@ -216,7 +216,7 @@ impl Station {
         Ok(())
     }
 
-    /// An actuator was moved by hand: home is not home any more.
+    /// Takes note of a jog: the machine is no longer homed.
     pub fn jogged(&mut self) {
         self.line.homed = false;
     }

@@ -1,282 +1,194 @@
-//! Every alarm by its code, with what it stops and what clears it. What it says stands in the catalogue of texts: cause,
-//! consequence and action are attributes of the code.
+//! Every alarm by its code, with the reaction of the machine and what clears it.
+//!
+//! The catalogue of texts holds the words: cause, consequence and action are attributes of the code.
 
 use crate::handling::moves::ActuatorKey;
 use crate::handling::wear::Wearing;
 use std::fmt;
 use texts::{Args, Lang, Message};
 
-/// What an alarm stops.
+/// Reaction of the machine to an alarm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stops {
-    /// Outputs go safe at once.
+pub enum Reaction {
+    /// Makes the outputs safe at once.
     Abort,
-    /// The sequence rests at its next point and waits for a person.
+    /// Rests at the next possible point and waits for an order.
     Hold,
-    /// The sequence rests and goes on by itself when the cause outside has gone.
+    /// Rests at the next possible point and resumes when the cause outside the machine has gone.
     Suspend,
-    /// Nothing; it is told.
+    /// Shows the alarm only.
     Nothing,
 }
 
-/// What makes the cause count as gone.
+/// What ends the cause of an alarm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Goes {
-    /// The sensor says so.
-    BySensor,
-    /// A person has looked and says so with `clear` or `unhold`.
-    ByClear,
-    /// It is told once and gone at once.
-    AtOnce,
+pub enum ClearedBy {
+    /// The sensor that has shown it.
+    Sensor,
+    /// The order `clear`, `unhold` or `reset`.
+    Operator,
+    /// The alarm itself: it reports one instant.
+    Itself,
 }
 
-/// What follows from an alarm, and when it is over.
+/// Reaction to an alarm, and what clears it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Entry {
-    /// What it stops.
-    pub stops: Stops,
-    /// What clears it.
-    pub goes: Goes,
+    /// Reaction of the machine.
+    pub reaction: Reaction,
+    /// What ends the cause.
+    pub cleared_by: ClearedBy,
 }
 
-/// Code of an alarm: the same over versions.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum AlarmCode {
+/// Declares [`AlarmCode`], a row for each code: its subject if it has one, the id of its text, [`Reaction`], [`ClearedBy`].
+macro_rules! codes {
+    ($($(#[$doc:meta])* $code:ident $(of $subject:ty)? = $id:literal, $reaction:ident, $by:ident;)+) => {
+        /// Code of an alarm, stable over versions.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum AlarmCode { $($(#[$doc])* $code $(($subject))?,)+ }
+
+        impl AlarmCode {
+            /// Every code, with each of its subjects.
+            pub fn all() -> impl Iterator<Item = Self> {
+                [$(each!($code $($subject)?)),+].concat().into_iter()
+            }
+
+            /// Id in the catalogue of texts; codes of all actuators share one.
+            pub const fn text_id(self) -> &'static str {
+                match self { $(Self::$code { .. } => $id),+ }
+            }
+
+            /// Reaction of the machine, and what clears the alarm.
+            pub const fn entry(self) -> Entry {
+                match self {
+                    $(Self::$code { .. } => Entry {
+                        reaction: Reaction::$reaction,
+                        cleared_by: ClearedBy::$by,
+                    }),+
+                }
+            }
+
+            /// Name of the actuator or of the wearing part that the code carries.
+            fn subject(self) -> Option<&'static str> {
+                $($(if let Self::$code(subject) = self {
+                    return Some(<$subject>::name(subject));
+                })?)+
+                None
+            }
+        }
+    };
+}
+
+macro_rules! each {
+    ($code:ident) => {
+        vec![AlarmCode::$code]
+    };
+    ($code:ident $subject:ty) => {
+        <$subject>::ALL.map(AlarmCode::$code).to_vec()
+    };
+}
+
+codes! {
     /// The emergency-stop chain is open.
-    EmergencyStop,
-    /// The door was opened.
-    DoorOpen,
+    EmergencyStop = "emergency_stop", Abort, Sensor;
+    /// The door is open.
+    DoorOpen = "door_open", Abort, Sensor;
     /// Air pressure is below the switch point.
-    AirLost,
-    /// A stroke did not show its end in time.
-    NotReached(ActuatorKey),
-    /// An actuator left its end by itself.
-    LeftEnd(ActuatorKey),
-    /// Both end sensors of an actuator are on at once.
-    BothEnds(ActuatorKey),
-    /// The collision guard refused a motion.
-    MotionRefused,
+    AirLost = "air_lost", Abort, Sensor;
+    /// An actuator has not shown its end sensor within the stroke time.
+    NotReached of ActuatorKey = "not_reached", Abort, Operator;
+    /// An actuator has left its end without a command.
+    LeftEnd of ActuatorKey = "left_end", Abort, Operator;
+    /// Both end sensors of an actuator are on.
+    BothEnds of ActuatorKey = "both_ends", Abort, Operator;
+    /// The collision guard refuses a motion.
+    MotionRefused = "motion_refused", Abort, Operator;
     /// A line or module does not answer, or has restarted.
-    BusTrouble,
-    /// A safety input is not read any more.
-    SensorStale,
-    /// A module has not confirmed its safe outputs.
-    OutputsNotConfirmed,
-    /// The history file cannot be written.
-    HistoryLost,
-    /// References or golden parts do not agree with their certificates.
-    CalibrationFailed,
-    /// The calibration has run out during the lot.
-    CalibrationOverdue,
+    BusTrouble = "bus_trouble", Abort, Operator;
+    /// A safety input has no fresh sample.
+    SensorStale = "sensor_stale", Abort, Sensor;
+    /// A module has not confirmed its safe outputs in time.
+    OutputsNotConfirmed = "outputs_not_confirmed", Abort, Operator;
+    /// The program cannot write the history file.
+    HistoryLost = "history_lost", Abort, Operator;
+    /// References or reference parts do not agree with their certificates.
+    CalibrationFailed = "calibration_failed", Abort, Operator;
+    /// The calibration has expired during the lot.
+    CalibrationOverdue = "calibration_overdue", Abort, Operator;
     /// The pusher is extended but no part is in the nest.
-    PartNotInNest,
-    /// A part stayed in the nest or in the fingers.
-    PartStuck,
-    /// The gripper lost its part on the way.
-    PartDropped,
-    /// The drive of the sort axis has tripped.
-    AxisDrive,
-    /// A step of the sequence waits for something that does not come.
-    StepTooLong,
-    /// The beam of a bin counted no part, or more than one.
-    BinBeam,
-    /// Parts wait in the track but none came into the pocket.
-    PartNotArrived,
+    PartNotInNest = "part_not_in_nest", Abort, Operator;
+    /// A part has stayed in the nest or in the fingers.
+    PartStuck = "part_stuck", Abort, Operator;
+    /// The gripper has lost its part on the way.
+    PartDropped = "part_dropped", Abort, Operator;
+    /// The drive of the sort axis reports an alarm.
+    AxisDrive = "axis_drive", Abort, Operator;
+    /// A step of the sequence has exceeded its timeout.
+    StepTooLong = "step_too_long", Abort, Operator;
+    /// The beam of a bin has counted no part, or more than one.
+    BinBeam = "bin_beam", Hold, Operator;
+    /// Parts wait in the track but none has come into the pocket.
+    PartNotArrived = "part_not_arrived", Hold, Operator;
     /// The track is empty.
-    MagazineEmpty,
+    MagazineEmpty = "magazine_empty", Suspend, Sensor;
     /// The beam of a bin stays dark.
-    BinFull,
-    /// A stroke did not reach its end and is tried again.
-    Retried(ActuatorKey),
+    BinFull = "bin_full", Suspend, Sensor;
+    /// A stroke has not reached its end; the machine repeats it once.
+    Retried of ActuatorKey = "retried", Nothing, Itself;
     /// A push button stays down.
-    ButtonStuck,
-    /// A module made its outputs safe because the controller was silent.
-    WatchdogTripped,
-    /// A calibration was cut off while the references were measured.
-    CalibrationCutOff,
-    /// A part that was inside is seen nowhere.
-    PartLost,
-    /// The program stopped while a part fell.
-    FallUnseen,
-    /// A part nobody knows was found inside.
-    PartFound,
-    /// The last golden check is longer ago than the lot allows.
-    ReferenceCheckDue,
-    /// A golden part does not read as its certificate says.
-    ReferenceCheckFailed,
-    /// The test of a golden part was cut off and begins anew.
-    ReferenceRepeated,
-    /// More parts have failed than the lot may have.
-    LotDiscardLimit,
-    /// Less of the supply reaches the coil than at the calibration.
-    ProbeContact,
-    /// Probes or jaws were used as often as they last.
-    Worn(Wearing),
-    /// The stored calibration may not be used: no lot begins.
-    CalibrationInvalid,
+    ButtonStuck = "button_stuck", Nothing, Sensor;
+    /// The host watchdog of a module has made its outputs safe.
+    WatchdogTripped = "watchdog_tripped", Nothing, Itself;
+    /// The run before ended while it measured the references.
+    CalibrationCutOff = "calibration_cut_off", Nothing, Itself;
+    /// No sensor shows a part that was inside.
+    PartLost = "part_lost", Nothing, Itself;
+    /// The run before ended while a part fell into its bin.
+    FallUnseen = "fall_unseen", Nothing, Itself;
+    /// A sensor shows a part that the ledger does not have.
+    PartFound = "part_found", Nothing, Itself;
+    /// The last reference check is older than the lot allows.
+    ReferenceCheckDue = "golden_check_due", Hold, Operator;
+    /// A reference part does not agree with its certificate.
+    ReferenceCheckFailed = "golden_check_failed", Hold, Operator;
+    /// The test of a reference part was interrupted and begins again.
+    ReferenceRepeated = "golden_repeated", Nothing, Operator;
+    /// More parts have failed than the reject-rate limit of the lot allows.
+    RejectRateLimit = "lot_discard_limit", Hold, Operator;
+    /// The contact of the probes at the coil exceeds its limit.
+    ProbeContact = "probe_contact", Nothing, Operator;
+    /// Probes or jaws have reached their limit of uses.
+    Worn of Wearing = "worn", Nothing, Operator;
+    /// The stored calibration is not valid for a lot.
+    CalibrationInvalid = "calibration_invalid", Abort, Operator;
 }
 
-/// Alarms after which nothing is measured before a new calibration.
+/// Alarms after which the station measures nothing before a new calibration.
 pub const NEEDS_CALIBRATION: [AlarmCode; 2] =
     [AlarmCode::CalibrationFailed, AlarmCode::CalibrationOverdue];
 
-/// Alarms of which each is about another body: told anew even while the one before it stands.
-pub const ABOUT_A_BODY: [AlarmCode; 1] = [AlarmCode::BinBeam];
+/// Alarms that each concern one part: the record gets every one, also while an earlier one is active.
+pub const PER_PART: [AlarmCode; 1] = [AlarmCode::BinBeam];
 
 impl AlarmCode {
-    /// Every code.
-    pub fn all() -> impl Iterator<Item = Self> {
-        let of_actuators = ActuatorKey::ALL.into_iter().flat_map(|key| {
-            [
-                Self::NotReached(key),
-                Self::LeftEnd(key),
-                Self::BothEnds(key),
-                Self::Retried(key),
-            ]
-        });
-        let worn = Wearing::ALL.into_iter().map(Self::Worn);
-        SINGLE.into_iter().chain(of_actuators).chain(worn)
-    }
-
-    /// The code of this name; none for one of another version.
+    /// Returns the code of this name; none for a name of another version.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::all().find(|code| code.name() == name)
     }
 
-    /// Its name in rows, views and orders; those of an actuator begin with its key: `pusher_not_reached`.
+    /// Name in rows, views and orders; it begins with the subject: `pusher_not_reached`.
     pub fn name(self) -> String {
-        let text = self.text_id();
-        match self {
-            Self::NotReached(key)
-            | Self::LeftEnd(key)
-            | Self::BothEnds(key)
-            | Self::Retried(key) => {
-                format!("{}_{text}", key.name())
-            }
-            Self::Worn(wearing) => format!("{}_{text}", wearing.name()),
-            Self::EmergencyStop
-            | Self::DoorOpen
-            | Self::AirLost
-            | Self::MotionRefused
-            | Self::BusTrouble
-            | Self::SensorStale
-            | Self::OutputsNotConfirmed
-            | Self::HistoryLost
-            | Self::CalibrationFailed
-            | Self::CalibrationOverdue
-            | Self::PartNotInNest
-            | Self::PartStuck
-            | Self::PartDropped
-            | Self::AxisDrive
-            | Self::StepTooLong
-            | Self::BinBeam
-            | Self::PartNotArrived
-            | Self::MagazineEmpty
-            | Self::BinFull
-            | Self::ButtonStuck
-            | Self::WatchdogTripped
-            | Self::CalibrationCutOff
-            | Self::PartLost
-            | Self::FallUnseen
-            | Self::PartFound
-            | Self::ReferenceCheckDue
-            | Self::ReferenceCheckFailed
-            | Self::ReferenceRepeated
-            | Self::LotDiscardLimit
-            | Self::ProbeContact
-            | Self::CalibrationInvalid => text.to_owned(),
-        }
+        let id = self.text_id();
+        let subject = self.subject();
+        subject.map_or(id.to_owned(), |subject| format!("{subject}_{id}"))
     }
 
-    /// Its name in the catalogue of texts, which says the same of every actuator.
-    pub const fn text_id(self) -> &'static str {
-        match self {
-            Self::EmergencyStop => "emergency_stop",
-            Self::DoorOpen => "door_open",
-            Self::AirLost => "air_lost",
-            Self::NotReached(_) => "not_reached",
-            Self::LeftEnd(_) => "left_end",
-            Self::BothEnds(_) => "both_ends",
-            Self::MotionRefused => "motion_refused",
-            Self::BusTrouble => "bus_trouble",
-            Self::SensorStale => "sensor_stale",
-            Self::OutputsNotConfirmed => "outputs_not_confirmed",
-            Self::HistoryLost => "history_lost",
-            Self::CalibrationFailed => "calibration_failed",
-            Self::CalibrationOverdue => "calibration_overdue",
-            Self::PartNotInNest => "part_not_in_nest",
-            Self::PartStuck => "part_stuck",
-            Self::PartDropped => "part_dropped",
-            Self::AxisDrive => "axis_drive",
-            Self::StepTooLong => "step_too_long",
-            Self::BinBeam => "bin_beam",
-            Self::PartNotArrived => "part_not_arrived",
-            Self::MagazineEmpty => "magazine_empty",
-            Self::BinFull => "bin_full",
-            Self::Retried(_) => "retried",
-            Self::ButtonStuck => "button_stuck",
-            Self::WatchdogTripped => "watchdog_tripped",
-            Self::CalibrationCutOff => "calibration_cut_off",
-            Self::PartLost => "part_lost",
-            Self::FallUnseen => "fall_unseen",
-            Self::PartFound => "part_found",
-            Self::ReferenceCheckDue => "golden_check_due",
-            Self::ReferenceCheckFailed => "golden_check_failed",
-            Self::ReferenceRepeated => "golden_repeated",
-            Self::LotDiscardLimit => "lot_discard_limit",
-            Self::ProbeContact => "probe_contact",
-            Self::Worn(_) => "worn",
-            Self::CalibrationInvalid => "calibration_invalid",
-        }
-    }
-
-    /// What it stops and what clears it.
-    pub const fn entry(self) -> Entry {
-        let (stops, goes) = match self {
-            Self::EmergencyStop | Self::DoorOpen | Self::AirLost | Self::SensorStale => {
-                (Stops::Abort, Goes::BySensor)
-            }
-            Self::NotReached(_)
-            | Self::LeftEnd(_)
-            | Self::BothEnds(_)
-            | Self::MotionRefused
-            | Self::BusTrouble
-            | Self::OutputsNotConfirmed
-            | Self::HistoryLost
-            | Self::CalibrationFailed
-            | Self::CalibrationOverdue
-            | Self::PartNotInNest
-            | Self::PartStuck
-            | Self::PartDropped
-            | Self::AxisDrive
-            | Self::StepTooLong
-            | Self::CalibrationInvalid => (Stops::Abort, Goes::ByClear),
-            Self::BinBeam
-            | Self::PartNotArrived
-            | Self::ReferenceCheckDue
-            | Self::ReferenceCheckFailed
-            | Self::LotDiscardLimit => (Stops::Hold, Goes::ByClear),
-            Self::MagazineEmpty | Self::BinFull => (Stops::Suspend, Goes::BySensor),
-            Self::Retried(_)
-            | Self::WatchdogTripped
-            | Self::CalibrationCutOff
-            | Self::PartLost
-            | Self::FallUnseen
-            | Self::PartFound => (Stops::Nothing, Goes::AtOnce),
-            Self::ButtonStuck => (Stops::Nothing, Goes::BySensor),
-            Self::ReferenceRepeated | Self::ProbeContact | Self::Worn(_) => {
-                (Stops::Nothing, Goes::ByClear)
-            }
-        };
-        Entry { stops, goes }
-    }
-
-    /// Its text with these arguments.
+    /// Returns the text with these arguments.
     pub fn message(self, args: Args) -> Message {
         Message::of("alarm", self.text_id(), args)
     }
 
-    /// Why it happens, what follows and what to do.
+    /// Returns cause, consequence and action.
     pub fn help(self, lang: Lang) -> [&'static str; 3] {
         let id = self.message(Args::default()).id();
         ["cause", "consequence", "action"].map(|it| lang.attribute(&id, it))
@@ -288,38 +200,3 @@ impl fmt::Display for AlarmCode {
         f.write_str(&self.name())
     }
 }
-
-/// Codes that name neither actuator nor wear.
-const SINGLE: [AlarmCode; 31] = [
-    AlarmCode::EmergencyStop,
-    AlarmCode::DoorOpen,
-    AlarmCode::AirLost,
-    AlarmCode::MotionRefused,
-    AlarmCode::BusTrouble,
-    AlarmCode::SensorStale,
-    AlarmCode::OutputsNotConfirmed,
-    AlarmCode::HistoryLost,
-    AlarmCode::CalibrationFailed,
-    AlarmCode::CalibrationOverdue,
-    AlarmCode::PartNotInNest,
-    AlarmCode::PartStuck,
-    AlarmCode::PartDropped,
-    AlarmCode::AxisDrive,
-    AlarmCode::StepTooLong,
-    AlarmCode::BinBeam,
-    AlarmCode::PartNotArrived,
-    AlarmCode::MagazineEmpty,
-    AlarmCode::BinFull,
-    AlarmCode::ButtonStuck,
-    AlarmCode::WatchdogTripped,
-    AlarmCode::CalibrationCutOff,
-    AlarmCode::PartLost,
-    AlarmCode::FallUnseen,
-    AlarmCode::PartFound,
-    AlarmCode::ReferenceCheckDue,
-    AlarmCode::ReferenceCheckFailed,
-    AlarmCode::ReferenceRepeated,
-    AlarmCode::LotDiscardLimit,
-    AlarmCode::ProbeContact,
-    AlarmCode::CalibrationInvalid,
-];

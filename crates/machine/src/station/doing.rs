@@ -1,32 +1,32 @@
-//! What the station is doing, as a screen shows it: closer than the state of the outer machine.
+//! Activity of the station for screens, in more detail than the state of the outer machine.
 
 use super::packml::State;
 
-/// What the station is doing.
+/// Activity of the station.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Doing {
     /// The run is over.
     Ended,
-    /// Safety inputs were not read yet.
+    /// Waits for the first reading of the safety inputs.
     WaitingForSensors,
-    /// Actuators go to their rest ends.
+    /// Moves actuators to their rest ends.
     Homing,
-    /// Parts found inside are discharged.
+    /// Discharges parts found inside.
     Discharging,
-    /// References are measured.
+    /// Measures the references.
     Calibrating,
-    /// A part is measured; the stage of its test.
+    /// Tests a part; the name of the stage.
     Testing(&'static str),
-    /// Parts of the lot are on their way.
+    /// Handles parts of the lot.
     Running,
-    /// Golden parts are on their way.
+    /// Handles reference parts.
     ReferenceParts,
-    /// What the state of the outer machine says.
+    /// None of these; the state of the outer machine.
     Resting(State),
 }
 
 impl Doing {
-    /// Its code: the texts are those of the family `state`.
+    /// Returns the code: the key of its text in the family `state`.
     pub fn code(self) -> String {
         let code = match self {
             Self::Ended => "ended",
@@ -42,7 +42,7 @@ impl Doing {
         code.to_owned()
     }
 
-    /// The stage of the test: the texts are those of the family `stage`.
+    /// Returns the stage of the test: the key of its text in the family `stage`.
     pub fn stage(self) -> Option<&'static str> {
         match self {
             Self::Testing(stage) => Some(stage),
@@ -57,7 +57,7 @@ impl Doing {
         }
     }
 
-    /// The state of a view: the code with blanks, and the stage behind it.
+    /// Returns the words of a view: the code with blanks, followed by the stage.
     pub fn name(self) -> String {
         let code = self.code().replace('_', " ");
         match self.stage() {

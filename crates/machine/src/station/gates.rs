@@ -1,15 +1,13 @@
-//! Gates of a lot: what must hold before the next part may be judged, beside the machine itself.
+//! Gates of a lot: conditions for judging the next part, in addition to those of the machine.
 //!
-//! - *First article*: the first parts are measured by the slow strategy, every result a mean.
-//! - *Golden check*: a golden part is measured like a first article and compared with its certificate: when a stored
-//!   calibration is used, after so many parts, after so many hours. By parts it is expected in its place of the magazine;
-//!   by hours nobody can have put it there, so that the line holds and asks for it. A check that fails holds the line,
-//!   and the next part has to be a golden one again: nothing else is judged before one has read as certified.
-//!   A golden part that was interrupted has said nothing: the check is made anew.
-//! - *Calibration*: one that runs out during a lot stops it; the next start makes a new one.
-//! - *Discard limit*: more failed parts than the lot may have hold the line, once.
-//! - *Wear*: a counter at its limit is told, once, and the line goes on. So is the contact of the probes, where the
-//!   mean over the last parts is beyond its limit.
+//! - *First article*: the first parts get confirmation measurements, every result a mean.
+//! - *Reference check*: compares a reference part, measured like a first article, with its certificate: at the start on a
+//!   stored calibration, after a number of parts, or after a number of hours. By parts the machine expects it at its place
+//!   in the magazine; by hours the line holds and requests it. A failed check holds the line, and only reference parts
+//!   are judged until one agrees with its certificate. An interrupted check begins again.
+//! - *Calibration*: one that expires during a lot stops it; the next start makes a new one.
+//! - *Reject-rate limit*: too many failed parts hold the line, once.
+//! - *Wear*: a counter at its limit raises an alarm, once, and the line continues; so does the mean probe contact.
 
 use super::Station;
 use super::catalogue::AlarmCode;
@@ -25,78 +23,79 @@ use serde::Deserialize;
 use std::collections::VecDeque;
 use units::{Ohm, RigTime, Span};
 
-/// Without a known size of the lot a share of failed parts means something from so many on.
+/// Parts judged before the reject-rate limit applies to a lot of unknown size.
 const ENOUGH: u64 = 20;
 
-/// What a lot is run by, `lot.toml`. Nothing is asked for by default.
+/// Settings of `lot.toml`; by default no gate applies.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default)]
 pub struct LotSettings {
-    /// Parts at the begin of a run that are measured by the slow strategy.
+    /// Number of parts at the beginning of a run that get confirmation measurements.
     pub first_article_parts: u64,
-    /// Failed parts that a lot may have, % of its size.
-    pub discard_limit_pct: Option<f64>,
-    /// When a golden part is measured.
+    /// Greatest share of failed parts, % of the size of the lot.
+    #[serde(rename = "discard_limit_pct")]
+    pub reject_rate_limit_pct: Option<f64>,
+    /// When a reference part is checked.
     pub golden_check: CheckSettings,
     /// Uses after which probes and jaws are worn.
     pub wear: WearSettings,
 }
 
-/// When a golden part is measured.
+/// When a reference part is checked.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default)]
 pub struct CheckSettings {
     /// Before the first part of a run on a stored calibration.
     pub at_start: bool,
-    /// After so many parts of the lot.
+    /// Parts of the lot from one check to the next.
     pub after_parts: Option<u64>,
-    /// After so many hours.
+    /// Hours from one check to the next.
     pub after_h: Option<f64>,
 }
 
 impl CheckSettings {
-    /// Some check is asked for.
+    /// Returns true when any check is set.
     pub fn any(&self) -> bool {
         self.at_start || self.after_parts.is_some() || self.after_h.is_some()
     }
 }
 
-/// Uses after which something is worn.
+/// Limits of wear.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default)]
 pub struct WearSettings {
-    /// Of the probes: times they rose.
+    /// Limit of the strokes of the probes.
     pub probe_touches: Option<u64>,
-    /// Of the jaws: times they closed.
+    /// Limit of the closings of the jaws.
     pub jaw_closings: Option<u64>,
-    /// Of the probes at the coil: resistance in series of both force contacts, ohm.
+    /// Limit of the resistance of the coil's two force contacts, ohm.
     pub probe_contact_ohm: Option<f64>,
 }
 
-/// Where the gates stand.
+/// State of the gates.
 #[derive(Debug, Default)]
 pub(super) struct Gates {
-    /// A golden part has to read as certified before anything else is judged.
+    /// Only reference parts are judged, until one agrees with its certificate.
     checking: bool,
-    /// When one last did, and how many parts of the lot had entered the nest by then.
+    /// Time of the last good check, and number of parts of the lot in the nest until then.
     good: Option<(RigTime, u64)>,
     judged: u64,
     failed: u64,
-    /// The discard limit was told.
-    discarded: bool,
-    /// Counters whose limit was told.
+    /// The alarm of the reject-rate limit was raised.
+    reject_rate_reported: bool,
+    /// Counters whose alarm was raised.
     worn: Vec<Wearing>,
-    /// The limit of the probes' contact is passed, and was told.
+    /// The probe contact exceeds its limit, and its alarm was raised.
     fouled: bool,
 }
 
 impl Gates {
-    /// Nothing but a golden part may be judged now.
+    /// Returns true while only reference parts may be judged.
     pub(super) fn is_checking(&self) -> bool {
         self.checking
     }
 
-    /// The rig reads as certified now.
+    /// Takes note that the rig agrees with a certificate.
     pub(super) fn good(&mut self, now: RigTime, parts: u64) {
         let before = self.good.map_or(0, |(_, parts)| parts);
         assert!(parts >= before, "fewer parts of the lot than before");
@@ -116,22 +115,27 @@ impl Gates {
         now.since(at) >= Span::seconds(after_h * 3600.0)
     }
 
-    /// Counts a part of the lot; true when it is one failed part too many, once.
-    fn discards(&mut self, failed: bool, limit_pct: Option<f64>, count: Option<u64>) -> bool {
+    /// Counts a part of the lot; returns true once, when the failed parts exceed the limit.
+    fn exceeds_reject_rate(
+        &mut self,
+        failed: bool,
+        limit_pct: Option<f64>,
+        count: Option<u64>,
+    ) -> bool {
         self.judged += 1;
         self.failed += u64::from(failed);
         assert!(self.failed <= self.judged, "more failed than judged");
         let size = count.unwrap_or(self.judged).max(self.judged);
         let known = count.is_some() || self.judged >= ENOUGH;
         let over = limit_pct.is_some_and(|pct| self.failed as f64 > size as f64 * pct / 100.0);
-        let first = known && over && !self.discarded;
-        self.discarded |= first;
+        let first = known && over && !self.reject_rate_reported;
+        self.reject_rate_reported |= first;
         first
     }
 }
 
 impl Station {
-    /// A golden part comes next: nothing else is judged before one has read as certified.
+    /// Plans a reference part next; only reference parts are judged until one agrees with its certificate.
     pub(super) fn begin_check(&mut self) {
         let next: VecDeque<String> = self.plan.golden.first().cloned().into_iter().collect();
         self.lot.reference_planned +=
@@ -140,10 +144,10 @@ impl Station {
         self.lot.reference_left = next;
     }
 
-    /// Looks whether a golden check is due while parts are being made.
+    /// Begins a reference check that is due; raises an alarm for an expired calibration.
     pub(super) fn look_for_check(&mut self, now: RigTime, wants: &mut Wants) {
         let executes = self.machine.state == State::Execute;
-        assert!(executes, "a check is looked for while nothing is made");
+        assert!(executes, "a reference check outside Execute");
         let at_us = self.plan.epoch_us + i64::try_from(now.0).unwrap_or(i64::MAX);
         if !self.is_calibrating()
             && self
@@ -162,7 +166,7 @@ impl Station {
         }
         let (parts, settings) = (self.line.ledger.lot_parts(), &self.plan.lot.golden_check);
         if self.lot.gates.good.is_none() {
-            // What the run began with counts as good: its calibration, or the check before the first part.
+            // The calibration or the check at the start counts as the first good check.
             self.lot.gates.good(now, parts);
         } else if self.lot.gates.due_by_parts(settings, parts) {
             self.begin_check();
@@ -177,27 +181,27 @@ impl Station {
         self.lot.reference_left.front().map(String::as_str)
     }
 
-    /// Golden parts that teach the lags are still to come or have not taught them yet.
+    /// Returns true until the reference parts have completed the calibration.
     pub(super) fn is_calibrating(&self) -> bool {
         !self.lot.reference_left.is_empty() || !self.device.is_calibrated()
     }
 
-    /// The part in the nest is measured by the slow strategy.
+    /// Returns true when the part in the nest gets confirmation measurements.
     pub(super) fn is_thorough(&self) -> bool {
         match self.line.ledger.part(Place::NEST).map(|part| &part.kind) {
             Some(Kind::Lot(seq)) => *seq <= self.plan.lot.first_article_parts,
-            Some(Kind::Golden(_)) => self.lot.gates.checking,
+            Some(Kind::Reference(_)) => self.lot.gates.checking,
             None => false,
         }
     }
 
-    /// A golden part of a check was measured, or was not because it was interrupted.
-    pub(super) fn check(&mut self, judged: &Judged, serial: &str, wants: &mut Told) {
+    /// Concludes a reference check; begins it again when it was interrupted or has failed.
+    pub(super) fn check(&mut self, judged: &Judged, serial: &str, outcome: &mut Outcome) {
         if judged.part.interrupted.is_some() {
             return self.begin_check();
         }
         let read = self.device.check(serial, &judged.record);
-        wants.checked = Some(Checked {
+        outcome.checked = Some(Checked {
             passed: read.is_ok(),
             text: match &read {
                 Ok(()) => serial.to_owned(),
@@ -208,20 +212,20 @@ impl Station {
             Ok(()) => self.lot.gates.good(judged.at, self.line.ledger.lot_parts()),
             Err(why) => {
                 self.begin_check();
-                wants
+                outcome
                     .trouble
                     .push(Alarm::reference_check_failed(&why.message()));
             }
         }
     }
 
-    /// Counts a part of the lot against the discard limit.
-    pub(super) fn count_discards(&mut self, judged: &Judged, wants: &mut Told) {
+    /// Counts a part of the lot against the reject-rate limit.
+    pub(super) fn count_rejects(&mut self, judged: &Judged, outcome: &mut Outcome) {
         let failed = matches!(judged.verdict, Verdict::Fail(_));
-        let (limit_pct, count) = (self.plan.lot.discard_limit_pct, self.plan.count);
-        if self.lot.gates.discards(failed, limit_pct, count) {
+        let (limit_pct, count) = (self.plan.lot.reject_rate_limit_pct, self.plan.count);
+        if self.lot.gates.exceeds_reject_rate(failed, limit_pct, count) {
             let (failed, judged) = (self.lot.gates.failed, self.lot.gates.judged);
-            wants.trouble.push(Alarm::discard_limit(
+            outcome.trouble.push(Alarm::reject_rate_limit(
                 failed,
                 judged,
                 limit_pct.unwrap_or_default(),
@@ -229,25 +233,25 @@ impl Station {
         }
     }
 
-    /// Uses of what wears in this run.
+    /// Returns the uses of wearing parts in this run.
     pub fn uses(&self) -> Uses {
         self.line.mechanism.uses()
     }
 
-    /// Resistance of the probes in series with the part, mean over the last parts of the lot.
+    /// Returns the resistance of the probes in series with the part, mean over the last parts of the lot.
     pub fn probe_contact(&self) -> Option<Ohm> {
         self.device.probe_contact()
     }
 
-    /// The limit of the probes' contact is passed, told once until it is kept again.
+    /// Returns the alarm of the probe contact when its mean has just exceeded the limit.
     fn fouled(&mut self) -> Option<Alarm> {
         let limit_ohm = self.plan.lot.wear.probe_contact_ohm?;
         let Ohm(mean) = self.device.settled_probe_contact()?;
-        let told = std::mem::replace(&mut self.lot.gates.fouled, mean > limit_ohm);
-        (self.lot.gates.fouled && !told).then(|| Alarm::probe_contact(mean, limit_ohm))
+        let raised = std::mem::replace(&mut self.lot.gates.fouled, mean > limit_ohm);
+        (self.lot.gates.fouled && !raised).then(|| Alarm::probe_contact(mean, limit_ohm))
     }
 
-    /// Counters at their limit, each told once.
+    /// Returns the alarms of counters at their limit, each once.
     pub(super) fn worn(&mut self) -> Vec<Alarm> {
         let uses = self.plan.worn.with(self.line.mechanism.uses());
         let limits = &self.plan.lot.wear;
@@ -268,9 +272,9 @@ impl Station {
     }
 }
 
-/// What the parts judged in a turn have told.
+/// Consequences of the parts judged in a turn.
 #[derive(Debug, Default)]
-pub(super) struct Told {
+pub(super) struct Outcome {
     pub trouble: Vec<Alarm>,
     pub checked: Option<Checked>,
 }

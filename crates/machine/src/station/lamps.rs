@@ -1,21 +1,21 @@
-//! Stack light and buzzer: one look tells whether the line makes parts, waits, or needs somebody.
+//! Stack light and buzzer.
 //!
 //! | light | when |
 //! |---|---|
-//! | green | parts are made or finished |
+//! | green | the line makes or finishes parts |
 //! | yellow | waits: idle, held, suspended, complete, or on its way there |
-//! | red | aborted, or an alarm that nobody has acknowledged stops something |
+//! | red | aborted, or an unacknowledged alarm with a reaction |
 //! | buzzer | the first [`CALL`] of a red light |
 
 use super::annunciator::{Condition, Standing};
-use super::catalogue::Stops;
+use super::catalogue::Reaction;
 use super::packml::{self, State};
 use crate::rig::point::DigitalOut;
 use units::{RigTime, Span};
 
-/// How long the buzzer calls.
+/// Duration of the buzzer.
 const CALL: Span = Span::ms(2000);
-/// How long a lamp test lasts.
+/// Duration of a lamp test.
 const TEST: Span = Span::ms(3000);
 
 const POINTS: [DigitalOut; 4] = [
@@ -25,7 +25,7 @@ const POINTS: [DigitalOut; 4] = [
     DigitalOut::Buzzer,
 ];
 
-/// What is lit.
+/// State of the lamps.
 #[derive(Debug, Default)]
 pub struct Lamps {
     lit: [bool; 4],
@@ -34,12 +34,12 @@ pub struct Lamps {
 }
 
 impl Lamps {
-    /// Everything lights for a moment.
+    /// Begins a lamp test.
     pub fn test(&mut self, now: RigTime) {
         self.test_until = Some(now + TEST);
     }
 
-    /// Outputs that change. `safe`: everything has just been switched off.
+    /// Returns the outputs that change. `safe`: the rig has just switched every output off.
     pub fn show(
         &mut self,
         now: RigTime,
@@ -50,7 +50,7 @@ impl Lamps {
         if safe {
             self.lit = [false; 4];
         }
-        let stops = |one: &Standing| one.alarm.code.entry().stops != Stops::Nothing;
+        let stops = |one: &Standing| one.alarm.code.entry().reaction != Reaction::Nothing;
         let unseen = standing
             .iter()
             .any(|one| one.condition == Condition::Unacknowledged && stops(one));

@@ -1,8 +1,8 @@
-//! What the station learns before and during a lot: factors from the references, and whatever the kind of part learns
-//! from reference parts and from every part of the lot.
+//! Learning before and during a lot: factors from the references, and corrections from reference parts and parts of the
+//! lot.
 
 use super::Station;
-use super::gates::Told;
+use super::gates::Outcome;
 use super::trouble::Alarm;
 use super::wants::Wants;
 use crate::dut::device::{CalibrationFault, Made};
@@ -14,7 +14,7 @@ use std::collections::VecDeque;
 use units::RigTime;
 
 impl Station {
-    /// Draws the factors from what was read against the references.
+    /// Computes the factors from the readings of the references.
     pub(super) fn conclude_references(
         &mut self,
         now: RigTime,
@@ -28,7 +28,7 @@ impl Station {
         self.device.conclude_references(&runner.readings, made)
     }
 
-    /// References and golden parts are measured again with the next start; the golden parts have to lie in front.
+    /// Discards the calibration: the next start measures references and reference parts again, which must lie in front.
     pub(super) fn recalibrate(&mut self) {
         self.plan.calibrated = false;
         self.referenced = false;
@@ -39,46 +39,46 @@ impl Station {
         self.device.forget_calibration();
     }
 
-    /// What the parts judged in this turn say of the rig and of the lot.
+    /// Learns from the parts judged in this turn, and checks them against the gates.
     pub(super) fn learn(&mut self, wants: &mut Wants) {
-        let mut told = Told::default();
+        let mut outcome = Outcome::default();
         for judged in &wants.record.parts.judged {
             match &judged.part.kind {
-                Kind::Golden(serial) if self.lot.gates.is_checking() => {
-                    self.check(judged, serial, &mut told);
+                Kind::Reference(serial) if self.lot.gates.is_checking() => {
+                    self.check(judged, serial, &mut outcome);
                 }
-                Kind::Golden(_) | Kind::Lot(_) if judged.part.interrupted.is_some() => {}
-                Kind::Golden(serial) => {
+                Kind::Reference(_) | Kind::Lot(_) if judged.part.interrupted.is_some() => {}
+                Kind::Reference(serial) => {
                     let last = self.lot.reference_left.is_empty();
                     let learned = self.device.learn_reference(serial, &judged.record, last);
-                    calibrated(learned, &mut wants.record.calibrated, &mut told);
+                    calibrated(learned, &mut wants.record.calibrated, &mut outcome);
                 }
                 Kind::Lot(_) => {
-                    self.count_discards(judged, &mut told);
+                    self.count_rejects(judged, &mut outcome);
                     let pass = judged.verdict == Verdict::Pass;
                     self.device.learn(&judged.record, pass);
                 }
             }
         }
-        wants.notes.trouble.extend(told.trouble);
-        wants.record.checked = told.checked;
+        wants.notes.trouble.extend(outcome.trouble);
+        wants.record.checked = outcome.checked;
     }
 
-    /// Serial number of the golden part in the nest, while golden parts teach and are not checked.
+    /// Returns the serial number of the reference part in the nest, unless it is there for a check.
     pub(super) fn teaching(&self) -> Option<&str> {
         match self.line.ledger.part(Place::NEST).map(|part| &part.kind) {
-            Some(Kind::Golden(serial)) if !self.lot.gates.is_checking() => Some(serial),
-            Some(Kind::Golden(_) | Kind::Lot(_)) | None => None,
+            Some(Kind::Reference(serial)) if !self.lot.gates.is_checking() => Some(serial),
+            Some(Kind::Reference(_) | Kind::Lot(_)) | None => None,
         }
     }
 
-    /// The last golden part was interrupted: what the others taught has to do, or the calibration has failed.
+    /// Completes the calibration without the last reference part, which was interrupted.
     pub(super) fn end_reference_run(&mut self, wants: &mut Wants) {
         if self.referenced && self.lot.reference_left.is_empty() && self.is_calibrating() {
-            let mut told = Told::default();
+            let mut outcome = Outcome::default();
             let complete = self.device.conclude_reference_parts().map(Some);
-            calibrated(complete, &mut wants.record.calibrated, &mut told);
-            wants.notes.trouble.extend(told.trouble);
+            calibrated(complete, &mut wants.record.calibrated, &mut outcome);
+            wants.notes.trouble.extend(outcome.trouble);
         }
     }
 }
@@ -86,10 +86,10 @@ impl Station {
 fn calibrated(
     learned: Result<Option<Calibration>, CalibrationFault>,
     calibration: &mut Option<Calibration>,
-    told: &mut Told,
+    outcome: &mut Outcome,
 ) {
     match learned {
         Ok(complete) => *calibration = complete.or(calibration.take()),
-        Err(why) => told.trouble.push(Alarm::calibration(&why.message())),
+        Err(why) => outcome.trouble.push(Alarm::calibration(&why.message())),
     }
 }

@@ -1,4 +1,4 @@
-//! The line as the station holds it: feeder, mechanism, where parts are, and motions that wait.
+//! The line: feeder, mechanism, part ledger, and waiting motions.
 
 use super::wants::{Inputs, Wants};
 use crate::guard::Situation;
@@ -18,13 +18,13 @@ pub(super) struct Line {
     pub ledger: Ledger,
     pub mechanism: Mechanism,
     pub recovery: Recovery,
-    /// Every actuator was brought home and nothing was moved by hand or made safe since.
+    /// Every actuator is home, and no jog or safe state came since.
     pub homed: bool,
-    /// Beams that are dark, and since when.
+    /// Dark beams with the time since when.
     pub dark: Vec<(DigitalInput, RigTime)>,
-    /// Motions that wait for a step in maintenance.
+    /// Motions that wait for the order `step` in maintenance.
     pub stepwise: VecDeque<Move>,
-    /// Motions that wait until no end sensor is in doubt.
+    /// Motions that wait until every end sensor is debounced.
     pub postponed: Vec<Move>,
 }
 
@@ -42,7 +42,7 @@ impl Line {
         }
     }
 
-    /// Feeder and homing, and the turn that either of them may have.
+    /// Returns feeder and recovery, and the context of a turn for either.
     pub fn at<'a>(
         &'a mut self,
         now: RigTime,
@@ -51,7 +51,10 @@ impl Line {
         golden: &'a mut VecDeque<String>,
         resting: bool,
     ) -> (&'a mut Feeder, &'a mut Recovery, Turn<'a>) {
-        assert!(wants.notes.feeder.is_empty(), "trouble was left over");
+        assert!(
+            wants.notes.feeder.is_empty(),
+            "trouble of the turn before is left"
+        );
         let turn = Turn {
             now,
             image: inputs.image,
@@ -67,17 +70,17 @@ impl Line {
         (&mut self.feeder, &mut self.recovery, turn)
     }
 
-    /// Checks what holds after every turn.
+    /// Panics when an invariant of the line is broken.
     pub fn check(&self) {
         let ledger = &self.ledger;
         assert!(ledger.balances(), "a part is in two places or in none");
         let places = self.feeder.nests().len() as u64 + 3;
         assert!(ledger.inside() <= places, "more parts than places");
         let beams = self.feeder.beams().count();
-        assert!(self.dark.len() <= beams, "a dark beam of no bin");
+        assert!(self.dark.len() <= beams, "a dark beam without a bin");
     }
 
-    /// Every output has gone safe: nothing is known of any position from here on.
+    /// Forgets every position, because the outputs have gone safe.
     pub fn cut_off(&mut self) {
         self.feeder.cut_off(&self.ledger);
         self.stepwise.clear();
@@ -86,19 +89,19 @@ impl Line {
         self.homed = false;
     }
 
-    /// A motion was cleared and driven.
+    /// Takes note of a motion that the rig has cleared and driven.
     pub fn driven(&mut self, movement: Move, now: RigTime, image: &Image) {
         self.mechanism.driven(movement, now, image);
         self.feeder.driven(movement, &mut self.ledger, now);
     }
 
-    /// Situation for the guard.
+    /// Returns the situation for the guard.
     pub fn situation(&self, now: RigTime, image: &Image) -> Situation {
         let parts = self.feeder.part_places(&self.ledger);
         self.mechanism.situation(parts, now, image)
     }
 
-    /// No motion begins while an end sensor is in doubt: the guard would have to assume the whole stroke.
+    /// Holds motions back until every end sensor is debounced: for a doubtful one the guard assumes the whole stroke.
     pub fn postpone(&mut self, now: RigTime, wants: &mut Wants) {
         self.postponed.append(&mut wants.rig.motions);
         if self.mechanism.is_in_doubt() {
@@ -112,14 +115,14 @@ impl Line {
         self.mechanism.keep_waiting(&waiting.collect::<Vec<_>>());
     }
 
-    /// Every part stands where it may wait.
+    /// Returns true when every part is where it may wait.
     pub fn is_at_rest(&self) -> bool {
         self.feeder.is_at_rest(!self.dark.is_empty())
             && !self.ledger.holds(Place::Falling)
             && self.mechanism.moving().next().is_none()
     }
 
-    /// Nothing inside but, without `pocket`, a part that waits there; rows of the last one are durable.
+    /// Returns true when no part is inside and every row is durable; without `pocket` a part may wait there.
     pub fn is_finished(&self, pocket: bool, recorded: u64, wants: &Wants) -> bool {
         let ledger = &self.ledger;
         let empty = ledger.each().all(|(place, _)| place == Place::Pocket);

@@ -1,4 +1,4 @@
-//! The outer machine as it stands: state, mode, and what a person or the program has asked of it.
+//! State and mode of the outer machine, with the pending requests of operator and program.
 
 use super::packml::{self, Mode, On, State};
 use units::RigTime;
@@ -7,29 +7,29 @@ use units::RigTime;
 #[derive(Debug)]
 pub(super) struct Machine {
     pub state: State,
-    /// When the station had its last turn.
+    /// Time of the last turn.
     turned_at: RigTime,
-    /// When the state was entered; zero before the first turn.
+    /// Time at which the state was entered; zero before the first turn.
     pub entered: RigTime,
     pub mode: Mode,
-    /// The first turn, or the first since the modules were verified.
+    /// Time of the first turn, or of the first since the modules were verified.
     pub began: Option<RigTime>,
-    /// Nobody has started anything yet: the first start is the program's own.
+    /// True before any command: the program itself gives the first start.
     pub fresh: bool,
-    /// The run is to end after the parts inside.
+    /// True when the run ends after the parts inside.
     pub stopping: bool,
     /// The run is over.
     pub ended: bool,
-    /// A person asked for the suspension; it does not end by itself.
+    /// True when an order caused the suspension, so that only an order ends it.
     pub suspended_by_order: bool,
-    /// The modules are being verified, of this clearing.
-    pub asked_verify: bool,
-    /// When the modules were found as they should be, of this clearing.
+    /// True once this clearing has requested the verification of the modules.
+    pub verify_requested: bool,
+    /// Time at which the modules were verified in this clearing.
     pub verified: Option<RigTime>,
 }
 
 impl Machine {
-    /// Nothing has been asked yet.
+    /// Returns the machine before any request.
     pub fn new(state: State) -> Self {
         Self {
             state,
@@ -41,7 +41,7 @@ impl Machine {
             stopping: false,
             ended: false,
             suspended_by_order: false,
-            asked_verify: false,
+            verify_requested: false,
             verified: None,
         }
     }
@@ -53,7 +53,7 @@ impl Machine {
         self.turned_at = now;
     }
 
-    /// Goes where the cause leads to; `None` when the state does not know it.
+    /// Enters the state that follows on the cause; `None` when the state has no such transition.
     pub fn follow(&mut self, on: On, now: RigTime) -> Option<State> {
         let to = packml::next(self.state, on)?;
         assert_ne!(to, self.state, "{on:?} leads nowhere");
@@ -63,7 +63,7 @@ impl Machine {
         Some(to)
     }
 
-    /// Parts are on their way to where they may wait: nothing new begins.
+    /// Returns true while parts go to where they may wait and none begins.
     pub fn is_coming_to_rest(&self) -> bool {
         matches!(self.state, State::Holding | State::Suspending)
     }

@@ -2,7 +2,7 @@
 
 use super::Station;
 use super::annunciator::Standing;
-use super::catalogue::{self, AlarmCode, Goes, Stops};
+use super::catalogue::{self, AlarmCode, ClearedBy, Reaction};
 use super::packml::{self, Command, On, State};
 use super::trouble::Alarm;
 use super::wants::{Ending, Inputs, Wants};
@@ -187,22 +187,22 @@ impl Station {
         {
             self.recalibrate();
         }
-        match entry.stops {
-            Stops::Abort => {
+        match entry.reaction {
+            Reaction::Abort => {
                 let parked = matches!(self.machine.state, State::Stopped | State::Complete);
-                if !(parked && entry.goes == Goes::BySensor) {
+                if !(parked && entry.cleared_by == ClearedBy::Sensor) {
                     self.abort(&name, now, wants);
                 }
             }
-            Stops::Hold if !self.plan.stays => self.abort(&name, now, wants),
-            Stops::Hold => self.rest(Command::Hold, now, wants),
-            Stops::Suspend => {
+            Reaction::Hold if !self.plan.stays => self.abort(&name, now, wants),
+            Reaction::Hold => self.rest(Command::Hold, now, wants),
+            Reaction::Suspend => {
                 if self.machine.state == State::Execute {
                     self.machine.suspended_by_order = false;
                 }
                 self.rest(Command::Suspend, now, wants);
             }
-            Stops::Nothing => {}
+            Reaction::Nothing => {}
         }
     }
 

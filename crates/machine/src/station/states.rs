@@ -1,6 +1,6 @@
 //! What each state of the outer machine does in a turn, and how it is left.
 
-use super::catalogue::{AlarmCode, Stops};
+use super::catalogue::{AlarmCode, Reaction};
 use super::packml::{self, Command, On, State};
 use super::safety::{FIRST_SCAN, safety_was_read};
 use super::trouble::Alarm;
@@ -117,7 +117,9 @@ impl Station {
                 self.machine.fresh = false;
                 self.start = Start::Begin;
             }
-            State::Clearing => (self.machine.asked_verify, self.machine.verified) = (false, None),
+            State::Clearing => {
+                (self.machine.verify_requested, self.machine.verified) = (false, None)
+            }
             State::Stopped | State::Complete => self.make_safe("stopped", now, wants),
             State::Idle
             | State::Execute
@@ -174,7 +176,11 @@ impl Station {
             State::Aborting => self.wait_for_safe(now, &inputs, wants),
             State::Clearing => self.clear(now, &inputs, wants),
             State::Suspended => {
-                let cause = self.alarms.annunciator.stopping(Stops::Suspend).is_some();
+                let cause = self
+                    .alarms
+                    .annunciator
+                    .stopping(Reaction::Suspend)
+                    .is_some();
                 if !cause && !self.machine.suspended_by_order {
                     self.enter(Command::Unsuspend, now, wants);
                 }
@@ -363,8 +369,8 @@ impl Station {
             if safety_was_read(inputs.image, at) || now.since(at) > FIRST_SCAN {
                 self.done(now, wants);
             }
-        } else if !self.machine.asked_verify {
-            self.machine.asked_verify = true;
+        } else if !self.machine.verify_requested {
+            self.machine.verify_requested = true;
             wants.rig.verify = true;
         }
     }

@@ -171,8 +171,8 @@ impl Alarm {
     }
 
     /// More parts have failed than the lot may have.
-    pub fn discard_limit(failed: u64, judged: u64, limit_pct: f64) -> Self {
-        Self::from(AlarmCode::LotDiscardLimit)
+    pub fn reject_rate_limit(failed: u64, judged: u64, limit_pct: f64) -> Self {
+        Self::from(AlarmCode::RejectRateLimit)
             .with("failed", failed)
             .with("judged", judged)
             .with("limit_pct", limit_pct)

@@ -1,26 +1,26 @@
-//! The acts of a stage in the names of this kind, and what they are on a rig: acts of its instruments.
+//! Acts of a relay test by the names of its points, and their translation into acts on a wired rig.
 
 use super::points::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut, Points};
 use crate::instrument::act;
 use crate::rig::point::Point;
 use units::{Span, Volt};
 
-/// What one reading brings in.
+/// Inputs of one reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Read {
     /// All inputs of the interface board.
     Board,
     /// The enabled channels of the coil converter, one scan.
     Coil,
-    /// One channel of it, in little more than half the time.
+    /// One channel of the coil converter, in about half the time of a scan.
     Current(AnalogIn),
     /// The contact drop.
     Drop,
     /// Both gate counters.
     Gates,
-    /// Gate counter 0 alone: all that a ramp needs. Kept beside what counter 1 last was.
+    /// Gate counter 0 alone, which is enough for a ramp; the last count of counter 1 stays with it.
     Gate,
-    /// Temperature of the magazine track, which the part has.
+    /// Temperature of the magazine track, taken as that of the part.
     Track,
     /// Asks each module with outputs whether it has restarted since the last such read; a restart raises an alarm.
     Resets,
@@ -29,13 +29,13 @@ pub enum Read {
 /// One step of a stage; waits and marks as in [`act::Act`].
 #[derive(Debug, Clone, PartialEq)]
 pub enum Act {
-    /// Outputs of the interface board, written together.
+    /// Sets outputs of the interface board in one write.
     Board(Vec<(DigitalOut, bool)>),
-    /// Voltages asked of the supply outputs, in volts of the coil, written one after the other.
+    /// Sets supply outputs one after the other, in volts at the coil.
     Supply(Vec<(AnalogOut, Volt)>),
-    /// One reading.
+    /// Reads once.
     Read(Read),
-    /// The coil converter converts these and nothing else; only while a lot is prepared.
+    /// Enables these channels of the coil converter and no others; only before a lot.
     CoilMask(&'static [AnalogIn]),
     /// Remembers this instant.
     Mark,
@@ -47,7 +47,7 @@ pub enum Act {
     Wait(Span),
     /// See [`act::Act::ConvertSinceMark`].
     ConvertSinceMark(Span),
-    /// Reads the board until the point is active, or gives up; which of both is kept.
+    /// Reads the board until the point is active or the wait ends, and keeps which came first.
     Until {
         /// Point of the interface board.
         point: DigitalIn,
@@ -57,7 +57,7 @@ pub enum Act {
 }
 
 impl Points {
-    /// The acts on this rig; `scanned` are the channels that the coil converter has enabled.
+    /// Translates acts for this rig; `scanned` are the enabled channels of the coil converter.
     pub fn wired(&self, acts: Vec<Act>, scanned: &[AnalogIn]) -> Vec<act::Act> {
         let acts = acts.into_iter();
         acts.map(|act| self.wired_act(act, scanned)).collect()
@@ -87,7 +87,7 @@ impl Points {
         }
     }
 
-    /// The level steps, the other two ramp.
+    /// Steps the level output, ramps the other two.
     fn supplied(&self, outputs: Vec<(AnalogOut, Volt)>) -> act::Act {
         let ramps = |(output, _): &(AnalogOut, Volt)| *output != AnalogOut::SupplyLevel;
         let ramps = outputs.iter().any(ramps);

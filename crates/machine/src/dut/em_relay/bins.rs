@@ -1,4 +1,4 @@
-//! Bins of a relay that fails, one for each cause that a fitter can do something about.
+//! Bins of a failed relay, one for each cause that a fitter can correct.
 
 use crate::rig::bin::Bin;
 
@@ -11,5 +11,5 @@ pub const VOLTAGE: Bin = Bin::named("voltage");
 /// Times or bounce out of limits.
 pub const TIME: Bin = Bin::named("time");
 
-/// All of them, worst first: a relay that fails for several causes goes to the first.
+/// All bins, worst first: a relay with several causes goes to the first of them.
 pub const BY_RANK: [Bin; 4] = [COIL, CONTACT, VOLTAGE, TIME];

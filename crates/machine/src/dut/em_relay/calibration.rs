@@ -1,9 +1,9 @@
-//! What this rig's instruments were found to do: the factors that turn terminal volts, output
-//! commands and counts into quantities, each with its standard uncertainty.
+//! Calibration of a rig for relays: the factors that turn terminal volts, output commands and counts into quantities,
+//! each with its standard uncertainty.
 //!
 //! The factors come from the references on the interface board (5.000 V, 400 ohm, 50 mOhm, 1.000 ms)
-//! and from golden parts, never from the specimens they are later used on. A calibration without
-//! golden parts has no lag corrections and measures no threshold ([`Calibration::overshoots`] is `None`).
+//! and from reference parts, never from the specimens under test. A calibration without
+//! reference parts has no overshoot and measures no threshold ([`Calibration::overshoots`] is `None`).
 
 use super::overshoot::OvershootModel;
 use super::threshold::Direction;
@@ -22,7 +22,7 @@ pub struct InputLine {
 }
 
 impl InputLine {
-    /// Terminal voltage behind a reading.
+    /// Returns the true terminal voltage of a reading.
     pub fn correct(&self, read: Volt) -> Volt {
         Volt((read.0 - self.offset_v.value) / self.gain.value)
     }
@@ -38,50 +38,50 @@ pub struct OutputLine {
 }
 
 impl OutputLine {
-    /// An output that does exactly what is asked.
+    /// An output without error.
     pub const IDEAL: Self = Self {
         gain: Factor { value: 1.0, u: 0.0 },
         offset_v: Factor { value: 0.0, u: 0.0 },
     };
 
-    /// What must be asked of the module so that the coil gets `wanted`.
+    /// Returns the voltage to command so that the coil gets `wanted`.
     pub fn ask_for(&self, wanted: Volt) -> Volt {
         Volt((wanted.0 - self.offset_v.value) / self.gain.value)
     }
 
-    /// What the coil gets when `asked` is asked of the module.
+    /// Returns the voltage at the coil when the command is `asked`.
     pub fn delivers(&self, asked: Volt) -> Volt {
         Volt(self.offset_v.value + self.gain.value * asked.0)
     }
 }
 
-/// How far a ramp overshoots the quasi-static threshold, found on golden parts.
+/// Overshoot of the ramps beyond the quasi-static threshold, found on reference parts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Overshoot {
     /// Indicated minus certified threshold on the fine ramp, volts; positive for operate, negative for release.
     pub fine_v: Factor,
-    /// Mean certified threshold of those parts, volts: a gain error of the supply was in [`Overshoot::fine_v`] there,
-    /// and only away from it is left over.
+    /// Mean certified threshold of those parts, volts: [`Overshoot::fine_v`] contains the gain error of the supply at this
+    /// voltage, so that only the distance from it adds uncertainty.
     #[serde(default)]
     pub at_v: f64,
     /// Mean of coarse minus fine indication of those parts, volts.
     #[serde(default)]
     pub at_coarse_v: f64,
-    /// Coarse minus fine indication: places the fine ramp, and gives results where a recipe trusts it.
+    /// Model of coarse minus fine indication: places the fine ramp, and gives results where a recipe allows it.
     #[serde(default = "untaught")]
     pub coarse: OvershootModel,
-    /// That law was taught by parts of the lot, enough of them to judge others like them.
+    /// True when enough parts of the lot have taught the model for it to give results.
     #[serde(default)]
     pub judges: bool,
 }
 
-/// Parts of a lot that teach the coarse lag before it gives results.
+/// Parts of a lot that teach the coarse overshoot before it gives results.
 const FIRST_PARTS: u32 = 20;
 
 impl Overshoot {
-    /// With what golden parts and lot have taught so far, and what the lot alone has. Golden parts are chosen to lie far
-    /// apart, where the line bends and their times do not go with their thresholds: they place ramps, and judge nothing
-    /// once the lot has taught enough.
+    /// Takes over the model taught by all parts, or that of the lot alone once it has seen [`FIRST_PARTS`].
+    ///
+    /// Reference parts lie far apart, where the line bends: their model places ramps but gives no results.
     pub fn taught(self, by_all: OvershootModel, by_lot: OvershootModel) -> Self {
         let judges = by_lot.parts() >= FIRST_PARTS;
         let coarse = if judges { by_lot } else { by_all };
@@ -92,12 +92,11 @@ impl Overshoot {
         }
     }
 
-    /// How much further than on the golden parts the fine ramp overshoots on a part, volts, and how sure that is (1 sd).
+    /// Returns by how much more the fine ramp overshoots on this part than on the reference parts, volts (1 sd).
     ///
-    /// A rising ramp waits for the armature at both rates: of a part that overshoots more on the coarse one the fine one
-    /// overshoots more in proportion. Of sound parts that leaves a fifth of the difference, of a dragging hinge as much
-    /// again. A falling ramp waits for the flux, which does not tell the fine lag of a sound part, only of an odd one.
-    /// A part that has shown no coarse ramp may be late by any share of what the golden parts were.
+    /// A rising ramp waits for the armature at both rates, so the fine overshoot grows in proportion to the coarse one. A
+    /// falling ramp waits for the flux, which predicts no fine overshoot and only adds uncertainty. Without a coarse ramp
+    /// the overshoot of the reference parts is the uncertainty.
     pub fn own_v(&self, coarse_minus_fine_v: f64, direction: Direction) -> Factor {
         let further = self.fine_v.value * (coarse_minus_fine_v / self.at_coarse_v - 1.0);
         match direction {
@@ -108,12 +107,12 @@ impl Overshoot {
     }
 }
 
-/// Of a calibration that was stored before the lag was a law.
+/// Model of a calibration that was stored without one.
 fn untaught() -> OvershootModel {
     OvershootModel::guess(0.0)
 }
 
-/// Lag of both directions.
+/// Overshoot of both directions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Overshoots {
     /// Rising ramp to NO make.
@@ -122,18 +121,18 @@ pub struct Overshoots {
     pub release: Overshoot,
 }
 
-/// All factors of a rig, as kept in the history with their date.
+/// All factors of a rig with their date, as the history stores them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
     /// When the factors were found, microseconds since 1970 UTC.
     pub made_at_us: i64,
-    /// When they may no longer be used.
+    /// When they expire, microseconds since 1970 UTC.
     pub due_at_us: i64,
-    /// Made on a simulated rig: never used on a real one.
+    /// True on a simulated rig; a real one refuses it.
     pub simulated: bool,
-    /// Coil voltage valid for golden lags: those of a 12 V set say nothing about a 6 V part.
+    /// Nominal coil voltage of the reference parts; the overshoot holds for no other.
     pub nominal_v: f64,
-    /// Converter that reads the coil.
+    /// Line of the converter that reads the coil.
     pub coil_input: InputLine,
     /// Ohms per unit of (voltage reading / current reading) on the fine channels.
     pub ohm_fine: Factor,
@@ -153,16 +152,17 @@ pub struct Calibration {
     pub coarse_v_per_s: Factor,
     /// Slope of the fine ramp at the coil, volts per second.
     pub fine_v_per_s: Factor,
-    /// Ramp lags, once golden parts were run.
+    /// Overshoot of the ramps; none before the reference parts are measured.
     #[serde(rename = "lags")]
     pub overshoots: Option<Overshoots>,
-    /// Force contacts of the coil in series when the golden parts taught these lags, which hold it, ohm; 0: not known.
+    /// Resistance of the coil's two force contacts during the run of the reference parts, which the overshoot contains,
+    /// ohm; 0 when not known.
     #[serde(default)]
     pub probe_contact_ohm: f64,
 }
 
 impl Calibration {
-    /// Ideal factors of unknown quality: good enough to measure the references, no more.
+    /// Returns ideal factors of infinite uncertainty, with which a rig measures its references.
     pub fn unknown(nominal_v: f64) -> Self {
         let unknown = Factor::new(1.0, f64::INFINITY);
         Self {
@@ -188,7 +188,7 @@ impl Calibration {
         }
     }
 
-    /// Every factor that was measured. The slope of the coarse ramp is the maker's and not among them.
+    /// Returns every measured factor; the slope of the coarse ramp is the maker's and not among them.
     pub fn factors(&self) -> Vec<Named> {
         let named = |name, unit, factor| Named { name, unit, factor };
         let mut all = vec![
@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn the_fine_lag_of_a_part_is_its_own_as_far_as_the_coarse_ramp_tells() {
+    fn the_coarse_ramp_corrects_the_fine_overshoot_of_a_part() {
         let overshoot = Overshoot {
             fine_v: Factor::new(0.028, 0.0),
             at_v: 7.88,

@@ -1,19 +1,19 @@
-//! What the operation process card says of a relay.
+//! The operation process card of a relay.
 
 use super::Parameter;
 use super::measure::{SEAL, Stage};
-use super::recipe::{Clamp, RelayRecipe};
+use super::recipe::{RelayRecipe, Suppression};
 use crate::dut::Characteristic;
 use crate::dut::card::{Card, Demand, Piece, Step, TextId};
 
 /// A step of the card.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CardStep {
-    /// From the magazine into the nest.
+    /// Feed from the magazine into the nest.
     Load,
-    /// Jaws and probes.
+    /// Close the jaws, raise the probes.
     Clamp,
-    /// Pins and NC contact at rest.
+    /// Kelvin check of the pins, NC contact at rest.
     Kelvin,
     /// Timed operation.
     OperateTime,
@@ -25,9 +25,9 @@ pub enum CardStep {
     OperateVoltage,
     /// Release threshold.
     ReleaseVoltage,
-    /// Off, probes and jaws.
+    /// Coil off, probes down, jaws open.
     Unclamp,
-    /// From the nest into a bin.
+    /// Carry from the nest into a bin.
     Sort,
 }
 
@@ -46,7 +46,7 @@ pub const STEPS: [&str; 10] = [
 ];
 
 impl CardStep {
-    /// Its name in `card.toml`.
+    /// Returns the name of the step in `card.toml`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Load => "load",
@@ -86,9 +86,9 @@ impl CardStep {
             Self::Kelvin => vec![literal("1 A, ±")],
             Self::OperateTime => vec![literal("0 → "), nominal, literal(" V")],
             Self::ReleaseTime => {
-                let suppression = match test.clamp {
-                    Clamp::Zener => "card-zener",
-                    Clamp::Diode => "card-diode",
+                let suppression = match test.suppression {
+                    Suppression::Zener => "card-zener",
+                    Suppression::Diode => "card-diode",
                 };
                 vec![nominal, literal(" → 0 V, "), Piece::Text(suppression)]
             }
@@ -119,7 +119,7 @@ impl CardStep {
     }
 }
 
-/// The card of a recipe.
+/// Returns the card of a recipe.
 pub fn card(relay: &RelayRecipe) -> Card {
     let part = &relay.part;
     let rating = vec![
@@ -136,7 +136,7 @@ pub fn card(relay: &RelayRecipe) -> Card {
     }
 }
 
-/// The steps in the order in which the test enters their stages.
+/// Returns the steps in the order in which the test enters their stages.
 fn steps(relay: &RelayRecipe) -> Vec<Step> {
     let strategy = relay.test.strategy;
     let strategy = [strategy.operate_voltage_v, strategy.release_voltage_v];

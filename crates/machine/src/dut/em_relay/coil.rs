@@ -1,6 +1,6 @@
 //! Coil resistance as a ratio to the reference resistor, at the reference temperature.
 //!
-//! Voltage and current come from one converter in the same scan, and the calibration compared the
+//! Voltage and current come from one converter in the same scan, and the calibration compares the
 //! same two channels on the reference resistor, so gain errors cancel. Copper: `R(T1) / R(T2) =
 //! (234.5 + T1) / (234.5 + T2)`, temperatures in Celsius (IEC 60028 annealed copper).
 
@@ -12,23 +12,23 @@ use units::{Celsius, Ohm, Unit, Volt};
 /// Temperature at which the resistance of annealed copper would vanish, below zero Celsius.
 const COPPER_ZERO_C: f64 = 234.5;
 
-/// Doubts of one scan that do not depend on the part.
+/// Uncertainty terms of one scan that do not depend on the part.
 #[derive(Debug, Clone, Copy)]
 pub struct ScanDoubt {
     /// Standard uncertainty of one reading at the terminal (noise and resolution), volts.
     pub reading_v: f64,
-    /// Standard uncertainty of the common offset that is left, volts.
+    /// Standard uncertainty of the offset of the converter, volts.
     pub offset_v: f64,
     /// Standard uncertainty of the part's temperature, kelvin.
     pub temperature_k: f64,
 }
 
-/// Factor from a resistance, or a threshold voltage, at `part` to the one at `reference`.
+/// Returns the factor that converts a resistance or a threshold voltage at temperature `part` to `reference`.
 pub fn to_reference(part: Celsius, reference: Celsius) -> f64 {
     (COPPER_ZERO_C + reference.0) / (COPPER_ZERO_C + part.0)
 }
 
-/// Factor from a result at the temperature `from` to the one at `to`: 1 for those that do not go with the copper of the coil.
+/// Returns the factor that converts a result at temperature `from` to `to`; 1 for results independent of the copper.
 pub fn factor(parameter: Parameter, from: Celsius, to: Celsius) -> f64 {
     match parameter.facts().copper {
         true => to_reference(from, to),
@@ -36,14 +36,14 @@ pub fn factor(parameter: Parameter, from: Celsius, to: Celsius) -> f64 {
     }
 }
 
-/// Relative change of copper per kelvin at `at`.
+/// Returns the relative change of copper resistance per kelvin at `at`.
 pub fn relative_per_kelvin(at: Celsius) -> f64 {
     1.0 / (COPPER_ZERO_C + at.0)
 }
 
-/// Coil resistance from scans of (voltage, current) at the terminals, offsets already taken off.
+/// Returns the coil resistance from scans of (voltage, current) at the terminals, free of offset.
 ///
-/// `None` when there is no scan or no current to divide by.
+/// `None` without a scan, or when the current is below the uncertainty of one reading.
 pub fn resistance(
     scans: &[(Volt, Volt)],
     ohm_per_ratio: Factor,

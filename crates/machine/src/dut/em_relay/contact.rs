@@ -14,14 +14,14 @@ use units::{Unit, Volt};
 pub struct Closure {
     /// Drop of the current alone, volts at the terminal.
     pub drop: Volt,
-    /// What reads without current: offset and thermal EMF.
+    /// Reading without current: offset and thermal EMF, volts at the terminal.
     pub zero: Volt,
-    /// How many readings both are the mean of.
+    /// Number of readings in both means.
     pub readings: usize,
 }
 
 impl Closure {
-    /// From readings with the source in the directions of `polarities`; `None` unless there is one for each.
+    /// Evaluates readings with the source in the directions of `polarities`; `None` unless there is one for each.
     pub fn of(readings: &[Volt], polarities: Polarities) -> Option<Self> {
         let signs = polarities.signs();
         let n = signs.len() as f64;
@@ -37,15 +37,16 @@ impl Closure {
         })
     }
 
-    /// Standard uncertainty of drop and zero, each, when one reading has `reading_v`.
+    /// Returns the standard uncertainty of drop and of zero from that of one reading, `reading_v`.
     pub fn u_v(&self, reading_v: f64) -> f64 {
         reading_v / (self.readings as f64).sqrt()
     }
 }
 
-/// Standard uncertainty of the mean drop of `later + 1` closures: the first read with both polarities
-/// (`readings` in all), the later ones forward only, less the zero of the first, from which the EMF may have
-/// moved by `emf_v`. That zero is in every later one: more closures do not average its noise away.
+/// Returns the standard uncertainty of the mean drop of `later + 1` closures.
+///
+/// The first has `readings` readings of both polarities. The later ones are forward only, less the zero of the first,
+/// from which the EMF may have moved by `emf_v`: more closures do not average the noise of that zero.
 pub fn u_with_later_v(readings: usize, later: usize, reading_v: f64, emf_v: f64) -> f64 {
     let (m, k) = (readings as f64, later as f64);
     let n = k + 1.0;
@@ -55,10 +56,10 @@ pub fn u_with_later_v(readings: usize, later: usize, reading_v: f64, emf_v: f64)
     (reading_v.powi(2) * (forward + reversed + own) + emf_v.powi(2) * own).sqrt()
 }
 
-/// Resistance in milliohms from the drops of one or more closures, each free of offset and EMF.
+/// Returns the resistance in milliohms from the drops of one or more closures, each free of offset and EMF.
 ///
 /// `mean_u_v` is the standard uncertainty of their mean at the terminal. The scatter from closure to
-/// closure is the part's own and is not in the budget: the mean of the closures read is the result.
+/// closure belongs to the part and not to the budget: the mean of these closures is the result.
 pub fn resistance(drops: &[Volt], mohm_per_v: Factor, mean_u_v: f64) -> Option<Reading> {
     if drops.is_empty() {
         return None;

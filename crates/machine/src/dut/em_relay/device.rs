@@ -1,12 +1,12 @@
-//! A relay recipe on a rig: what outlives one part.
+//! A relay recipe on a rig, with everything that the parts of a lot share.
 //!
-//! Holds the recipe, what the instruments were found to do, and what parts have taught: reference parts the overshoot of
-//! the ramps, every good part of the lot the place of the next fine ramp, every part how well the probes meet the coil.
+//! Holds the recipe, the calibration and what parts teach: reference parts the overshoot of the ramps, good parts of the
+//! lot the place of the next fine ramp, every part the contact resistance of the probes at the coil.
 
 use super::calibration::{Calibration, Overshoots};
 use super::feasible::nominal_v_per_s;
 use super::measure::context::{UNTAUGHT_FINE_V, untaught};
-use super::measure::{Context, Seen, Test};
+use super::measure::{Context, Observed, Test};
 use super::overshoot::OvershootModel;
 use super::points::{AnalogIn, AnalogOut, Points};
 use super::probe_contact::Trend;
@@ -14,6 +14,7 @@ use super::recipe::RelayRecipe;
 use super::reference::{self, ReferenceFault};
 use super::reference_part::{self, Misfit, ReferenceRun};
 use super::settings::ReferencePart;
+use super::threshold::Direction;
 use crate::dut::Recipe;
 use crate::dut::device::{Made, Rig, TestOrder};
 use crate::dut::record::{Own, TestRecord};
@@ -31,15 +32,15 @@ pub struct Device {
     voltage_gain: f64,
     certificates: Vec<ReferencePart>,
     reference_parts: ReferenceRun,
-    /// Laws of the coarse ramps, operate and release, taught by every part that passed and by reference parts.
+    /// Overshoot models of the coarse ramps, operate and release, taught by reference parts and by every part that passes.
     coarse: (OvershootModel, OvershootModel),
-    /// The same, taught by parts of this lot alone.
+    /// The same models, taught by parts of this lot alone.
     of_lot: (OvershootModel, OvershootModel),
     probe_contact: Trend,
 }
 
 impl Device {
-    /// Puts the recipe on a rig. Reference parts of its nominal voltage serve it.
+    /// Resolves the points of the recipe on a rig, and selects the reference parts of its nominal voltage.
     ///
     /// # Errors
     /// Names the first point that the rig does not have, or the section of its references.
@@ -69,7 +70,7 @@ impl Device {
             points,
             probe_contact: None,
             thorough: false,
-            golden: None,
+            teaching: None,
         };
         let certificates = rig.reference_parts.of_nominal(nominal_v).cloned();
         Ok(Self::of(context, voltage_gain, certificates.collect()))
@@ -97,28 +98,28 @@ impl Device {
         }
     }
 
-    /// The factors in force.
+    /// Returns the factors in force.
     pub fn calibration(&self) -> &Calibration {
         &self.context.calibration
     }
 
-    /// Serial numbers of the reference parts, in the order of the magazine.
+    /// Returns the serial numbers of the reference parts, in the order of the magazine.
     pub fn reference_serials(&self) -> impl Iterator<Item = &str> {
         self.certificates.iter().map(|part| part.serial.as_str())
     }
 
-    /// True when the overshoot of the fine ramps is known, so that parts may be judged.
+    /// Returns true when the overshoot of the fine ramps is known, so that parts may be judged.
     pub fn is_calibrated(&self) -> bool {
         let overshoots = self.context.calibration.overshoots;
         overshoots.is_some_and(|overshoots| overshoots.operate.fine_v.u.is_finite())
     }
 
-    /// The measurements against the references on the board.
+    /// Returns the acts that measure the references on the board.
     pub fn reference_acts(&self) -> Vec<Act> {
         reference::acts(&self.context)
     }
 
-    /// Draws the factors from what [`Self::reference_acts`] has read.
+    /// Computes the factors from the readings of [`Self::reference_acts`].
     ///
     /// # Errors
     /// Names the channel or the reference that does not read as it must.
@@ -141,7 +142,7 @@ impl Device {
         Ok(())
     }
 
-    /// Forgets what reference parts have taught: references and reference parts are measured again.
+    /// Discards the overshoot, so that references and reference parts have to be measured again.
     pub fn forget_calibration(&mut self) {
         self.reference_parts = ReferenceRun::default();
         self.calibrate(|calibration| calibration.overshoots = None);
@@ -152,7 +153,7 @@ impl Device {
         let context = Context {
             thorough: order.thorough,
             probe_contact: self.probe_contact.mean(),
-            golden: order
+            teaching: order
                 .teaching
                 .and_then(|serial| self.certificate(serial))
                 .cloned(),
@@ -175,14 +176,15 @@ impl Device {
         record: &TestRecord,
         last: bool,
     ) -> Result<Option<Calibration>, Misfit> {
-        let seen = seen(record);
-        self.learn_ramps(seen, false);
+        let observed = observed(record);
+        self.learn_ramps(observed, false);
         let missing = || Misfit::NoCertificate {
             serial: serial.to_owned(),
         };
         let part = self.certificate(serial).ok_or_else(missing)?.clone();
         let reference = self.context.reference_temperature();
-        self.reference_parts.learn(&part, reference, record, seen)?;
+        self.reference_parts
+            .learn(&part, reference, record, observed)?;
         if last {
             return self.conclude_reference_parts().map(Some);
         }
@@ -207,31 +209,26 @@ impl Device {
         Ok(self.calibration().clone())
     }
 
-    /// Learns from a part of the lot; one that did not `pass` would spoil the place of the ramp for all that follow.
+    /// Learns from a part of the lot; the overshoot models take only parts that `pass`.
     pub fn learn(&mut self, record: &TestRecord, pass: bool) {
-        let seen = seen(record);
-        if let Some(ohm) = seen.probe_contact {
+        let observed = observed(record);
+        if let Some(ohm) = observed.probe_contact {
             self.probe_contact.add(ohm);
         }
         if pass {
-            self.learn_ramps(seen, true);
+            self.learn_ramps(observed, true);
         }
+        let overshoot = |direction| self.context.overshoot(direction);
         self.calibrate_overshoots(Overshoots {
-            operate: self
-                .context
-                .operate_overshoot()
-                .taught(self.coarse.0, self.of_lot.0),
-            release: self
-                .context
-                .release_overshoot()
-                .taught(self.coarse.1, self.of_lot.1),
+            operate: overshoot(Direction::Rising).taught(self.coarse.0, self.of_lot.0),
+            release: overshoot(Direction::Falling).taught(self.coarse.1, self.of_lot.1),
         });
     }
 
-    /// Compares what was measured on a reference part with its certificate.
+    /// Compares the results of a reference part with its certificate.
     ///
     /// # Errors
-    /// Names what does not agree.
+    /// Names the result that does not agree.
     pub fn check(&self, serial: &str, record: &TestRecord) -> Result<(), Misfit> {
         match self.certificate(serial) {
             Some(part) => reference_part::check(part, record),
@@ -241,12 +238,12 @@ impl Device {
         }
     }
 
-    /// Force contacts of the coil in series, mean over the last parts of the lot; none before a part has told it.
+    /// Returns the resistance of the coil's two force contacts, mean over the last parts; none before the first part.
     pub fn probe_contact(&self) -> Option<Ohm> {
         self.probe_contact.mean()
     }
 
-    /// The same, once enough parts have told it to be a trend.
+    /// Returns the same once it is the mean of enough parts for an alarm.
     pub fn settled_probe_contact(&self) -> Option<Ohm> {
         self.probe_contact.settled()
     }
@@ -255,10 +252,10 @@ impl Device {
         self.certificates.iter().find(|part| part.serial == serial)
     }
 
-    fn learn_ramps(&mut self, seen: &Seen, of_lot: bool) {
+    fn learn_ramps(&mut self, observed: &Observed, of_lot: bool) {
         let both = [
-            (seen.operate, &mut self.coarse.0, &mut self.of_lot.0),
-            (seen.release, &mut self.coarse.1, &mut self.of_lot.1),
+            (observed.operate, &mut self.coarse.0, &mut self.of_lot.0),
+            (observed.release, &mut self.coarse.1, &mut self.of_lot.1),
         ];
         for (ramp, law, law_of_lot) in both {
             let Some((coarse, fine)) = ramp.and_then(|it| Some((it.coarse, it.fine?))) else {
@@ -271,7 +268,7 @@ impl Device {
         }
     }
 
-    /// Takes over what reference parts have taught, with the probe contact that their overshoot holds.
+    /// Takes over the overshoot of the reference parts, with the probe contact that it contains.
     fn teach(&mut self, overshoots: Overshoots) {
         let probe_contact_ohm = self.reference_parts.probe_contact_ohm();
         self.calibrate(|calibration| calibration.probe_contact_ohm = probe_contact_ohm);
@@ -287,10 +284,10 @@ impl Device {
     }
 }
 
-/// What the test of a relay has seen.
-fn seen(record: &TestRecord) -> &Seen {
+/// Returns the observations of a relay test.
+fn observed(record: &TestRecord) -> &Observed {
     match &record.own {
-        Own::EmRelay(seen) => seen,
-        Own::Nothing => panic!("the record of a tested relay lacks what its test has seen"),
+        Own::EmRelay(observed) => observed,
+        Own::Nothing => panic!("the record of a relay test has no observations"),
     }
 }

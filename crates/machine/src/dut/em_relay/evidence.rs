@@ -1,54 +1,54 @@
-//! What curves prove of a parameter that has no value: the contact had not moved yet, so the threshold or
-//! the time is greater than what was seen.
+//! Lower bounds that stored curves prove for a parameter without a value: as long as the contact has not moved, the
+//! threshold or the time is greater than the curve shows.
 //!
 //! | parameter | is at least |
 //! |---|---|
-//! | operate voltage | the greatest sum asked of the supply at which the driven coil left NO open to the last look before the next change; stages wait for the end of a ramp before they go on |
-//! | operate time | from the drive at nominal voltage to the last look with NO open |
-//! | release time | from the last switch-off to the last look with NC open |
+//! | operate voltage | the greatest supply command at which NO of the driven coil was still open at the last sample before the next change; stages wait for the end of a ramp |
+//! | operate time | from the drive at nominal voltage to the last sample with NO open |
+//! | release time | from the last switch-off to the last sample with NC open |
 //!
-//! A bound decides only with [`DOUBT`] to spare: it is neither corrected nor brought to the reference
-//! temperature.
+//! A bound is neither corrected nor converted to the reference temperature, so it decides only with the margin
+//! [`DOUBT`].
 
 use super::Parameter;
 use super::points::{AnalogOut, BOARD, DigitalOut};
 use crate::instrument::curve::Curve;
 
-/// Copper 5 K from the reference (2 %), tolerance of the supply and a poll of the board.
+/// Margin: copper 5 K from the reference (2 %), tolerance of the supply, and one poll of the board.
 const DOUBT: f64 = 0.03;
-/// The coil counts as driven at nominal voltage from this share of it on.
+/// Share of the nominal voltage from which the coil counts as driven at nominal.
 const NOMINAL: f64 = 0.98;
 
-/// Whether the curves prove that the parameter lies above `high`, for a coil of `nominal_v`.
+/// Returns true when the curves prove that the parameter lies above `high`, for a coil of `nominal_v`.
 pub fn above(curves: &[Curve], parameter: Parameter, high: f64, nominal_v: f64) -> bool {
     at_least(curves, parameter, nominal_v).is_some_and(|bound| bound * (1.0 - DOUBT) > high)
 }
 
-/// The bound, in the unit of the parameter.
+/// Returns the lower bound in the unit of the parameter.
 pub fn at_least(curves: &[Curve], parameter: Parameter, nominal_v: f64) -> Option<f64> {
-    let seen = Seen::of(curves, nominal_v);
+    let proven = Bounds::of(curves, nominal_v);
     let ms = |us: i64| us as f64 / 1e3;
     let bounds = [
-        (Parameter::OperateVoltage, seen.unmoved_v),
-        (Parameter::OperateTime, seen.unmade_us.map(ms)),
-        (Parameter::ReleaseTime, seen.unreleased_us.map(ms)),
+        (Parameter::OperateVoltage, proven.unmoved_v),
+        (Parameter::OperateTime, proven.unmade_us.map(ms)),
+        (Parameter::ReleaseTime, proven.unreleased_us.map(ms)),
     ];
     let bound = bounds.into_iter().find(|(of, _)| *of == parameter);
     bound.and_then(|(_, at_least)| at_least)
 }
 
-/// What happened, in order of time.
+/// One event of the curves.
 enum Event {
-    /// One output of the supply, by its place, was asked for so many volts.
+    /// Command of a supply output, by its place in [`SUPPLY`], volts.
     Asked(usize, f64),
-    /// The drive went on or off, or stayed.
+    /// Drive on or off.
     Drive(bool),
-    /// NO and NC closed or not.
+    /// Contacts closed.
     Contacts { no: bool, nc: bool },
 }
 
 #[derive(Default)]
-struct Seen {
+struct Bounds {
     unmoved_v: Option<f64>,
     unmade_us: Option<i64>,
     unreleased_us: Option<i64>,
@@ -60,7 +60,7 @@ const SUPPLY: [AnalogOut; 3] = [
     AnalogOut::SupplyFine,
 ];
 
-impl Seen {
+impl Bounds {
     fn of(curves: &[Curve], nominal_v: f64) -> Self {
         let mut seen = Self::default();
         let mut asked = [0.0; SUPPLY.len()];

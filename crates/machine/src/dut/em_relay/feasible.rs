@@ -1,7 +1,7 @@
-//! Can these modules measure what the recipe demands, and is it worth judging?
+//! Checks before any motion that the modules of a rig can perform a recipe, and that its limits are wider than the
+//! guard bands.
 //!
-//! Checked before anything moves. A strategy needs outputs that step or slew, a counter that counts and
-//! channels that are converted; a limit needs an uncertainty that leaves something of it.
+//! A strategy needs outputs that step or slew, a counter in counting mode and enabled channels.
 
 use super::bins;
 use super::coil::relative_per_kelvin;
@@ -18,16 +18,15 @@ use crate::rig::point::AnalogOutput;
 use crate::rig::wiring::Wiring;
 use units::Celsius;
 
-/// An output that is refreshed more rarely while it ramps makes steps of the coarse ramp that no counter
-/// resolves: 2 ms at 96 V/s are 0.19 V.
+/// Longest refresh interval of an output that ramps: 2 ms make steps of 0.19 V of a ramp of 96 V/s.
 pub const SLOWEST_REFRESH_MS: f64 = 2.0;
-/// Conversions per second of an I-7017F outside its fast mode: waiting for fewer reads what was there before.
+/// Conversions per second of an I-7017F outside its fast mode.
 const SLOW_CONVERSIONS_PER_S: f64 = 10.0;
-/// Type code of an I-7080 that counts; 51 makes it measure frequency.
+/// Type code of an I-7080 in counting mode; 51 is frequency mode.
 const COUNTS: u8 = 0x50;
 
-/// Refuses a recipe that these modules cannot perform or that their uncertainty makes idle; the fault
-/// names the key of the recipe and the module that stands against it.
+/// Refuses a recipe that these modules cannot perform, or whose limits are narrower than the guard bands; the fault
+/// names the key of the recipe and the module in question.
 ///
 /// # Errors
 /// The first fault.
@@ -104,7 +103,7 @@ pub fn check_references(
     Err(Fault::new("kind", "\"em_relay\"", expected))
 }
 
-/// What hinders a strategy; `None` when the modules can perform it.
+/// Returns why the modules cannot perform a strategy; `None` when they can.
 pub fn hindrance(
     strategy: Strategy,
     wiring: &Wiring,
@@ -171,15 +170,15 @@ pub fn hindrance(
         })
 }
 
-/// Rate of an output at the coil, volts per second; 0 for one that steps.
+/// Returns the rate of an output at the coil, volts per second; 0 for one that steps.
 pub fn nominal_v_per_s(wiring: &Wiring, output: AnalogOutput) -> f64 {
     let terminal = wiring.analog_out(output);
     let slew = wiring.module(terminal.module).slew;
     slew.and_then(|code| code.volt_per_second()).unwrap_or(0.0) * terminal.gain
 }
 
-/// Expanded uncertainty to expect of a parameter, from what the makers promise: the terms that no
-/// strategy takes away. Zero where it is far below any limit one would write.
+/// Returns the expanded uncertainty of a parameter from the accuracy that the makers promise: the terms that no
+/// strategy removes.
 fn expected_u(parameter: Parameter, recipe: &RelayRecipe, accuracy: &AccuracySettings) -> f64 {
     let per_kelvin = relative_per_kelvin(Celsius(recipe.part.reference_temperature_c));
     let threshold = |volts: f64| {

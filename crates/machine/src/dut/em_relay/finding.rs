@@ -1,4 +1,4 @@
-//! What a test of a relay finds beside its figures: the part is bad, or could not be judged.
+//! Findings of a relay test beside its results: the part is bad, or the test cannot judge it.
 
 use super::threshold::Direction;
 use super::{Parameter, bins};
@@ -6,7 +6,7 @@ use crate::dut::reason::{Code, Reason};
 use crate::dut::verdict::Bin;
 use crate::gauge::Side;
 
-/// A changeover contact has two sides.
+/// Side of the changeover contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Contact {
     /// Normally open.
@@ -15,7 +15,7 @@ pub enum Contact {
     Nc,
 }
 
-/// One finding. Its text names the figure or the pin that [`Finding::with`] adds.
+/// One finding; [`Finding::with`] adds the figure or the pin that its text names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Finding {
     /// No current through the coil.
@@ -30,13 +30,13 @@ pub enum Finding {
     NcDoesNotOpen,
     /// NO stays open at nominal voltage.
     NoDoesNotMake,
-    /// NO makes after the longest wait for it.
+    /// NO makes only after the longest wait.
     OperatesTooLate,
     /// NC does not make within the longest wait after switch-off.
     ReleasesTooLate,
     /// The coarse ramp ends below the operate threshold.
     AboveCoarseRamp,
-    /// The drop of a contact is over range although the source drives its current.
+    /// The drop of a contact is over range at the full current of the source.
     ContactOverRange(Contact),
     /// The drop is over range and the source in compliance.
     ContactOpen(Contact),
@@ -44,46 +44,46 @@ pub enum Finding {
     Misoriented,
     /// One pin has no Kelvin contact; detail: its name.
     PinOpen,
-    /// Several pins have none; detail: their names.
+    /// Several pins have no Kelvin contact; detail: their names.
     PinsOpen,
     /// The hard-wired chain of the raised probes is open.
     ProbeChainOpen,
-    /// The interface board gave no inputs.
+    /// No reading of the interface board.
     BoardNotRead,
     /// A scan lacks voltage or current.
     CoilNotRead,
-    /// The coil voltage is no number.
+    /// The reading of the coil voltage is not usable.
     CoilVoltageNotReadable,
-    /// The supply gives too little at the pre-bias; detail: what it gives.
+    /// The coil voltage at the pre-bias is too low; detail: the voltage.
     CoilSupplyLow,
-    /// Current flows after the drive was taken off.
+    /// Coil current flows after the drive is off.
     CoilCurrentRemains,
-    /// The thermometer of the magazine track gave no number.
+    /// The reading of the track temperature is not usable.
     TrackNotReadable,
-    /// The drop of a contact gave no number.
+    /// The reading of a contact drop is not usable.
     DropNotReadable(Contact),
-    /// The NC drop has no reading without current to take off.
+    /// No zero reading to subtract from the NC drop.
     DropWithoutZero,
-    /// A resistance that no contact has; detail: the figure.
+    /// A contact resistance below any real one; detail: the figure.
     ContactImplausible(Contact),
-    /// The gated counters were not read twice.
+    /// Fewer than two readings of the gated counters.
     GatesNotRead,
-    /// Counts that no relay causes; detail: both counts.
+    /// Counts outside the range of any relay; detail: both counts.
     GatesImplausible,
-    /// NO is closed after a coarse ramp whose window saw no event.
+    /// NO is closed after a coarse ramp without an event in its window.
     MadeOutsideWindow,
-    /// Every fine ramp missed the event; detail: how many there were.
+    /// Every fine ramp missed the event; detail: number of ramps.
     ThresholdNotFound(Direction),
     /// A search by levels ended without an interval.
     SearchWithoutThreshold(Direction),
 }
 
-/// What is fixed about a finding.
+/// Code and consequence of a finding.
 struct Entry {
     code: &'static str,
-    /// Bin of a bad part; none where the part could not be judged.
+    /// Bin of a bad part; none for a part that cannot be judged.
     bin: Option<Bin>,
-    /// What it proves of a limit.
+    /// Characteristic and side of the limit that it proves exceeded.
     proves: Option<(Parameter, Side)>,
 }
 
@@ -198,7 +198,7 @@ impl Finding {
         }
     }
 
-    /// The finding with the figure or the pins that its text names.
+    /// Returns the reason with the figure or the pins that its text names.
     pub fn with(self, detail: impl Into<String>) -> Reason {
         Reason {
             code: Code::EmRelay(self),
@@ -212,12 +212,12 @@ impl Finding {
         self.entry().code
     }
 
-    /// Bin of a bad part; none where the part could not be judged.
+    /// Bin of a bad part; none for a part that cannot be judged.
     pub fn bin(self) -> Option<Bin> {
         self.entry().bin
     }
 
-    /// The characteristic whose limit it proves broken, if it does.
+    /// Returns the characteristic whose limit it proves exceeded, if any.
     pub fn proves(self) -> Option<Parameter> {
         self.entry().proves.map(|(parameter, _)| parameter)
     }

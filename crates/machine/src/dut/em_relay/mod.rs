@@ -54,7 +54,7 @@ pub mod timing;
 pub use calibration::Calibration;
 pub use device::Device;
 pub use finding::Finding;
-pub use measure::Seen;
+pub use measure::Observed;
 pub use parameter::Parameter;
 pub use strategy::Strategy;
 

@@ -1,65 +1,64 @@
-//! The lag of a coarse ramp as a law of what the same part has shown before.
+//! Model of the overshoot of a coarse ramp, from earlier results of the same part.
 //!
-//! A ramp overshoots by its rate times a delay, and the delay is made of what makes other results: an armature that
+//! A ramp overshoots by its rate times a delay, and the delay depends on the same causes as other results: an armature that
 //! is late on a step is late on a ramp, eddy currents that hold the flux after switch-off hold it back while it rises,
-//! a winding of more ohms has another time constant, and a higher threshold is crossed later. Beside its own indication a
-//! release follows that of the operate ramp: springs and travel carry both. So the lag is a line in
-//! the logarithms of five results ([`Shown`]), each against that of the first part seen.
+//! a winding of more ohms has another time constant, and a higher threshold is crossed later. A release
+//! also depends on the operate ramp: springs and travel determine both. The model is therefore linear in
+//! the logarithms of five results ([`Shown`]), each relative to that of the first part.
 //!
-//! Golden parts and the first parts of a lot teach the line: they have both ramps. It is a regression with a conjugate
-//! prior (normal with inverse gamma), so it says from the first part on how sure it is: what has hardly varied yet
-//! widens the answer. The prior is forgotten with the parts.
+//! Reference parts and the first parts of a lot teach the line: they have both ramps. It is a regression with a conjugate
+//! prior (normal with inverse gamma), so it gives an uncertainty from the first part on: a result that has hardly varied
+//! yet widens it. The weight of the prior falls with every part.
 //!
-//! A line holds where it was learnt. A part that lies far outside ([`Predicted::alike`]) may be placed by it, not judged:
-//! what bends the line grows with the square of the distance, and so does the doubt.
+//! A line holds only among the parts that taught it. It may place the ramp of a part far outside ([`Predicted::alike`]) but
+//! gives no result for it; the uncertainty grows with the square of the distance.
 
 use serde::{Deserialize, Serialize};
 use units::Volt;
 
-/// Scatter about the line that is believed before any part was seen, volts (1 sd): that of two operations, and what a
-/// line leaves of golden parts that lie far apart.
+/// Prior scatter about the line, volts (1 sd): that of two operations, and the residual of reference parts that lie far
+/// apart.
 const SCATTER_V: f64 = 0.004;
-/// How many parts that belief is worth.
+/// Weight of the prior, in parts.
 const WORTH: f64 = 4.0;
-/// How far the guess of the lag may be off for the first part, volts (1 sd).
+/// Uncertainty of the guessed overshoot of the first part, volts (1 sd).
 const GUESS_SD_V: f64 = 0.05;
-/// By how many hundredths of itself the lag changes when a result is greater by a hundredth (mean and 1 sd), in the order of
-/// [`Shown`]. An armature that operates late is a heavy one: its flight is most of what a rising ramp waits for and half of
-/// an operation. A high threshold makes an operation late without any mass, and so is taken off again; of a rising ramp
-/// both indications are the same. A falling ramp waits for the flux, which follows each result a little.
+/// Prior elasticities of the overshoot, in per cent per per cent of a result (mean and 1 sd), in the order of [`Shown`].
+/// A late armature is heavy: its flight is most of the delay of a rising ramp and half of an operate time. A high
+/// threshold delays an operation without mass, hence the negative terms. A falling ramp waits for the flux, which follows
+/// each result a little.
 const RISING: [f64; RESULTS] = [-0.8, -0.8, 1.3, 0.0, 0.3];
 const FALLING: [f64; RESULTS] = [0.0; RESULTS];
 const ELASTICITY_SD: f64 = 0.25;
-/// A part that is further from what is expected of it teaches as if it were so far, in standard uncertainties: one odd golden
-/// part does not bend the line for a lot, and a line that is wrong still widens until it is not.
+/// Largest residual that teaches, in standard uncertainties: one outlier does not bend the line for a lot, and a wrong
+/// line still widens until it fits.
 const ODD: f64 = 3.0;
-/// Greatest squared distance from the parts seen, in standard deviations along every direction in which they vary, and
-/// how it widens while few parts tell those: of parts like them one in two thousand is further away (Hotelling's T2 of
-/// five variates, to a tenth from ten parts on).
+/// Greatest squared distance from the parts seen, in standard deviations, and its widening while few parts were seen: one
+/// similar part in two thousand is further away (Hotelling's T2 of five variates, within a tenth from ten parts on).
 const FURTHEST2: f64 = 20.0;
 const WIDER: f64 = 20.0;
-/// Results that the line follows.
+/// Number of results in the model.
 const RESULTS: usize = 5;
-/// A constant, and a slope for each.
+/// A constant, and a slope for each result.
 const TERMS: usize = RESULTS + 1;
 
-/// What a part has shown when the event of its coarse ramp is read; NaN where it has shown nothing.
+/// Results of a part at the event of its coarse ramp; NaN for a missing one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shown {
     /// Indication of the coarse ramp.
     pub indicated: Volt,
-    /// Indication of the coarse operate ramp: the same, or that of the ramp before a release.
+    /// Indication of the coarse operate ramp: of this ramp, or of the one before a release.
     pub operate: Volt,
     /// Operate time at nominal voltage, ms.
     pub operate_ms: f64,
-    /// Release time into the clamp of the recipe, ms.
+    /// Release time with the coil suppression of the recipe, ms.
     pub release_ms: f64,
     /// Coil resistance at the reference temperature, ohm.
     pub coil_ohm: f64,
 }
 
 impl Shown {
-    /// Of a part that has not shown a ramp.
+    /// Results of a part without a ramp.
     pub const NOTHING: Self = Self {
         indicated: Volt(f64::NAN),
         operate: Volt(f64::NAN),
@@ -68,7 +67,7 @@ impl Shown {
         coil_ohm: f64::NAN,
     };
 
-    /// Logarithms of all, none when one is no number above zero.
+    /// Returns the logarithms of all, none unless all are above zero.
     fn logarithms(&self) -> Option<[f64; RESULTS]> {
         let results = [
             self.indicated.0,
@@ -82,25 +81,25 @@ impl Shown {
     }
 }
 
-/// The lag to expect of a part.
+/// Expected overshoot of a part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Predicted {
     /// Coarse minus fine indication, volts.
     pub volts: f64,
     /// Standard uncertainty, volts.
     pub u_v: f64,
-    /// The part lies among those that taught the law.
+    /// True when the part lies among those that taught the model.
     pub alike: bool,
 }
 
-/// The law as far as it is known.
+/// The model as far as parts have taught it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OvershootModel {
     guess_v: f64,
     parts: u32,
     /// Logarithms of the first part.
     first: [f64; RESULTS],
-    /// Prior and parts: sums of products of the terms, and of terms and lag less guess.
+    /// Sums over prior and parts: products of the terms, and of terms and overshoot less guess.
     products: [[f64; TERMS]; TERMS],
     #[serde(rename = "with_lag")]
     with_overshoot: [f64; TERMS],
@@ -108,7 +107,7 @@ pub struct OvershootModel {
 }
 
 impl OvershootModel {
-    /// Before any part was seen: a guess of the lag in volts.
+    /// Returns the model before the first part, from a guess of the overshoot in volts.
     pub fn guess(guess_v: f64) -> Self {
         let mut law = Self {
             guess_v,
@@ -119,7 +118,7 @@ impl OvershootModel {
             squares: WORTH * SCATTER_V.powi(2),
         };
         for term in 0..TERMS {
-            let (mean_v, weight) = believed(guess_v, term);
+            let (mean_v, weight) = prior(guess_v, term);
             law.products[term][term] = weight;
             law.with_overshoot[term] = weight * mean_v;
             law.squares += weight * mean_v.powi(2);
@@ -127,12 +126,12 @@ impl OvershootModel {
         law
     }
 
-    /// Parts that have taught it.
+    /// Returns the number of parts that have taught it.
     pub fn parts(&self) -> u32 {
         self.parts
     }
 
-    /// Takes in a part with both indications; one that is not a number is passed over.
+    /// Learns from a part with both indications; ignores one with a missing result.
     pub fn learn(&mut self, shown: &Shown, fine: Volt) {
         let overshoot_v = (shown.indicated - fine).0;
         let Some(logarithms) = shown.logarithms().filter(|_| overshoot_v.is_finite()) else {
@@ -155,15 +154,15 @@ impl OvershootModel {
         self.parts += 1;
     }
 
-    /// The lag to expect of a part. One that has not shown everything is taken for the first, and for unlike.
+    /// Returns the expected overshoot of a part; with a missing result that of the first part, and not `alike`.
     pub fn of(&self, shown: &Shown) -> Predicted {
         let logarithms = shown.logarithms().filter(|_| self.parts > 0);
         let terms = self.terms(logarithms.unwrap_or(self.first));
         let line = solved(self.products, self.with_overshoot);
         let spread = dot(terms, solved(self.products, terms));
         let left = (self.squares - dot(line, self.with_overshoot)).max(0.0);
-        let freedom = WORTH + f64::from(self.parts) - self.told();
-        // Student's t of so many degrees of freedom is wider than a normal distribution by this.
+        let freedom = WORTH + f64::from(self.parts) - self.determined();
+        // Variance of Student's t relative to a normal distribution.
         let student = freedom / (freedom - 2.0);
         let beyond = self.beyond(spread);
         Predicted {
@@ -174,17 +173,17 @@ impl OvershootModel {
         }
     }
 
-    /// How many terms the parts have told, and not the prior: so many of them are gone into the line and leave no scatter.
-    fn told(&self) -> f64 {
+    /// Returns the number of terms that parts, not the prior, have determined: degrees of freedom used up by the line.
+    fn determined(&self) -> f64 {
         let of_term = |term: usize| {
             let mut alone = [0.0; TERMS];
             alone[term] = 1.0;
-            1.0 - believed(self.guess_v, term).1 * solved(self.products, alone)[term]
+            1.0 - prior(self.guess_v, term).1 * solved(self.products, alone)[term]
         };
         (0..TERMS).map(of_term).sum()
     }
 
-    /// Squared distance from the parts seen against that of the furthest that are like them; none while too few were.
+    /// Returns the squared distance from the parts seen, relative to the limit for similar ones; none while too few were seen.
     fn beyond(&self, spread: f64) -> Option<f64> {
         let parts = f64::from(self.parts);
         let more = parts - RESULTS as f64;
@@ -203,9 +202,9 @@ impl OvershootModel {
     }
 }
 
-/// What is believed of a term of the line before any part was seen, volts, and what it adds to the product of that term
-/// with itself. The lag of a rising ramp lies above zero, that of a falling one below.
-fn believed(guess_v: f64, term: usize) -> (f64, f64) {
+/// Returns the prior mean of a term, volts, and its weight. The overshoot of a rising ramp is positive, that of a falling
+/// one negative.
+fn prior(guess_v: f64, term: usize) -> (f64, f64) {
     let elasticities = if guess_v > 0.0 { RISING } else { FALLING };
     let (mean_v, sd_v) = match term.checked_sub(1) {
         None => (0.0, GUESS_SD_V),
@@ -221,7 +220,7 @@ fn dot(a: [f64; TERMS], b: [f64; TERMS]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// `products x = right` by elimination; a prior on every term keeps the pivots above zero.
+/// Solves `products x = right` by elimination; the prior of every term keeps the pivots above zero.
 fn solved(mut products: [[f64; TERMS]; TERMS], mut right: [f64; TERMS]) -> [f64; TERMS] {
     for pivot in 0..TERMS {
         for row in pivot + 1..TERMS {

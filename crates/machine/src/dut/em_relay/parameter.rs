@@ -5,7 +5,8 @@ use super::card::CardStep;
 use super::measure::Stage;
 use super::threshold::Direction;
 use crate::dut::characteristic::{Characteristic, Definition};
-use crate::gauge::repetition::SpokenOf;
+use crate::gauge::repetition::MeanOf;
+use crate::rig::bin::Bin;
 use std::fmt;
 use units::Unit;
 
@@ -33,7 +34,7 @@ pub enum Parameter {
 }
 
 impl Parameter {
-    /// Every parameter.
+    /// Every parameter, in the order of reports.
     pub const ALL: [Self; 9] = [
         Self::CoilResistance,
         Self::OperateVoltage,
@@ -46,60 +47,60 @@ impl Parameter {
         Self::ContactResistanceNc,
     ];
 
-    /// What every kind knows of its characteristics.
+    /// Returns key, unit and bin, which every kind has.
     pub const fn definition(self) -> &'static Definition {
         &self.facts().definition
     }
 
-    /// What only relays know of it.
+    /// Returns the data that only relays have.
     pub const fn facts(self) -> &'static Facts {
         &TABLE[self as usize]
     }
 
-    /// The key, with the unit as suffix.
+    /// Returns the key, with the unit as suffix.
     pub const fn name(self) -> &'static str {
         self.definition().key
     }
 
-    /// Position in [`Self::ALL`].
+    /// Returns the position in [`Self::ALL`].
     pub const fn index(self) -> usize {
         self as usize
     }
 }
 
-/// What only relays know of a parameter.
+/// Data of a parameter that only relays have.
 #[derive(Debug, Clone, Copy)]
 pub struct Facts {
-    /// What every kind knows.
+    /// Key, unit and bin, which every kind has.
     pub definition: Definition,
-    /// Goes with the copper of the coil, so that results are brought to the reference temperature.
+    /// True when it scales with the copper of the coil: results are converted to the reference temperature.
     pub copper: bool,
-    /// Steps of the process card that demand it.
+    /// Steps of the process card that list its limits.
     pub card: &'static [CardStep],
-    /// Stage that measures it once more.
+    /// Stage that repeats its measurement.
     pub stage: Stage,
-    /// What a lot is expected to show.
+    /// Expected distribution over a lot.
     pub expected: Expected,
-    /// Greatest rms error of a lot that is good enough: ohm in percent, V in mV, else in the unit of the key.
+    /// Greatest acceptable rms error over a lot: ohm in percent, V in mV, else in the unit of the key.
     pub allowed_rms: f64,
 }
 
-/// What a lot is expected to show of a parameter, in the unit of its key.
+/// Expected distribution of a parameter over a lot, in the unit of its key.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Expected {
-    /// The nominal coil of the recipe.
+    /// Around the nominal coil of the recipe.
     Coil,
-    /// The expected threshold of the recipe.
+    /// Around the expected threshold of the recipe.
     Threshold(Direction),
-    /// The lot of the default world.
+    /// As in the lot of the default world.
     Usual {
-        /// Mean of the lot; its median where the logarithm scatters.
+        /// Mean of the lot; its median when `logarithmic`.
         mean: f64,
         /// Standard deviation of the values, or of their logarithm.
         sd: f64,
-        /// The logarithm scatters.
+        /// True when the logarithm scatters.
         logarithmic: bool,
-        /// Standard uncertainty that no strategy takes away.
+        /// Standard uncertainty that no strategy removes.
         u: f64,
     },
 }
@@ -124,125 +125,55 @@ impl Expected {
     }
 }
 
+impl Facts {
+    const fn of(
+        key: &'static str,
+        (unit, mean_of, bin): (Unit, MeanOf, Bin),
+        (card, stage): (&'static [CardStep], Stage),
+        expected: Expected,
+        allowed_rms: f64,
+    ) -> Self {
+        Self {
+            definition: Definition {
+                key,
+                unit,
+                mean_of,
+                bin,
+            },
+            copper: matches!(expected, Expected::Coil | Expected::Threshold(_)),
+            card,
+            stage,
+            expected,
+            allowed_rms,
+        }
+    }
+}
+
+const TIME: (Unit, MeanOf, Bin) = (Unit::Millisecond, MeanOf::Operation, bins::TIME);
+const CONTACT: (Unit, MeanOf, Bin) = (Unit::Milliohm, MeanOf::Closures, bins::CONTACT);
+const COIL: (Unit, MeanOf, Bin) = (Unit::Ohm, MeanOf::Part, bins::COIL);
+const VOLTAGE: (Unit, MeanOf, Bin) = (Unit::Volt, MeanOf::Part, bins::VOLTAGE);
+const RISING: (&[CardStep], Stage) = (&[CardStep::OperateVoltage], Stage::OperateFine(0));
+const FALLING: (&[CardStep], Stage) = (&[CardStep::ReleaseVoltage], Stage::ReleaseFine(0));
+const OPERATE: (&[CardStep], Stage) = (&[CardStep::OperateTime], Stage::TimedOperate);
+const RELEASE: (&[CardStep], Stage) = (&[CardStep::ReleaseTime], Stage::TimedRelease);
+const NC: (&[CardStep], Stage) = (
+    &[CardStep::Kelvin, CardStep::ReleaseTime],
+    Stage::TimedRelease,
+);
+
 /// In the order of [`Parameter::ALL`].
+#[rustfmt::skip]
 static TABLE: [Facts; Parameter::ALL.len()] = [
-    Facts {
-        definition: Definition {
-            key: "coil_resistance_ohm",
-            unit: Unit::Ohm,
-            spoken_of: SpokenOf::Part,
-            bin: bins::COIL,
-        },
-        copper: true,
-        card: &[CardStep::Coil],
-        stage: Stage::Coil,
-        expected: Expected::Coil,
-        allowed_rms: 0.12,
-    },
-    Facts {
-        definition: Definition {
-            key: "operate_voltage_v",
-            unit: Unit::Volt,
-            spoken_of: SpokenOf::Part,
-            bin: bins::VOLTAGE,
-        },
-        copper: true,
-        card: &[CardStep::OperateVoltage],
-        stage: Stage::OperateFine(0),
-        expected: Expected::Threshold(Direction::Rising),
-        allowed_rms: 9.0,
-    },
-    Facts {
-        definition: Definition {
-            key: "release_voltage_v",
-            unit: Unit::Volt,
-            spoken_of: SpokenOf::Part,
-            bin: bins::VOLTAGE,
-        },
-        copper: true,
-        card: &[CardStep::ReleaseVoltage],
-        stage: Stage::ReleaseFine(0),
-        expected: Expected::Threshold(Direction::Falling),
-        allowed_rms: 4.0,
-    },
-    Facts {
-        definition: Definition {
-            key: "operate_time_ms",
-            unit: Unit::Millisecond,
-            spoken_of: SpokenOf::Operation,
-            bin: bins::TIME,
-        },
-        copper: false,
-        card: &[CardStep::OperateTime],
-        stage: Stage::TimedOperate,
-        expected: Expected::usual(4.7, 0.25, 0.008),
-        allowed_rms: 0.02,
-    },
-    Facts {
-        definition: Definition {
-            key: "release_time_ms",
-            unit: Unit::Millisecond,
-            spoken_of: SpokenOf::Operation,
-            bin: bins::TIME,
-        },
-        copper: false,
-        card: &[CardStep::ReleaseTime],
-        stage: Stage::TimedRelease,
-        expected: Expected::usual(2.9, 0.15, 0.008),
-        allowed_rms: 0.02,
-    },
-    Facts {
-        definition: Definition {
-            key: "operate_bounce_ms",
-            unit: Unit::Millisecond,
-            spoken_of: SpokenOf::Operation,
-            bin: bins::TIME,
-        },
-        copper: false,
-        card: &[CardStep::OperateTime],
-        stage: Stage::TimedOperate,
-        expected: Expected::lognormal(0.4, 0.4, 0.012),
-        allowed_rms: 0.05,
-    },
-    Facts {
-        definition: Definition {
-            key: "release_bounce_ms",
-            unit: Unit::Millisecond,
-            spoken_of: SpokenOf::Operation,
-            bin: bins::TIME,
-        },
-        copper: false,
-        card: &[CardStep::ReleaseTime],
-        stage: Stage::TimedRelease,
-        expected: Expected::lognormal(0.5, 0.4, 0.012),
-        allowed_rms: 0.05,
-    },
-    Facts {
-        definition: Definition {
-            key: "contact_resistance_no_mohm",
-            unit: Unit::Milliohm,
-            spoken_of: SpokenOf::Closures,
-            bin: bins::CONTACT,
-        },
-        copper: false,
-        card: &[CardStep::OperateTime],
-        stage: Stage::TimedOperate,
-        expected: Expected::lognormal(18.0, 0.25, 0.04),
-        allowed_rms: 0.3,
-    },
-    Facts {
-        definition: Definition {
-            key: "contact_resistance_nc_mohm",
-            unit: Unit::Milliohm,
-            spoken_of: SpokenOf::Closures,
-            bin: bins::CONTACT,
-        },
-        copper: false,
-        card: &[CardStep::Kelvin, CardStep::ReleaseTime],
-        stage: Stage::TimedRelease,
-        expected: Expected::lognormal(22.0, 0.25, 0.04),
-        allowed_rms: 0.3,
-    },
+    Facts::of("coil_resistance_ohm", COIL, (&[CardStep::Coil], Stage::Coil), Expected::Coil, 0.12),
+    Facts::of("operate_voltage_v", VOLTAGE, RISING, Expected::Threshold(Direction::Rising), 9.0),
+    Facts::of("release_voltage_v", VOLTAGE, FALLING, Expected::Threshold(Direction::Falling), 4.0),
+    Facts::of("operate_time_ms", TIME, OPERATE, Expected::usual(4.7, 0.25, 0.008), 0.02),
+    Facts::of("release_time_ms", TIME, RELEASE, Expected::usual(2.9, 0.15, 0.008), 0.02),
+    Facts::of("operate_bounce_ms", TIME, OPERATE, Expected::lognormal(0.4, 0.4, 0.012), 0.05),
+    Facts::of("release_bounce_ms", TIME, RELEASE, Expected::lognormal(0.5, 0.4, 0.012), 0.05),
+    Facts::of("contact_resistance_no_mohm", CONTACT, OPERATE, Expected::lognormal(18.0, 0.25, 0.04), 0.3),
+    Facts::of("contact_resistance_nc_mohm", CONTACT, NC, Expected::lognormal(22.0, 0.25, 0.04), 0.3),
 ];
 
 impl From<Parameter> for Characteristic {

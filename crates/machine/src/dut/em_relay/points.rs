@@ -1,7 +1,7 @@
 //! Points of the fixture that measures an electromagnetic relay: interface board, converters, sources, counters.
 //!
-//! The names are declared here; which of them a rig has, and where, is its `config/rig.toml`. [`Points`] exists
-//! only when the rig has all that a test needs.
+//! This file declares the names; `config/rig.toml` wires them. [`Points`] exists only when the rig has every point that
+//! a test needs.
 
 use crate::instrument::act::Word;
 use crate::rig::point::{
@@ -12,7 +12,7 @@ use crate::rig::wiring::Wiring;
 use std::sync::Arc;
 
 points! {
-    /// Inputs from the interface board; `true` means the named thing is so, whatever the polarity of the wire.
+    /// Inputs from the interface board; `true` means that the name applies, whatever the polarity of the wire.
     DigitalIn {
         KelvinCoilA = "kelvin_coil_a",
         KelvinCoilB = "kelvin_coil_b",
@@ -73,14 +73,14 @@ points! {
     }
 }
 
-/// What the bits of the signal [`BOARD`] mean, highest first.
+/// Meaning of the bits of the signal [`BOARD`], highest first.
 pub const BOARD_BITS: &str =
     "Kelvin NC NO COM coil B A, probes up, no compliance, NC closed, NO closed";
 
-/// Thermometer of the magazine track, whose temperature the part has.
+/// Thermometer of the magazine track, taken as that of the part.
 const TRACK: &str = "track_temperature";
 
-/// Inputs of the board that are looked at together, from bit 0 on.
+/// Inputs of the board that one reading samples together, from bit 0 on.
 const BOARD_INPUTS: [DigitalIn; 9] = [
     DigitalIn::NoClosed,
     DigitalIn::NcClosed,
@@ -92,10 +92,10 @@ const BOARD_INPUTS: [DigitalIn; 9] = [
     DigitalIn::KelvinNo,
     DigitalIn::KelvinNc,
 ];
-/// Name of their signal.
+/// Signal name of [`BOARD_INPUTS`].
 pub const BOARD: &str = "board";
 
-/// Every point that may stand in `config/rig.toml` for this kind; a test does without those that no name above has.
+/// Every point of this kind that `config/rig.toml` may have; a test needs only those declared above.
 pub const FIXTURE: Fixture = Fixture {
     digital_in: DigitalIn::NAMES,
     digital_out: &SWITCHES,
@@ -113,7 +113,7 @@ const QUANTITIES: [Quantity; 8] = [
     COIL_VOLTAGE,
     quantity("coil_current_fine", "A", 1e-8),
     quantity("reference_voltage", "V", 1e-5),
-    // Read on every part, and no act asks for its mask.
+    // Every part reads it, and no act sets its channel mask.
     Quantity {
         enabled: true,
         ..quantity("contact_drop", "V", 1e-7)
@@ -157,15 +157,15 @@ pub struct Points {
     counters: [GatedCounter; Counter::COUNT],
     /// Temperature of the part.
     pub track: Thermometer,
-    /// The inputs of the board that are looked at together.
+    /// Inputs of the board that one reading samples together.
     pub board: Arc<Word>,
 }
 
 impl Points {
-    /// Looks every point up.
+    /// Resolves every point.
     ///
     /// # Errors
-    /// The first one that the rig has not.
+    /// Names the first point that the rig does not have.
     pub fn resolve(wiring: &Wiring) -> Result<Self, MissingPoint> {
         let inputs = all("digital_in", DigitalIn::NAMES, |it| {
             wiring.digital_input(it)
@@ -194,33 +194,33 @@ impl Points {
         })
     }
 
-    /// An input of the board.
+    /// Returns an input of the board.
     pub fn input(&self, point: DigitalIn) -> DigitalInput {
         self.inputs[point.index()]
     }
 
-    /// An output of the board.
+    /// Returns an output of the board.
     pub fn output(&self, point: DigitalOut) -> DigitalOutput {
         self.outputs[point.index()]
     }
 
-    /// An analog input.
+    /// Returns an analog input.
     pub fn analog(&self, point: AnalogIn) -> AnalogInput {
         self.analog[point.index()]
     }
 
-    /// One of the three outputs of the supply.
+    /// Returns one of the three outputs of the supply.
     pub fn source(&self, point: AnalogOut) -> AnalogOutput {
         self.sources[point.index()]
     }
 
-    /// A counter.
+    /// Returns a counter.
     pub fn counter(&self, point: Counter) -> GatedCounter {
         self.counters[point.index()]
     }
 }
 
-/// The handles of all these names.
+/// Resolves all `names` of a section.
 fn all<T: Copy, const N: usize>(
     section: &'static str,
     names: &[&'static str],

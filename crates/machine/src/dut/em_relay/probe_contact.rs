@@ -1,28 +1,28 @@
-//! Contact of the probes at the pins of the coil, from the voltage of its source.
+//! Contact resistance of the probes at the coil pins, from the voltage that the pins lack.
 //!
-//! The sense wires keep it out of the coil's resistance. Thresholds are told in volts of the supply: each ohm in series lifts
-//! them by its share of the coil's, 20 mV of 8 V at 400 ohm. What the trend shows beyond what golden parts have seen is
-//! a term of their budgets: it is not taken off, since a part's own pins may be better or worse than those before.
-//! Nothing else would tell before the Kelvin bits open at 5 ohm a pin.
-//! The supply was calibrated on the reference resistor, on the board and without probes. What the pins get less than
-//! it was asked for is lost in the force wires: divided by the current, the resistance of both contacts in series.
+//! The sense wires keep it out of the coil resistance, but thresholds are volts of the supply: each ohm in series raises
+//! them in proportion, 20 mV of 8 V at 400 ohm. The change since the reference parts is a term of the budget of a
+//! threshold and no correction, since the pins of a part may differ from those before it. The Kelvin bits open only at
+//! 5 ohm a pin.
 //!
-//! One part tells it to 0.15 ohm, sixteen to 0.04; what output and input have drifted by since the calibration is in it
-//! as well, 0.4 ohm for 0.1 % on a coil of 400 ohm. It is a trend and no result: no part fails by it. The probes of the
-//! contacts carry a source whose voltage no input sees.
+//! The supply is calibrated on the reference resistor, without probes. The difference between command and pin voltage,
+//! divided by the current, is the resistance of both force contacts in series.
+//!
+//! One part gives it to 0.15 ohm, sixteen to 0.04. Drift of output and input since the calibration adds 0.4 ohm for 0.1 %
+//! on a coil of 400 ohm. It is a trend and no result: no part fails by it. The probes of the contacts have no such
+//! figure, because no input reads the voltage of their source.
 
 use units::{Ohm, Volt};
 
-/// One part with a dirty pin is no trend. Of so many each counts alike; from then on the latest weighs as much.
+/// Parts before the mean counts as a trend; from then on each new part has the weight 1/16.
 const ENOUGH: u32 = 16;
 
-/// Resistance of both force contacts of a coil of `coil` that sees `at_pins` when the supply is to give `asked`.
+/// Returns the resistance of both force contacts: `coil` gets `at_pins` when the command is `asked`.
 pub fn in_series(asked: Volt, at_pins: Volt, coil: Ohm) -> Ohm {
     Ohm(coil.0 * (asked.0 / at_pins.0 - 1.0))
 }
 
-/// Mean over the parts of a run, the latest ones before all: a part counts as much as the sixteenth after it counts
-/// 0.37.
+/// Mean over the parts of a run, weighted towards the latest: sixteen parts reduce a weight to 0.37.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Trend {
     mean: Option<f64>,
@@ -30,19 +30,19 @@ pub struct Trend {
 }
 
 impl Trend {
-    /// One part more.
+    /// Adds the value of a part.
     pub fn add(&mut self, Ohm(ohm): Ohm) {
         self.parts = self.parts.saturating_add(1);
         let mean = self.mean.unwrap_or(ohm);
         self.mean = Some(mean + (ohm - mean) / f64::from(self.parts.min(ENOUGH)));
     }
 
-    /// None before the first part.
+    /// Returns the mean; none before the first part.
     pub fn mean(&self) -> Option<Ohm> {
         self.mean.map(Ohm)
     }
 
-    /// The same once it is one of enough parts for an alarm.
+    /// Returns the mean once it covers enough parts for an alarm.
     pub fn settled(&self) -> Option<Ohm> {
         self.mean().filter(|_| self.parts >= ENOUGH)
     }

@@ -1,4 +1,4 @@
-//! What a stage has read, put together as this kind looks at it: the board, scans of the coil, pairs of counters.
+//! Readings of a stage by kind: board inputs, scans of the coil, pairs of counters.
 
 use super::points::{AnalogIn, Counter, DigitalIn, Points};
 use crate::instrument::readings::Readings as ByPoint;
@@ -19,7 +19,7 @@ pub struct BoardInputs {
     pub probe_chain: bool,
 }
 
-/// One scan of the coil converter; a channel that was not asked for is `None`.
+/// One scan of the coil converter; `None` for a channel outside the scan.
 #[derive(Debug, Clone)]
 pub struct CoilScan {
     /// Coil voltage, up to 6 V.
@@ -32,14 +32,14 @@ pub struct CoilScan {
     pub reference: Option<Sample>,
 }
 
-/// Everything a stage has read, in order, by kind.
+/// All readings of a stage by kind, each in order.
 #[derive(Debug, Clone, Default)]
 pub struct Readings {
     /// Board inputs.
     pub boards: Vec<BoardInputs>,
     /// Scans of the coil converter.
     pub coil: Vec<CoilScan>,
-    /// Coil currents, in scans or by themselves.
+    /// Coil currents, of scans and of single readings.
     pub currents: Vec<Sample>,
     /// Contact drops.
     pub drops: Vec<Sample>,
@@ -52,7 +52,7 @@ pub struct Readings {
 }
 
 impl Readings {
-    /// What was read, behind what the counters were before: one that stands still need not be read twice.
+    /// Sorts the readings of a stage; `before` are the last counts of the stage before.
     pub fn of(read: &ByPoint, points: &Points, before: Option<[CountSample; 2]>) -> Self {
         let analog = |input| read.analog(points.analog(input)).cloned();
         let count = |counter| read.counts(points.counter(counter)).cloned();

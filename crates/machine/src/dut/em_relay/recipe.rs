@@ -1,4 +1,4 @@
-//! What a recipe says of a relay: the part, and how it is measured.
+//! The relay part of a recipe: the device, and how to measure it.
 
 use super::parameter::Parameter;
 use super::sampling::{CoilSampling, ContactSampling};
@@ -70,7 +70,7 @@ pub struct PartData {
 }
 
 impl PartData {
-    /// Its outside.
+    /// Returns the dimensions for the collision guard.
     pub fn body(&self) -> Body {
         Body {
             size_mm: self.body_mm,
@@ -89,11 +89,11 @@ pub enum CoilChannels {
     CoarseCurrent,
 }
 
-/// What takes the coil's energy at switching off.
+/// Coil suppression: the path of the coil current after switch-off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Clamp {
-    /// 60 V zener: quick release.
+pub enum Suppression {
+    /// 60 V zener: fast release.
     Zener,
     /// Plain diode: slow release.
     Diode,
@@ -119,13 +119,14 @@ pub struct TestPlan {
     /// Its standard deviation, V.
     pub expected_release_sd_v: f64,
     /// Coil suppression during the timed release.
-    pub clamp: Clamp,
+    #[serde(rename = "clamp")]
+    pub suppression: Suppression,
     /// How the thresholds are found.
     #[serde(default)]
     pub strategy: Strategies,
 }
 
-/// A strategy per threshold, one that is not named is `coarse_fine`; and how often the rest is looked at.
+/// A strategy per threshold, `coarse_fine` by default, and the sampling of coil and contacts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Strategies {
@@ -140,7 +141,7 @@ pub struct Strategies {
 }
 
 impl Strategies {
-    /// Each threshold with its own.
+    /// Returns each threshold with its strategy.
     pub fn each(&self) -> [(Parameter, Strategy); 2] {
         [
             (Parameter::OperateVoltage, self.operate_voltage_v),
@@ -150,7 +151,7 @@ impl Strategies {
 }
 
 impl TestPlan {
-    /// Threshold expected of the lot and its standard deviation, V.
+    /// Returns the expected threshold of the lot and its standard deviation, V.
     pub fn expected(&self, direction: Direction) -> (f64, f64) {
         match direction {
             Direction::Rising => (self.expected_operate_v, self.expected_operate_sd_v),

@@ -1,9 +1,9 @@
 //! Calibration against the references on the interface board: 5.000 V, 400 ohm, 50 mOhm, 1.000 ms.
 //!
-//! Runs with an empty nest and the probes up (drive and source need the probe-up chain). What it finds:
-//! the coil converter's line, ohms per ratio on both current channels, milliohms per volt of drop, gate
+//! Runs with an empty nest and the probes up (drive and source need the probe-up chain). It gives the
+//! coil converter's line, ohms per ratio on both current channels, milliohms per volt of drop, gate
 //! delay, gain and offset of the three supply outputs, and the slope of the fine ramp against the
-//! host's clock. The slope of the coarse ramp stays the maker's: it only places the fine one.
+//! host's clock. The slope of the coarse ramp stays nominal: it only places the fine one.
 
 mod fault;
 
@@ -43,21 +43,21 @@ const RAMP_SCANS: usize = 44;
 /// Levels at the coil, volts: both within the fine channels with 400 ohm.
 const LOW_V: f64 = 1.5;
 const HIGH_V: f64 = 5.7;
-/// Only readings so far inside both ends of the fine ramp tell its slope.
+/// Distance from both ends of the fine ramp within which readings do not count for its slope, volts.
 const SLOPE_MARGIN_V: f64 = 0.3;
 /// Drops read per polarity.
 const DROPS: usize = 8;
-/// Gate pulses: their fractions of a count add up, so one count of error is spread over all.
+/// Gate pulses: their sum has one count of error, so the mean has 1/25.
 const PULSES: u32 = 25;
 
-/// The inputs that [`acts`] reads by scans; none on a rig that lacks points of the kind.
+/// Returns the inputs that [`acts`] scans; none on a rig that lacks a point of the kind.
 pub fn inputs(wiring: &Wiring) -> Vec<AnalogInput> {
     let points = Points::resolve(wiring).ok();
     let inputs = points.map(|points| SCANNED.map(|it| points.analog(it)).to_vec());
     inputs.unwrap_or_default()
 }
 
-/// The acts, in the order [`conclude`] expects.
+/// Returns the acts, in the order that [`conclude`] expects.
 pub fn acts(context: &Context) -> Vec<act::Act> {
     let mut acts = vec![
         Act::CoilMask(&SCANNED),
@@ -153,7 +153,7 @@ fn pulses(acts: &mut Vec<Act>) {
         Act::Wait(Span::ms(2)),
         Act::Board(vec![(Arm, false)]),
     ];
-    // The first one closes a window that may still stand open from the switching before.
+    // The first pulse closes a window that may still be open.
     acts.extend(pulse.clone());
     acts.push(Act::Read(Read::Gates));
     for _ in 0..PULSES {
@@ -162,7 +162,7 @@ fn pulses(acts: &mut Vec<Act>) {
     acts.push(Act::Read(Read::Gates));
 }
 
-/// Mean of one channel over scans, or which channel did not read.
+/// Returns the mean of one channel over scans; fails when a scan lacks it.
 fn mean(
     scans: &[CoilScan],
     channel: fn(&CoilScan) -> &Option<Sample>,
@@ -206,7 +206,7 @@ fn level(scans: &[CoilScan]) -> Result<Level, ReferenceFault> {
     })
 }
 
-/// Draws the factors from what [`acts`] has read. `made_at_us`: microseconds since 1970 UTC.
+/// Computes the factors from the readings of [`acts`]. `made_at_us`: microseconds since 1970 UTC.
 pub fn conclude(
     context: &Context,
     readings: &ByPoint,
@@ -309,7 +309,7 @@ pub fn conclude(
     })
 }
 
-/// A converter outside its promise by half is not calibrated away but reported.
+/// Fails when the gain error exceeds 1.5 times the accuracy of the maker: that is a defect, not a calibration.
 fn check_gain(context: &Context, line: &InputLine) -> Result<(), ReferenceFault> {
     let promised = context.accuracy.ai_gain_pct / 100.0;
     let found = line.gain.value - 1.0;
@@ -322,8 +322,8 @@ fn check_gain(context: &Context, line: &InputLine) -> Result<(), ReferenceFault>
     Ok(())
 }
 
-/// Slope of the fine ramp by least squares against the arrival of the replies. Conversions lag the
-/// replies by a constant on average, which does not tilt the line.
+/// Slope of the fine ramp by least squares against the arrival of the replies. The constant
+/// delay between conversion and reply does not tilt the line.
 fn slope(
     context: &Context,
     scans: &[CoilScan],

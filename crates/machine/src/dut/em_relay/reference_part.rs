@@ -1,9 +1,9 @@
-//! Golden parts: what the ramps indicate on relays with a certificate tells the lag of the ramps.
+//! Reference parts: indication minus certificate is the overshoot of the ramps.
 //!
-//! The coarse lag goes on learning from every good part of the lot that has shown both ramps;
-//! the fine lag, which enters every result, comes from the certificates alone.
+//! The model of the coarse overshoot also learns from every good part of the lot with both ramps; the fine overshoot,
+//! which enters every result, comes from the certificates alone.
 
-use super::measure::{Ramp, Seen};
+use super::measure::{Observed, Ramp};
 use crate::dut::TestRecord;
 use crate::dut::accuracy::AccuracySettings;
 use crate::dut::em_relay::Parameter;
@@ -18,10 +18,10 @@ use texts::{Lang, Message};
 use thiserror::Error;
 use units::{Celsius, Ohm, Unit};
 
-/// A golden part whose fine indication lies further from the others' lag is out of its band, volts.
+/// Greatest distance of a reference part's overshoot from the mean, volts; further away it is an outlier.
 const BAND_V: f64 = 0.060;
 
-/// Why a golden part does not calibrate the rig, or does not read as certified.
+/// Why a reference part does not calibrate the rig, or does not agree with its certificate.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{}", self.message().say(Lang::En))]
 pub enum Misfit {
@@ -30,7 +30,7 @@ pub enum Misfit {
         /// Its serial number.
         serial: String,
     },
-    /// Something was not measured.
+    /// A result is missing.
     Without {
         /// Its serial number.
         serial: String,
@@ -58,14 +58,14 @@ pub enum Misfit {
         /// How many.
         measured: usize,
     },
-    /// One overshoots differently.
+    /// One part is an outlier.
     Outlier {
         /// Its serial number.
         serial: String,
         /// Distance from the mean, mV.
         off_mv: f64,
     },
-    /// A check against the certificate failed.
+    /// A result does not agree with the certificate.
     Reads {
         /// Its serial number.
         serial: String,
@@ -125,7 +125,7 @@ impl Misfit {
     }
 }
 
-/// Indications of one golden part in both directions, minus certificate, at the part's temperature.
+/// Indications of one reference part in both directions, minus certificate, at the part's temperature.
 #[derive(Debug, Clone)]
 struct Shift {
     serial: String,
@@ -135,7 +135,7 @@ struct Shift {
     coarse_v: [f64; 2],
 }
 
-/// What the golden parts of a run have shown so far.
+/// Results of the reference parts of a run so far.
 #[derive(Debug, Clone, Default)]
 pub struct ReferenceRun {
     shifts: Vec<Shift>,
@@ -143,20 +143,20 @@ pub struct ReferenceRun {
 }
 
 impl ReferenceRun {
-    /// Takes in a tested golden part, or says why it cannot be used.
+    /// Learns from a tested reference part; fails when it cannot be used.
     pub fn learn<T>(
         &mut self,
         part: &ReferencePart,
         reference: Celsius,
         record: &TestRecord<T>,
-        seen: &Seen,
+        observed: &Observed,
     ) -> Result<(), Misfit> {
         let serial = &part.serial;
         let without = |characteristic| Misfit::Without {
             serial: serial.clone(),
             characteristic,
         };
-        let track = seen.track.ok_or_else(|| Misfit::WithoutTemperature {
+        let track = observed.track.ok_or_else(|| Misfit::WithoutTemperature {
             serial: serial.clone(),
         })?;
         let fine = |ramp: Option<Ramp>| ramp.and_then(|ramp| ramp.fine);
@@ -164,10 +164,11 @@ impl ReferenceRun {
             ramp.and_then(|it| Some((it.coarse.indicated - it.fine?).0))
                 .unwrap_or(f64::NAN)
         };
-        let operate = fine(seen.operate).ok_or_else(|| without(Parameter::OperateVoltage))?;
-        let release = fine(seen.release).ok_or_else(|| without(Parameter::ReleaseVoltage))?;
+        let operate = fine(observed.operate).ok_or_else(|| without(Parameter::OperateVoltage))?;
+        let release = fine(observed.release).ok_or_else(|| without(Parameter::ReleaseVoltage))?;
         check_coil(part, record)?;
-        seen.probe_contact
+        observed
+            .probe_contact
             .into_iter()
             .for_each(|ohm| self.contact.add(ohm));
         let at_part = |certified: Certified| certified.value / to_reference(track, reference);
@@ -175,12 +176,12 @@ impl ReferenceRun {
             serial: serial.clone(),
             operate_v: operate.0 - at_part(part.operate_voltage_v),
             release_v: release.0 - at_part(part.release_voltage_v),
-            coarse_v: [over(seen.operate), over(seen.release)],
+            coarse_v: [over(observed.operate), over(observed.release)],
         });
         Ok(())
     }
 
-    /// Lags from all golden parts; an error names the part that does not fit.
+    /// Returns the overshoot from all reference parts; an error names the outlier.
     pub fn overshoots(
         &self,
         sets: &[ReferencePart],
@@ -217,19 +218,19 @@ impl ReferenceRun {
         })
     }
 
-    /// Force contacts of the coil in series, mean over the parts so far; 0 where none has told it.
+    /// Returns the resistance of the coil's two force contacts, mean over the parts so far; 0 before the first.
     pub fn probe_contact_ohm(&self) -> f64 {
         self.contact.mean().map_or(0.0, |Ohm(ohm)| ohm)
     }
 
-    /// Mean of fine indication minus certificate so far, operate and release.
+    /// Returns the mean of fine indication minus certificate so far, operate and release.
     pub fn fine_v(&self) -> Option<(f64, f64)> {
         let n = self.shifts.len() as f64;
         let mean = |shift: fn(&Shift) -> f64| self.shifts.iter().map(shift).sum::<f64>() / n;
         (n > 0.0).then(|| (mean(|it| it.operate_v), mean(|it| it.release_v)))
     }
 
-    /// Mean of coarse minus fine indication where both were seen, 0 if nowhere.
+    /// Returns the mean of coarse minus fine indication over the parts with both, 0 without any.
     fn over(&self, direction: usize) -> f64 {
         let both = || {
             let each = self.shifts.iter().map(|shift| shift.coarse_v[direction]);
@@ -298,11 +299,11 @@ fn check_coil<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<(), Mis
     Ok(())
 }
 
-/// How far a golden part may read from its certificate, standard deviations: of three results one good part in 120 is
-/// outside, and the slow strategy has narrowed them.
+/// Greatest distance of a result from the certificate, in standard deviations: with three results one good part in 120 is
+/// outside.
 const CHECK_K: f64 = 3.0;
 
-/// Compares what was measured on a golden part with its certificate; an error says what does not agree.
+/// Compares the results of a reference part with its certificate; an error names the one that does not agree.
 pub fn check<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<(), Misfit> {
     let certified = [
         (Parameter::CoilResistance, part.coil_resistance_ohm),
@@ -335,7 +336,7 @@ pub fn check<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<(), Misf
     Ok(())
 }
 
-/// Lag before the golden parts are complete: no fine correction yet but where to look, the coarse one as far as learned.
+/// Returns the overshoot before the reference parts are complete: it places ramps, with infinite uncertainty.
 pub fn interim(coarse: OvershootModel, fine_v: f64) -> Overshoot {
     Overshoot {
         fine_v: Factor::new(fine_v, f64::INFINITY),

@@ -44,7 +44,7 @@ pub fn context() -> Context {
         nominal_v_per_s: [96.0, 1.5],
         probe_contact: None,
         thorough: false,
-        golden: None,
+        teaching: None,
     }
 }
 

@@ -1,6 +1,6 @@
 //! Keys of a resistor's recipe.
 
-use crate::dut::keys::{BODY, PIN_LENGTH, REFERENCE_TEMPERATURE, Sections, limit};
+use crate::dut::keys::{BODY, PIN_LENGTH, REFERENCE_TEMPERATURE, Sections, limit, table};
 use crate::form::{Key, above_zero, from_to, key, whole};
 
 /// The sections of the recipe.
@@ -10,42 +10,19 @@ pub const SECTIONS: Sections = Sections {
     test: TEST,
 };
 
-const PART: &[Key] = &[
-    BODY,
-    PIN_LENGTH,
-    REFERENCE_TEMPERATURE,
-    key(
-        "tcr_ppm_per_k",
-        from_to(-1000.0, 1000.0, "ppm/K"),
-        "gauge",
-        "temperature coefficient of the resistor",
-    ),
-];
+const PART: &[Key] = table! {
+    BODY;
+    PIN_LENGTH;
+    REFERENCE_TEMPERATURE;
+    key("tcr_ppm_per_k", from_to(-1000.0, 1000.0, "ppm/K"), "gauge", "temperature coefficient of the resistor");
+};
 
-const LIMITS: &[Key] = &[key(
-    "resistance_ohm",
-    limit!("ohm", 100_000.0),
-    "gauge",
-    "resistance between the coil pins",
-)];
+const LIMITS: &[Key] = table! {
+    key("resistance_ohm", limit!("ohm", 100_000.0), "gauge", "resistance between the coil pins");
+};
 
-const TEST: &[Key] = &[
-    key(
-        "level_v",
-        above_zero(20.0, "V"),
-        "station",
-        "voltage across the resistor",
-    ),
-    key(
-        "settles_ms",
-        whole(1, 1000, "ms"),
-        "station",
-        "from the drive to the first conversion that counts",
-    ),
-    key(
-        "readings",
-        whole(1, 100, ""),
-        "station",
-        "readings that are averaged",
-    ),
-];
+const TEST: &[Key] = table! {
+    key("level_v", above_zero(20.0, "V"), "station", "voltage across the resistor");
+    key("settles_ms", whole(1, 1000, "ms"), "station", "from the drive to the first conversion that counts");
+    key("readings", whole(1, 100, ""), "station", "readings that are averaged");
+};

@@ -1,7 +1,7 @@
 //! The one characteristic of a resistor, and its bin.
 
 use crate::dut::characteristic::{Characteristic, Definition};
-use crate::gauge::repetition::SpokenOf;
+use crate::gauge::repetition::MeanOf;
 use crate::rig::bin::Bin;
 use units::Unit;
 
@@ -30,7 +30,7 @@ impl Parameter {
 static RESISTANCE: Definition = Definition {
     key: "resistance_ohm",
     unit: Unit::Ohm,
-    spoken_of: SpokenOf::Part,
+    mean_of: MeanOf::Part,
     bin: BIN,
 };
 

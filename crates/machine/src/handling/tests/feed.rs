@@ -167,7 +167,7 @@ fn reference_parts_come_first_in_magazine_order() {
     step(feed, &mut shop, true);
     assert_eq!(
         shop.ledger.part(Place::NEST).map(|part| part.kind.clone()),
-        Some(Kind::Golden("G-12-1".into()))
+        Some(Kind::Reference("G-12-1".into()))
     );
     assert_eq!(shop.golden.len(), 4);
 }

@@ -37,9 +37,9 @@ fn four_places_may_hold_four_parts() {
 fn parts_are_numbered_in_order_of_entering_the_nest() {
     let mut ledger = Ledger::default();
     let expected = [
-        (Some("G-12-1"), Kind::Golden("G-12-1".into())),
+        (Some("G-12-1"), Kind::Reference("G-12-1".into())),
         (None, Kind::Lot(1)),
-        (Some("G-12-2"), Kind::Golden("G-12-2".into())),
+        (Some("G-12-2"), Kind::Reference("G-12-2".into())),
         (None, Kind::Lot(2)),
     ];
     for (ordinal, (golden, kind)) in (1..).zip(expected) {

@@ -156,7 +156,7 @@ fn a_void_reference_part_is_tested_three_times() {
     assert!(matches!(state, NestState::Judged));
     let part = &nest.shop.wants.parts.judged[0].part;
     assert_eq!(part.bin, Some(Bin::RETEST));
-    assert_eq!(format!("{:?}", part.kind), "Golden(\"G-12-1\")");
+    assert_eq!(format!("{:?}", part.kind), "Reference(\"G-12-1\")");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::handling::Move;
 use crate::rig::bin::Bin;
 use crate::station::annunciator::{Annunciator, Condition};
-use crate::station::catalogue::{AlarmCode, Stops};
+use crate::station::catalogue::{AlarmCode, Reaction};
 use crate::station::trouble::Alarm;
 use units::{RigTime, Span};
 
@@ -121,7 +121,7 @@ fn what_nobody_had_seen_before_a_restart_is_still_unseen_after_it() {
         [("pusher_not_reached".to_owned(), Condition::Returned)]
     );
     assert!(
-        list.stopping(Stops::Abort).is_none(),
+        list.stopping(Reaction::Abort).is_none(),
         "its cause is found out anew"
     );
     assert!(list.standing()[0].shelved_until.is_some());

@@ -91,7 +91,7 @@ fn kinds(machine: &mut Machine) -> Vec<String> {
                 .judged
                 .iter()
                 .map(|one| match &one.part.kind {
-                    Kind::Golden(_) => "golden".to_owned(),
+                    Kind::Reference(_) => "golden".to_owned(),
                     Kind::Lot(seq) => seq.to_string(),
                 }),
         );
@@ -178,9 +178,9 @@ fn a_golden_part_that_was_interrupted_has_said_nothing() {
 }
 
 #[test]
-fn the_discard_limit_is_told_once_with_the_first_part_too_many() {
+fn the_reject_rate_limit_alarms_once_at_the_first_excess() {
     let lot = LotSettings {
-        discard_limit_pct: Some(34.0),
+        reject_rate_limit_pct: Some(34.0),
         ..LotSettings::default()
     };
     let mut machine = Machine::of_lot(Some(6), vec![BAD; 6], lot, true);

@@ -73,7 +73,7 @@ fn every_alarm() -> Vec<Alarm> {
         Alarm::reference_check_due("G-12-1"),
         Alarm::reference_check_failed(&few),
         Alarm::reference_repeated("G-12-1", "odd"),
-        Alarm::discard_limit(3, 40, 5.0),
+        Alarm::reject_rate_limit(3, 40, 5.0),
         Alarm::worn(Wearing::Probes, 8, 8),
         Alarm::worn(Wearing::Jaws, 8, 8),
         Alarm::probe_contact(3.2, 3.0),

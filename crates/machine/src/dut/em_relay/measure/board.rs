@@ -6,7 +6,10 @@
 
 use super::{Context, INTERLOCK, set};
 use crate::dut::em_relay::act::Act;
-use crate::dut::em_relay::points::DigitalOut::{Arm, CoilDrive, SourceOn, SourceReverse};
+use crate::dut::em_relay::points::DigitalOut::{
+    Arm, ClampDiode, CoilDrive, SourceOn, SourceReverse,
+};
+use crate::dut::em_relay::recipe::Suppression;
 use crate::dut::em_relay::supply::Supply;
 use units::{Span, Volt};
 
@@ -100,6 +103,15 @@ impl BoardState {
             self.ramp.is_none_or(|ramp| ramp.span > Volt(0.0)),
             "{self:?}"
         );
+    }
+}
+
+/// Selects the coil suppression of the recipe for the next release, or the zener again; no act where that is the zener.
+/// The board switches it only below 1 mA of coil current.
+pub(super) fn select_diode(context: &Context, on: bool) -> Option<Act> {
+    match context.relay.test.suppression {
+        Suppression::Zener => None,
+        Suppression::Diode => Some(set(&[(ClampDiode, on)])),
     }
 }
 

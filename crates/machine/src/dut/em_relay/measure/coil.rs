@@ -1,7 +1,7 @@
 //! Coil resistance at the pre-bias, below pickup: the armature is open and L/R short. The pre-bias is
 //! also where the operate ramp starts, so the coil stays on.
 
-use super::board::{Armature, BoardState};
+use super::board::{Armature, BoardState, select_diode};
 use super::state::TestState;
 use super::{Context, INTERLOCK, OFF, Stage, set};
 use crate::dut::em_relay::Finding;
@@ -14,7 +14,7 @@ use crate::dut::em_relay::points::DigitalOut::{
 };
 use crate::dut::em_relay::probe_contact::in_series;
 use crate::dut::em_relay::readings::{CoilScan, Readings};
-use crate::dut::em_relay::recipe::CoilChannels;
+use crate::dut::em_relay::recipe::{CoilChannels, Suppression};
 use crate::dut::em_relay::supply::Supply;
 use crate::rig::sample::{Quality, Sample};
 use units::{Ohm, Span, Volt};
@@ -29,6 +29,8 @@ const NO_CURRENT: Volt = Volt(0.15);
 const OFF_CURRENT_A: f64 = 0.001;
 /// From the mark to a free coil: the word that takes the drive off is written by then, and the current gone.
 const FREED: Span = Span::ms(6);
+/// The same where a diode takes over the current of a sealed armature at nominal voltage.
+const FREED_BY_DIODE: Span = Span::ms(60);
 /// Nothing driven, nothing selected, ready for the Kelvin check with which the next test begins.
 const IDLE: [(DigitalOut, bool); 8] = [
     (SourceOn, false),
@@ -96,6 +98,11 @@ pub(super) fn acts_off(
     stopped: bool,
 ) -> (Vec<Act>, BoardState) {
     let mut acts = vec![Act::Board(IDLE.to_vec())];
+    let freed = match context.relay.test.suppression {
+        Suppression::Zener => FREED,
+        Suppression::Diode => FREED_BY_DIODE,
+    };
+    acts.extend(select_diode(context, false));
     if board.armature != Armature::Rested {
         acts.extend((!board.armature.is_released()).then_some(Act::Mark));
         // The line sends no value that an output has already: only the next part would show a module that ignores writes.
@@ -103,7 +110,7 @@ pub(super) fn acts_off(
         acts.extend(rest(context, &mut board.supply));
     }
     acts.extend([
-        Act::ConvertSinceMark(FREED + context.fresh(CHANNELS)),
+        Act::ConvertSinceMark(freed + context.fresh(CHANNELS)),
         Act::Read(Read::Current(current_channel(context))),
     ]);
     board.armature = Armature::Rested;

@@ -49,7 +49,7 @@ pub struct Context {
     /// The slow strategy for every result: a golden check or a first article.
     pub thorough: bool,
     /// The golden part in the nest while golden parts teach the lags: its certificate places its fine ramps.
-    pub golden: Option<ReferencePart>,
+    pub teaching: Option<ReferencePart>,
 }
 
 impl Context {
@@ -120,12 +120,10 @@ impl Context {
     /// How a threshold is found. Golden parts always get both ramps: they teach the lags; and so do the first
     /// parts of a lot before `adaptive` trusts its coarse ramp.
     pub fn strategy(&self, parameter: Parameter) -> Strategy {
-        let falls = parameter == Parameter::ReleaseVoltage;
-        let overshoot = if falls {
-            self.release_overshoot()
-        } else {
-            self.operate_overshoot()
-        };
+        let overshoot = self.overshoot(match parameter == Parameter::ReleaseVoltage {
+            true => Direction::Falling,
+            false => Direction::Rising,
+        });
         let mut each = self.relay.test.strategy.each().into_iter();
         match each.find(|(known, _)| *known == parameter) {
             Some(_) if self.thorough => Strategy::CoarseFine,
@@ -135,30 +133,15 @@ impl Context {
         }
     }
 
-    /// Lag of the ramps of a direction.
+    /// Returns the overshoot of the ramps of a direction; before any reference part, a guess with a wide scatter.
     pub fn overshoot(&self, direction: Direction) -> Overshoot {
-        match direction {
-            Direction::Rising => self.operate_overshoot(),
-            Direction::Falling => self.release_overshoot(),
+        let (operate, release) = untaught();
+        match (direction, self.calibration.overshoots) {
+            (Direction::Rising, Some(overshoots)) => overshoots.operate,
+            (Direction::Falling, Some(overshoots)) => overshoots.release,
+            (Direction::Rising, None) => interim(operate, UNTAUGHT_FINE_V.0),
+            (Direction::Falling, None) => interim(release, UNTAUGHT_FINE_V.1),
         }
-    }
-
-    /// Lag of the operate ramps; before golden parts were run, a guess with a wide scatter.
-    pub fn operate_overshoot(&self) -> Overshoot {
-        self.calibration
-            .overshoots
-            .map_or(interim(untaught().0, UNTAUGHT_FINE_V.0), |overshoots| {
-                overshoots.operate
-            })
-    }
-
-    /// Lag of the release ramps.
-    pub fn release_overshoot(&self) -> Overshoot {
-        self.calibration
-            .overshoots
-            .map_or(interim(untaught().1, UNTAUGHT_FINE_V.1), |overshoots| {
-                overshoots.release
-            })
     }
 }
 

@@ -59,7 +59,7 @@ use crate::rig::image::Image;
 use crate::rig::sample::CountSample;
 use board::Armature;
 pub use context::Context;
-pub use record::{Ramp, Seen, TestRecord};
+pub use record::{Observed, Ramp, TestRecord};
 pub use release::SEAL;
 pub use stage::Stage;
 use stage::order;

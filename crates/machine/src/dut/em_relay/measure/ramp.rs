@@ -75,11 +75,11 @@ impl Expected {
 
     /// Where the certificate of a golden part that teaches the lags says; the first of them is to tell the fine one.
     pub fn certified(context: &Context, track: Celsius, direction: Direction) -> Option<Self> {
-        let golden = context.golden.as_ref()?;
+        let part = context.teaching.as_ref()?;
         let overshoot = context.overshoot(direction);
         let certified = match direction {
-            Direction::Rising => golden.operate_voltage_v,
-            Direction::Falling => golden.release_voltage_v,
+            Direction::Rising => part.operate_voltage_v,
+            Direction::Falling => part.release_voltage_v,
         };
         let at_part = certified.value / to_reference(track, context.reference_temperature());
         let sd_v = if overshoot.coarse.parts() == 0 {

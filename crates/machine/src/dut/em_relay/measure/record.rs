@@ -33,7 +33,7 @@ impl Ramp {
 
 /// What a test of a relay sees and no other kind has.
 #[derive(Debug, Clone, Default)]
-pub struct Seen {
+pub struct Observed {
     /// Force contacts of the coil in series, once it was measured.
     pub probe_contact: Option<Ohm>,
     /// Temperature of the magazine track when the test began.
@@ -47,7 +47,7 @@ pub struct Seen {
 }
 
 /// Record of the test of a relay.
-pub type TestRecord = record::TestRecord<Seen>;
+pub type TestRecord = record::TestRecord<Observed>;
 
 impl TestRecord {
     /// The ramps of a direction.

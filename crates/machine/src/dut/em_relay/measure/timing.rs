@@ -1,7 +1,7 @@
 //! Timed operation at exactly nominal voltage and timed release into the recipe's clamp, each with its
 //! bounce and the contact resistance of the closure that it ends on.
 
-use super::board::{Armature, BoardState, drive_off};
+use super::board::{Armature, BoardState, drive_off, select_diode};
 use super::coil::rest;
 use super::contact::{SOURCE_SETTLES, add_nc, closure, drop_of, is_implausible, reversed};
 use super::state::TestState;
@@ -63,12 +63,14 @@ pub(super) fn acts_operate(context: &Context, board: BoardState) -> (Vec<Act>, B
     (acts, left)
 }
 
-/// After a timed operation its counters still hold: the latch keeps both gates shut until ARM.
+/// After a timed operation its counters still hold: the latch keeps both gates shut until ARM. A release into the diode
+/// has an operation of its own, since the board selects the diode only while no coil current flows.
 pub(super) fn acts_release(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
-    let counted = board.armature == Armature::Operated;
+    let diode = select_diode(context, true);
+    let counted = board.armature == Armature::Operated && diode.is_none();
     let (mut acts, mut board) = match counted {
         true => (Vec::new(), board),
-        false => operated(context, board),
+        false => operated(context, board, diode),
     };
     assert_eq!(board.armature, Armature::Operated, "nothing to release");
     acts.extend([set(&[
@@ -83,14 +85,22 @@ pub(super) fn acts_release(context: &Context, board: BoardState) -> (Vec<Act>, B
     // With the coil off the supply is free, and until the window closes so is the bus.
     acts.extend(rest(context, &mut board.supply));
     acts.extend(drop_of_closure(context));
+    acts.extend(select_diode(context, false));
     board.armature = Armature::Rested;
     (acts, board)
 }
 
 /// Operates the armature at nominal voltage. The test does not read this closure: no current is to leave its mark on the
 /// contact.
-fn operated(context: &Context, mut board: BoardState) -> (Vec<Act>, BoardState) {
+fn operated(
+    context: &Context,
+    mut board: BoardState,
+    diode: Option<Act>,
+) -> (Vec<Act>, BoardState) {
     let mut acts = drive_off(board.armature);
+    if let Some(diode) = diode {
+        acts.extend([Act::WaitSinceMark(OFF), diode]);
+    }
     acts.extend([
         set(&[(RampMode, false), (EventNoBreak, false), (SourceOn, false)]),
         board.supply.step_to(Volt(context.relay.part.nominal_v)),

@@ -1,4 +1,4 @@
-//! Why the references on the interface board do not calibrate the rig.
+//! Faults of the calibration against the references on the interface board.
 
 use crate::rig::sample::Sample;
 use texts::{Lang, Message};
@@ -8,7 +8,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{}", self.message().say(Lang::En))]
 pub enum ReferenceFault {
-    /// A channel gave no number.
+    /// A channel has no usable reading.
     Reads {
         /// The channel.
         name: &'static str,
@@ -32,11 +32,11 @@ pub enum ReferenceFault {
         /// Scans asked for.
         expected: usize,
     },
-    /// The converter is outside its promise by half.
+    /// The gain error exceeds 1.5 times the accuracy of the maker.
     Gain {
         /// Found minus 1, %.
         off_pct: f64,
-        /// Promised half width, %.
+        /// Accuracy of the maker, half width, %.
         promised_pct: f64,
     },
     /// Too few readings between the ends of the fine ramp.
@@ -44,14 +44,14 @@ pub enum ReferenceFault {
         /// Readings that count.
         readings: usize,
     },
-    /// The fine ramp is not the one of its slew code.
+    /// The slope of the fine ramp does not match its slew code.
     Slope {
         /// Slope found.
         v_per_s: f64,
         /// Slope of the slew code.
         nominal_v_per_s: f64,
     },
-    /// The source or the amplifier is not right.
+    /// The drop of the reference contact is out of range: a fault of source or amplifier.
     Drop {
         /// Drop found, V at the terminal.
         volts: f64,
@@ -60,11 +60,11 @@ pub enum ReferenceFault {
     },
     /// Counters were not read before and after the pulses.
     GatesNotRead,
-    /// A counter does not count the reference pulse.
+    /// The count of the reference pulse is out of range.
     Pulse {
         /// Which counter.
         gate: usize,
-        /// What a pulse counts, us.
+        /// Count of a pulse, us.
         each_us: f64,
     },
 }

@@ -9,6 +9,7 @@ use crate::dut::em_relay::reference_part::{ReferenceRun, interim};
 use crate::dut::em_relay::settings::ReferencePart;
 use crate::dut::em_relay::tests::context;
 use crate::dut::em_relay::tests::golden_parts;
+use crate::dut::em_relay::threshold::Direction;
 use crate::gauge::budget::{Budget, Reading};
 use crate::rig::sample::Sample;
 use units::{Celsius, Unit, Volt};
@@ -144,5 +145,8 @@ fn while_golden_parts_run_the_fine_lag_proves_nothing() {
         (overshoot.fine_v.value, overshoot.fine_v.u),
         (0.0, f64::INFINITY)
     );
-    assert_eq!(overshoot.coarse, context().operate_overshoot().coarse);
+    assert_eq!(
+        overshoot.coarse,
+        context().overshoot(Direction::Rising).coarse
+    );
 }

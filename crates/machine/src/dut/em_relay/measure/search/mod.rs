@@ -89,10 +89,7 @@ impl Search {
     /// Over the interval that the lot leaves open.
     fn new(context: &Context, strategy: Strategy, direction: Direction, part: Celsius) -> Self {
         let test = &context.relay.test;
-        let (centre, sd) = match direction {
-            Direction::Rising => (test.expected_operate_v, test.expected_operate_sd_v),
-            Direction::Falling => (test.expected_release_v, test.expected_release_sd_v),
-        };
+        let (centre, sd) = test.expected(direction);
         let half = Volt(REACH * sd * direction.sign());
         let mut search = Self {
             strategy,
@@ -188,10 +185,7 @@ fn overshot(context: &Context, record: &TestRecord, direction: Direction) -> Opt
 /// Far to both sides of the lot, but not below [`LOWEST`].
 fn far(context: &Context, direction: Direction) -> (Volt, Volt) {
     let test = &context.relay.test;
-    let (centre, sd) = match direction {
-        Direction::Rising => (test.expected_operate_v, test.expected_operate_sd_v),
-        Direction::Falling => (test.expected_release_v, test.expected_release_sd_v),
-    };
+    let (centre, sd) = test.expected(direction);
     let near = Volt(centre - WIDE * sd * direction.sign());
     let end = match direction {
         Direction::Rising => Volt(centre + WIDE * sd),

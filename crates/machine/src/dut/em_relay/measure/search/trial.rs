@@ -5,6 +5,7 @@ use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::measure::board::{Armature, BoardState, drive_off};
 use crate::dut::em_relay::measure::operate_fine::APPROACH;
 use crate::dut::em_relay::measure::pace::Pace;
+use crate::dut::em_relay::measure::release::SEAL;
 use crate::dut::em_relay::measure::{Context, INTERLOCK, OFF, TestRecord, set};
 use crate::dut::em_relay::points::DigitalOut::{
     Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
@@ -15,8 +16,6 @@ use units::{Span, Volt};
 
 /// Flux and armature from one level to the next while the armature is sealed.
 const SEALS: Span = Span::ms(25);
-/// Fraction of nominal at which the armature is sealed.
-const SEAL: f64 = 0.95;
 
 pub(in crate::dut::em_relay::measure) fn acts(
     context: &Context,

@@ -119,9 +119,9 @@ fn a_release_ramp_turns_the_one_before_it_round_and_prolongs_an_operate_ramp() {
 #[test]
 fn a_golden_part_that_teaches_is_looked_for_where_its_certificate_says() {
     let mut context = context();
-    let learned = context.operate_overshoot();
+    let learned = context.overshoot(Direction::Rising);
     let mut half_width = |coarse: OvershootModel| {
-        context.golden = golden_parts().into_iter().next();
+        context.teaching = golden_parts().into_iter().next();
         let overshoot = interim(coarse, 0.03);
         let overshoots = Overshoots {
             operate: overshoot,
