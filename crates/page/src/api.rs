@@ -108,7 +108,14 @@ impl Offer {
 /// All of them.
 pub(super) fn offers() -> Vec<Offer> {
     let mut offers = vec![
-        Offer::get("/", HTML, "The page, whole in one answer.", page::page),
+        Offer::get("/", HTML, "The page, with everything that the operator needs.", page::page),
+        Offer::get(
+            "/page/{file}",
+            "text/javascript",
+            "The script of another page; `GET /` names it.",
+            page::script,
+        )
+        .with(&[must("file", "Name with a hash of the script.")]),
         Offer::get("/api/view", JSON, "The whole view.", super::router::view),
         Offer::get(
             "/api/events",

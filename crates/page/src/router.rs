@@ -62,7 +62,7 @@ async fn wrong_method(method: Method, uri: Uri) -> HmiError {
     HmiError::WrongMethod { path, method }
 }
 
-/// Nothing is kept by browsers or proxies, guessed at, or shown inside another page.
+/// Forbids browsers and proxies to keep an answer that does not allow it itself, to guess its type, and to frame it.
 async fn plain_headers(request: Request, next: Next) -> Response {
     const ALWAYS: [(HeaderName, &str); 4] = [
         (header::CACHE_CONTROL, "no-store"),
@@ -73,7 +73,7 @@ async fn plain_headers(request: Request, next: Next) -> Response {
     let mut response = next.run(request).await;
     for (name, value) in ALWAYS {
         let value = HeaderValue::from_static(value);
-        response.headers_mut().insert(name, value);
+        response.headers_mut().entry(name).or_insert(value);
     }
     response
 }

@@ -79,10 +79,9 @@ fn operation(offer: &Offer) -> OperationBuilder {
         operation = operation.response(*status, ResponseBuilder::new().description(*meaning));
     }
     match offer.method {
-        Method::Get => offer
-            .members
-            .iter()
-            .fold(operation, |it, member| it.parameter(in_query(member))),
+        Method::Get => offer.members.iter().fold(operation, |it, member| {
+            it.parameter(parameter(offer.path, member))
+        }),
         Method::Post => {
             let body = ContentBuilder::new().schema(Some(object(&offer.members)));
             let body = RequestBodyBuilder::new().content(super::JSON, body.build());
@@ -91,14 +90,15 @@ fn operation(offer: &Offer) -> OperationBuilder {
     }
 }
 
-fn in_query(member: &Member) -> ParameterBuilder {
+fn parameter(path: &str, member: &Member) -> ParameterBuilder {
+    let in_path = path.contains(&format!("{{{}}}", member.name));
+    let place = [ParameterIn::Query, ParameterIn::Path][usize::from(in_path)].clone();
     ParameterBuilder::new()
         .name(member.name)
-        .parameter_in(ParameterIn::Query)
-        .required(if member.required {
-            Required::True
-        } else {
-            Required::False
+        .parameter_in(place)
+        .required(match member.required {
+            true => Required::True,
+            false => Required::False,
         })
         .description(Some(member.about))
         .schema(Some(text(member)))

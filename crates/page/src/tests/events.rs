@@ -53,6 +53,32 @@ async fn changes_come_at_most_20_times_a_second_and_the_last_one_always_comes() 
 }
 
 #[tokio::test(start_paused = true)]
+async fn an_idle_rig_sends_one_view_a_second() {
+    let bench = Bench::new();
+    let mut stream = stream(&bench).await;
+    next(&mut stream).await.unwrap();
+    let (began, mut views) = (Instant::now(), 0);
+    let turns = async {
+        loop {
+            tokio::time::sleep(Duration::from_millis(50)).await;
+            bench.view.send_modify(|view| {
+                view.at_us += 50_000;
+                view.machine
+                    .phases_s
+                    .insert("scan".into(), view.at_us as f64);
+            });
+        }
+    };
+    let events = async {
+        while began.elapsed() < Duration::from_secs(10) {
+            views += u32::from(next(&mut stream).await.unwrap().contains("event: view"));
+        }
+    };
+    tokio::select! { () = turns => {}, () = events => {} }
+    assert!((9..=10).contains(&views), "{views}");
+}
+
+#[tokio::test(start_paused = true)]
 async fn a_busy_rig_does_not_silence_the_beat() {
     let bench = Bench::new();
     let mut stream = stream(&bench).await;

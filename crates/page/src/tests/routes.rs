@@ -8,9 +8,74 @@ async fn the_page_is_html_that_may_run_its_own_script_only() {
     assert_eq!(answer.status, 200);
     assert_eq!(answer.headers["content-type"], "text/html; charset=utf-8");
     let policy = answer.headers["content-security-policy"].to_str().unwrap();
-    assert!(policy.starts_with("default-src 'none'") && policy.contains("script-src 'sha256-"));
+    assert!(policy.starts_with("default-src 'none'"));
+    assert!(policy.contains("script-src 'self' 'sha256-"));
     assert!(!policy.contains("unsafe"));
     assert_eq!(answer.headers["x-frame-options"], "DENY");
+}
+
+/// Body of `path` for a client with this header, unpacked.
+async fn unpacked(bench: &Bench, path: &str, accepts: &str) -> (Answer, String) {
+    let request = Request::get(path).header("accept-encoding", accepts);
+    let answer = bench.ask(request.body(Body::empty()).unwrap()).await;
+    assert_eq!(answer.headers["vary"], "accept-encoding");
+    let text = if answer.headers.contains_key("content-encoding") {
+        assert_eq!(answer.headers["content-encoding"], "gzip");
+        std::io::read_to_string(flate2::read::GzDecoder::new(&answer.body[..])).unwrap()
+    } else {
+        answer.text().to_owned()
+    };
+    (answer, text)
+}
+
+#[tokio::test]
+async fn only_a_client_that_accepts_gzip_gets_it() {
+    let bench = Bench::new();
+    let (_, page) = unpacked(&bench, "/", "").await;
+    for (accepts, packed) in [
+        ("gzip", true),
+        ("br, GZIP ; q=0.5", true),
+        ("deflate,gzip;q=1.0,*;q=0.5", true),
+        ("identity", false),
+        ("gzip;q=0", false),
+        ("gzip;q=often", false),
+    ] {
+        let (answer, text) = unpacked(&bench, "/", accepts).await;
+        assert_eq!(
+            answer.headers.contains_key("content-encoding"),
+            packed,
+            "{accepts}"
+        );
+        assert_eq!(text, page);
+    }
+}
+
+#[tokio::test]
+async fn a_browser_keeps_a_script_under_its_versioned_name() {
+    let bench = Bench::new();
+    let (_, page) = unpacked(&bench, "/", "gzip").await;
+    let paths = page
+        .split("<script type=\"application/json\" id=\"scripts\">")
+        .nth(1);
+    let paths = paths.unwrap().split("</script>").next().unwrap();
+    let paths: std::collections::BTreeMap<String, String> = serde_json::from_str(paths).unwrap();
+    assert_eq!(paths.len(), 11);
+    for path in paths.values() {
+        let (answer, text) = unpacked(&bench, path, "gzip").await;
+        assert!(text.starts_with(&format!("addPages(\"{path}\"")), "{path}");
+        assert_eq!(
+            answer.headers["content-type"],
+            "text/javascript; charset=utf-8"
+        );
+        assert_eq!(answer.headers["x-content-type-options"], "nosniff");
+        assert!(
+            answer.headers["cache-control"]
+                .to_str()
+                .unwrap()
+                .contains("immutable")
+        );
+        bench.get(&path.replace(".js", "0.js")).await.refused(404);
+    }
 }
 
 #[tokio::test]

@@ -17,14 +17,12 @@ function makeFilter() {
   fillSelect(at("h_param"), [all, ...keyOptions()]);
 }
 
-async function readLots() {
-  const lots = await (await ask("/api/history/list")).json();
-  at("lots").replaceChildren(...[...new Set(lots.map((it) => it.lot))].map((lot) => {
+async function fillLots() {
+  at("lots").replaceChildren(...[...new Set((await readLots()).map((it) => it.lot))].map((lot) => {
     const option = make("option");
     option.value = lot;
     return option;
   }));
-  return lots;
 }
 
 async function readParts() {
@@ -37,25 +35,13 @@ async function readParts() {
   try {
     const [{parts: count}, parts] = await Promise.all([
       ask("/api/history/count" + query(members)).then((it) => it.json()),
-      ask("/api/history/query" + query({...members, limit: PAGE, offset})).then((it) => it.json()), readLots()]);
+      ask("/api/history/query" + query({...members, limit: PAGE, offset})).then((it) => it.json()), fillLots()]);
     showParts(parts, count);
     at("h_trouble").textContent = "";
   } catch (error) {
     showParts([], 0);
     at("h_trouble").textContent = error.message;
   }
-}
-
-const verdictCell = (verdict) => {
-  const cell = make("td", undefined, verdict);
-  cell.append(make("span", known("verdict-" + verdict, verdict), "verdict"));
-  return cell;
-};
-
-function partLink(part) {
-  const link = make("a", part.lot + " / " + part.run + " / " + part.seq);
-  link.href = "#part" + query({lot: part.lot, run: part.run, seq: part.seq, kind: part.kind});
-  return link;
 }
 
 function showParts(parts, count) {
@@ -96,6 +82,26 @@ async function readPart() {
   } catch (error) {
     at("part_trouble").textContent = error.message;
   }
+}
+
+// Times that follow on each other within a twentieth of a second belong together: NC is looked at before and after.
+function together(times, name) {
+  const bars = [];
+  for (const at of times.sort((a, b) => a - b)) {
+    const last = bars.at(-1);
+    if (last && at - last.to < .05) last.to = at;
+    else bars.push({from: at, to: at, name});
+  }
+  return bars;
+}
+
+function showTestBars(part) {
+  const rows = part.measurements.filter((it) => it.samples.length).map((it) => {
+    const name = nameOf(it.parameter);
+    return [name + (it.attempt > 1 ? " " + it.attempt : ""), together(it.samples.map((sample) => seconds(sample.at)), name)];
+  }).sort((a, b) => a[1][0].from - b[1][0].from);
+  const test = partBars(part).slice(0, 1);
+  at("part_bars").replaceChildren(...(rows.length ? [timeBars(test.length ? [[word("h-test_s"), test], ...rows] : rows, word("g-test"))] : []));
 }
 
 function showPart(part) {

@@ -53,17 +53,17 @@ function showCapability(stats, unit) {
 at("q_lot").addEventListener("change", readQuality);
 at("q_param").addEventListener("change", readQuality);
 
-// --- the cycle as bars: what moved and tested when, over the last seconds ---
+const LAST_PARTS = 12;
 
-const SPAN_MS = 10000;
-let seen = [];
-
-function notice() {
-  const now = performance.now();
-  const busy = view.machine.actuators.filter((it) => it.moving).map((it) => it.name);
-  if (view.stage) busy.push("test");
-  seen = [...seen.filter((it) => now - it.at < SPAN_MS), {at: now, busy}];
+// How the last parts of a lot overlap: one is tested while the one before it travels.
+async function showStoredCycles(lot) {
+  const {parts: count} = await (await ask("/api/history/count" + query({lot}))).json();
+  const members = {lot, limit: LAST_PARTS, offset: Math.max(0, count - LAST_PARTS)};
+  const parts = (await (await ask("/api/history/query" + query(members))).json()).filter((it) => partBars(it).length);
+  at("q_stored").replaceChildren(...(parts.length ? [timeBars(parts.map((it) => [word("h-part") + " " + it.seq, partBars(it)]), word("g-stored"))] : []));
 }
+
+// --- the cycle as bars: what moved and tested when, over the last seconds ---
 
 function showCycle() {
   const rows = [...view.machine.actuators.map((it) => it.name), "test"];

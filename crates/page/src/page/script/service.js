@@ -73,4 +73,5 @@ function showIo() {
     row(word("io-probe_contact"), contact === null ? "-" : contact.toFixed(2) + " Ω"));
 }
 
+makeJogs();
 PAGES.io = {show: showIo};

@@ -1,4 +1,20 @@
-// Stored times as bars: one test by the replies that its values were made of, and the last parts of a lot through the machine.
+// What several pages show of lots and parts of the history.
+
+const readLots = async () => (await ask("/api/history/list")).json();
+
+const verdictCell = (verdict) => {
+  const cell = make("td", undefined, verdict);
+  cell.append(make("span", known("verdict-" + verdict, verdict), "verdict"));
+  return cell;
+};
+
+function partLink(part) {
+  const link = make("a", part.lot + " / " + part.run + " / " + part.seq);
+  link.href = "#part" + query({lot: part.lot, run: part.run, seq: part.seq, kind: part.kind});
+  return link;
+}
+
+// --- stored times as bars ---
 
 const seconds = (when) => Date.parse(when) / 1000;
 
@@ -38,34 +54,4 @@ function partBars(part) {
   if (part.test_s !== null) bars.push({from: judged - part.test_s, to: judged, name: word("h-test_s")});
   if (part.landed_at) bars.push({from: judged, to: seconds(part.landed_at), name: word("g-travels"), kind: "soft"});
   return bars;
-}
-
-// Times that follow on each other within a twentieth of a second belong together: NC is looked at before and after.
-function together(times, name) {
-  const bars = [];
-  for (const at of times.sort((a, b) => a - b)) {
-    const last = bars.at(-1);
-    if (last && at - last.to < .05) last.to = at;
-    else bars.push({from: at, to: at, name});
-  }
-  return bars;
-}
-
-function showTestBars(part) {
-  const rows = part.measurements.filter((it) => it.samples.length).map((it) => {
-    const name = nameOf(it.parameter);
-    return [name + (it.attempt > 1 ? " " + it.attempt : ""), together(it.samples.map((sample) => seconds(sample.at)), name)];
-  }).sort((a, b) => a[1][0].from - b[1][0].from);
-  const test = partBars(part).slice(0, 1);
-  at("part_bars").replaceChildren(...(rows.length ? [timeBars(test.length ? [[word("h-test_s"), test], ...rows] : rows, word("g-test"))] : []));
-}
-
-const LAST_PARTS = 12;
-
-// How the last parts of a lot overlap: one is tested while the one before it travels.
-async function showStoredCycles(lot) {
-  const {parts: count} = await (await ask("/api/history/count" + query({lot}))).json();
-  const members = {lot, limit: LAST_PARTS, offset: Math.max(0, count - LAST_PARTS)};
-  const parts = (await (await ask("/api/history/query" + query(members))).json()).filter((it) => partBars(it).length);
-  at("q_stored").replaceChildren(...(parts.length ? [timeBars(parts.map((it) => [word("h-part") + " " + it.seq, partBars(it)]), word("g-stored"))] : []));
 }
