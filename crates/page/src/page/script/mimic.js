@@ -52,8 +52,10 @@ function showMimic() {
 // A plant with a scene of its own has bodies without a word here.
 const bodyText = (id) => known("body-" + id, id.replaceAll("_", " "));
 
+const bodiesText = ({mover, blocker, text}) => (mover === "" ? text : bodyText(mover) + " → " + bodyText(blocker));
+
 const refusedText = ({mover, blocker, distance_mm: distance, margin_mm: margin, at: place, last_clear_mm: clear, text}) => (mover === "" ? text
-  : bodyText(mover) + " → " + bodyText(blocker) + " (" + place.map((it) => it.toFixed(1)).join(", ") + " mm), " +
+  : bodiesText({mover, blocker}) + " (" + place.map((it) => it.toFixed(1)).join(", ") + " mm), " +
     word("collision-distance") + " " + distance.toFixed(2) + " mm, " + word("collision-needed") + " > " + margin.toFixed(2) + " mm" +
     (clear === null ? "" : ", " + word("collision-clear") + " " + clear.toFixed(2) + " mm"));
 

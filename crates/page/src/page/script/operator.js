@@ -92,7 +92,7 @@ function showVerdicts(verdicts) {
 }
 
 function showOperator() {
-  at("state").textContent = stateText(view);
+  at("state").replaceChildren(...stateTexts(view).map((text, place) => make(place ? "small" : "span", text)));
   for (const id of ["came_in", "inside", "went_out"]) at(id).textContent = whole(view[id]);
   at("rate").textContent = view.parts_per_hour === null ? NONE : whole(Math.round(view.parts_per_hour));
   const judged = Object.values(view.verdicts).reduce((sum, it) => sum + it, 0);

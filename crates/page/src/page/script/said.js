@@ -1,9 +1,7 @@
-// Words made of the codes of the rig.
+// Texts made of the codes of the rig.
 
-function stateText({doing, stage}) {
-  const state = word("state-" + (doing || "none"));
-  return stage ? state + ": " + known("stage-" + stage, stage) : state;
-}
+// State of the station, and the stage of a test under way.
+const stateTexts = ({doing, stage}) => [word("state-" + (doing || "none")), ...(stage ? [known("stage-" + stage, stage)] : [])];
 
-// Why a part did not pass.
+// Reasons for the verdict of a part.
 const reasonTexts = (part) => part.reason_codes.map((it) => it[language]);

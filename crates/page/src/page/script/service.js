@@ -36,12 +36,12 @@ function makeJogs() {
   }));
 }
 
-// What the guard says before the motion is made.
+// Shows the guard's decision on a motion before anybody orders it; for a refused one the two bodies, the rest as its title.
 function showClearance(item, jog) {
-  const text = !jog ? "" : jog.refused ? refusedText(jog.refused)
+  const text = !jog ? "" : jog.refused ? bodiesText(jog.refused)
     : word("io-clearance") + " " + (jog.clearance_mm === null ? word("io-far") : jog.clearance_mm.toFixed(2) + " mm");
   item.lastElementChild.textContent = text;
-  item.lastElementChild.title = jog && jog.refused ? jog.refused.text : text;
+  item.lastElementChild.title = jog && jog.refused ? refusedText(jog.refused) : text;
   item.classList.toggle("blocked", Boolean(jog && jog.refused));
 }
 
@@ -70,7 +70,7 @@ function showIo() {
   for (const element of at("modes").children) element.classList.toggle("now", element.dataset.with === view.machine.mode);
   const {wear, probe_contact_ohm: contact} = view.machine;
   at("wear").replaceChildren(...Object.entries(wear).map(([name, count]) => row(known("actuator-" + name, known("counter-" + name, name)), whole(count))),
-    row(word("io-probe_contact"), contact === null ? "-" : contact.toFixed(2) + " Ω"));
+    row(word("io-probe_contact"), contact === null ? NONE : contact.toFixed(2) + "\u202fΩ"));
 }
 
 makeJogs();
