@@ -8,8 +8,8 @@
 //! A browser that receives nothing for three seconds, or `"alive":false`, has old values and must show them as such. A slow
 //! browser skips views and never gets an older one after a newer one. The stream ends with the program.
 
-use super::over;
-use super::router::Desk;
+use super::end_of_program;
+use super::router::AppState;
 use axum::extract::State;
 use axum::response::Sse;
 use axum::response::sse::Event;
@@ -32,9 +32,9 @@ const RETRY: Duration = Duration::from_secs(1);
 
 /// `GET /api/events`.
 pub(super) async fn events(
-    State(desk): State<Desk>,
+    State(app): State<AppState>,
 ) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {
-    let feed = Feed::new(&desk);
+    let feed = Feed::new(&app);
     Sse::new(stream::unfold(feed, |mut feed| async move {
         let event = feed.next().await?;
         Some((Ok(event), feed))
@@ -59,13 +59,13 @@ enum Turn {
 }
 
 impl Feed {
-    fn new(desk: &Desk) -> Self {
+    fn new(app: &AppState) -> Self {
         Self {
-            view: desk.shared.view.clone(),
-            over: Box::pin(over(desk.ended.clone())),
+            view: app.shared.view.clone(),
+            over: Box::pin(end_of_program(app.ended.clone())),
             sent: None,
             next_beat: Instant::now() + BEAT,
-            _counted: Counted::new(&desk.screens),
+            _counted: Counted::new(&app.streams),
         }
     }
 
@@ -125,9 +125,9 @@ fn shows_same(view: &View, sent: &mut View) -> bool {
 struct Counted(Arc<AtomicUsize>);
 
 impl Counted {
-    fn new(screens: &Arc<AtomicUsize>) -> Self {
-        screens.fetch_add(1, Ordering::Relaxed);
-        Self(Arc::clone(screens))
+    fn new(streams: &Arc<AtomicUsize>) -> Self {
+        streams.fetch_add(1, Ordering::Relaxed);
+        Self(Arc::clone(streams))
     }
 }
 

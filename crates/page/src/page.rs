@@ -8,7 +8,7 @@ mod fetched;
 mod kinds;
 mod packed;
 
-use super::error::HmiError;
+use super::error::ApiError;
 use axum::extract::Path;
 use axum::http::HeaderMap;
 use axum::http::header::{CACHE_CONTROL, CONTENT_SECURITY_POLICY};
@@ -26,7 +26,7 @@ const LOOK: &str = concat!(
 /// What every page shares, the operator's page, and the start of everything, in this order.
 const SCRIPT: &str = concat!(
     include_str!("page/script/shared.js"),
-    include_str!("page/script/said.js"),
+    include_str!("page/script/texts.js"),
     include_str!("page/script/pages.js"),
     include_str!("page/script/link.js"),
     include_str!("page/script/orders.js"),
@@ -67,10 +67,10 @@ pub(super) async fn page(headers: HeaderMap) -> impl IntoResponse {
 pub(super) async fn script(
     Path(file): Path<String>,
     headers: HeaderMap,
-) -> Result<impl IntoResponse, HmiError> {
+) -> Result<impl IntoResponse, ApiError> {
     let path = format!("/page/{file}");
     let Some(script) = fetched::SCRIPTS.get(&path) else {
-        return Err(HmiError::NoSuchRoute { path });
+        return Err(ApiError::NoSuchRoute { path });
     };
     let kept = [(CACHE_CONTROL, "public, max-age=31536000, immutable")];
     Ok((kept, script.answer(&headers)))

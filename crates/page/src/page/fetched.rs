@@ -37,7 +37,7 @@ pub(super) static SCRIPTS: LazyLock<BTreeMap<String, Packed>> = LazyLock::new(||
     SOURCES.map(script).into_iter().map(packed).collect()
 });
 
-/// `{page: path}`.
+/// Returns `{page: path}`.
 pub(super) fn json() -> String {
     let paths = SOURCES.iter().flat_map(|source| {
         let (path, _) = script(*source);
@@ -46,13 +46,13 @@ pub(super) fn json() -> String {
     serde_json::Value::Object(paths.collect()).to_string()
 }
 
-/// Names of the pages in `markup`.
+/// Returns the names of the pages in `markup`.
 fn pages(markup: &str) -> impl Iterator<Item = &str> {
     let pieces = markup.split("data-page=\"").skip(1);
     pieces.filter_map(|it| it.split('"').next())
 }
 
-/// Path and text of a script.
+/// Returns path and text of a script.
 fn script([name, markup, code]: [&str; 3]) -> (String, String) {
     let hash = HEXLOWER.encode(&Sha256::digest([markup, code].concat())[..8]);
     let path = format!("/page/{name}-{hash}.js");

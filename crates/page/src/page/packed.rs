@@ -1,4 +1,4 @@
-//! An answer that never changes, ready to send as it is and compressed.
+//! A constant answer, ready to send plain and compressed.
 
 use axum::body::Bytes;
 use axum::http::HeaderMap;
@@ -29,7 +29,7 @@ impl Packed {
         }
     }
 
-    /// Compressed for a client whose request `headers` accept gzip.
+    /// Returns the body, compressed for a client whose request `headers` accept gzip.
     pub fn answer(&self, headers: &HeaderMap) -> Response {
         let fixed = [(CONTENT_TYPE, self.media_type), (VARY, "accept-encoding")];
         match accepts_gzip(headers) && !self.gzip.is_empty() {
@@ -39,7 +39,7 @@ impl Packed {
     }
 }
 
-/// True when the client names gzip, with any weight but zero (RFC 9110, clause 12.5.3).
+/// Checks that the client names gzip, with any weight but zero (RFC 9110, clause 12.5.3).
 fn accepts_gzip(headers: &HeaderMap) -> bool {
     let accepted = headers.get_all(ACCEPT_ENCODING).iter();
     let mut codings = accepted

@@ -1,4 +1,4 @@
-//! The page as text: whole, self-contained, and with every word that it uses.
+//! The answers of the page as text: complete, small, and with every text that they use.
 
 #![allow(clippy::unwrap_used)]
 
@@ -30,7 +30,7 @@ static CODE: LazyLock<String> = LazyLock::new(|| {
     std::iter::once(SCRIPT).chain(pages).collect()
 });
 
-/// Texts between `before` and the next `"`.
+/// Returns the texts between `before` and the next `"`.
 fn quoted(text: &str, before: &str) -> BTreeSet<String> {
     let pieces = text.split(before).skip(1);
     pieces
@@ -55,7 +55,7 @@ fn every_quantity_reaches_the_page_by_its_kind() {
 }
 
 #[test]
-fn every_word_that_the_page_uses_is_in_the_table() {
+fn every_used_text_is_in_the_catalogue() {
     let table = table();
     let mut used = BTreeSet::new();
     for (text, before) in [
@@ -66,7 +66,7 @@ fn every_word_that_the_page_uses_is_in_the_table() {
     ] {
         used.extend(quoted(text, before));
     }
-    // A key that ends in a hyphen is the begin of a family, completed by what the rig says.
+    // An id that ends in a hyphen is the start of a family; a code of the rig completes it.
     let (families, words): (Vec<_>, Vec<_>) = used.iter().partition(|it| it.ends_with('-'));
     for word in words {
         assert!(table.contains_key(word), "{word}");
@@ -80,7 +80,7 @@ fn every_word_that_the_page_uses_is_in_the_table() {
 }
 
 #[test]
-fn every_word_in_the_table_is_used() {
+fn every_text_of_the_pages_is_used() {
     let families = [
         "link",
         "order",
@@ -147,7 +147,7 @@ fn every_listed_bin_verdict_and_mode_has_a_name() {
 }
 
 #[test]
-fn every_key_of_a_recipe_and_every_word_that_it_may_have_is_on_the_screen_in_words() {
+fn every_key_and_choice_of_a_recipe_has_a_text() {
     let table = table();
     let recipe = config::revision("../../config".as_ref(), "jzc-22f-012", None).unwrap();
     for field in serde_json::to_value(recipe).unwrap()["fields"]
@@ -169,7 +169,7 @@ fn every_key_of_a_recipe_and_every_word_that_it_may_have_is_on_the_screen_in_wor
 }
 
 #[test]
-fn every_body_of_the_scene_has_a_word_on_the_screen() {
+fn every_body_of_the_scene_has_a_text() {
     let table = table();
     let scene = std::fs::read_to_string("../../config/scene.toml").unwrap();
     let scene: toml::Table = scene.parse().unwrap();
@@ -190,9 +190,9 @@ fn every_body_of_the_scene_has_a_word_on_the_screen() {
     }
 }
 
-/// All scripts share one scope: the later of two functions would take the place of the other without a word.
+/// A fetched script sees the names of the first answer; a second definition would hide the first silently.
 #[test]
-fn no_two_scripts_of_the_page_give_one_name_twice() {
+fn every_top_level_name_of_the_scripts_is_unique() {
     let mut seen = std::collections::BTreeSet::new();
     for line in CODE.lines() {
         let words = line.strip_prefix("async ").unwrap_or(line);
@@ -252,7 +252,7 @@ fn each_page_of_the_menu_comes_once() {
 }
 
 #[test]
-fn nothing_inside_ends_its_element_early() {
+fn no_inline_text_ends_its_element_early() {
     let (words, kinds) = (kinds::words(), kinds::json());
     for (text, end) in [
         (LOOK, "</style"),

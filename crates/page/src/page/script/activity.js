@@ -1,11 +1,11 @@
-// What moved and tested over the last seconds, kept from the first view on: the page of quality draws it.
+// Moving actuators and tests of the last seconds, recorded from the first view on for the page of quality.
 
 const SPAN_MS = 10000;
-let seen = [];
+let activity = [];
 
-function notice() {
+function recordActivity() {
   const now = performance.now();
   const busy = view.machine.actuators.filter((it) => it.moving).map((it) => it.name);
   if (view.stage) busy.push("test");
-  seen = [...seen.filter((it) => now - it.at < SPAN_MS), {at: now, busy}];
+  activity = [...activity.filter((it) => now - it.at < SPAN_MS), {at: now, busy}];
 }

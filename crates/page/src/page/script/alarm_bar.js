@@ -1,4 +1,4 @@
-// What every page shows of alarms: the bar with the first two, and the sound.
+// The alarm bar of every page with the first two alarms, and the sound.
 
 function showAlarmBar(alarms) {
   const shown = alarms.filter((it) => !it.shelved);
@@ -16,12 +16,12 @@ function showAlarmBar(alarms) {
 
 // --- sound ---
 
-let muted = kept.get("muted") === "yes";
+let muted = stored.get("muted") === "yes";
 let speaker = null;
 let soundedAt = 0;
 const SOUND_EVERY_MS = 2000;
 
-// Two tones as long as somebody has to look: an alarm that is neither acknowledged nor shelved.
+// Sounds two tones while an alarm is neither acknowledged nor shelved.
 function sound(alarms) {
   const wanted = alarms.some((it) => it.state === "unacknowledged" && !it.shelved);
   at("mute").textContent = word(muted ? "sound-off" : "sound-on");
@@ -38,11 +38,11 @@ function sound(alarms) {
     tone.connect(volume).connect(speaker.destination);
     tone.start(speaker.currentTime + after);
     tone.stop(speaker.currentTime + after + .2);
-  }), () => { /* no speaker here: the colour must do */ });
+  }), () => { /* without a loudspeaker only the colour warns */ });
 }
 
 at("mute").addEventListener("click", () => {
   muted = !muted;
-  kept.set("muted", muted ? "yes" : "no");
+  stored.set("muted", muted ? "yes" : "no");
   showView();
 });

@@ -1,35 +1,35 @@
 // The page of alarms: the active ones with their help, and the past ones.
 
-const said = (alarm, what) => alarm[what + (language === "zh" ? "_zh" : "_en")];
+const inLanguage = (alarm, what) => alarm[what + (language === "zh" ? "_zh" : "_en")];
 const matches = (alarm) => {
   const text = at("alarm_search").value.trim().toLowerCase();
   return [alarm.code, alarm.text, alarm.text_en, alarm.text_zh, alarm.cause_zh].some((it) => it && it.toLowerCase().includes(text));
 };
 
-// One that stands, with why, what follows and what to do; the buttons stay while the text changes.
+// Makes the entry of an active alarm with cause, consequence, action and buttons.
 function standing(alarm) {
   const item = make("li", undefined, alarm.state);
   item.dataset.code = alarm.code;
   const head = make("div", undefined, "head"), help = make("dl");
-  head.append(make("b", (alarm.first_out ? "▲ " : "△ ") + alarm.code), make("span", said(alarm, "text")));
-  said(alarm, "help").forEach((text, place) => {
+  head.append(make("b", (alarm.first_out ? "▲ " : "△ ") + alarm.code), make("span", inLanguage(alarm, "text")));
+  inLanguage(alarm, "help").forEach((text, place) => {
     const pair = make("div");
     pair.append(make("dt", word(["alarms-cause", "alarms-consequence", "alarms-action"][place])), make("dd", text || NONE));
     help.append(pair);
   });
-  const state = [known("alarms-state-" + alarm.state, alarm.state), known("alarms-stops-" + alarm.stops, alarm.stops),
+  const state = [wordOr("alarms-state-" + alarm.state, alarm.state), wordOr("alarms-stops-" + alarm.stops, alarm.stops),
     alarm.count + " ×", clock(alarm.raised_at_us)];
   if (alarm.shelved) state.push(word("alarms-shelved"));
   if (alarm.first_out) state.push(word("first_out"));
   const buttons = make("div", undefined, "row");
-  buttons.append(button(word("order-acknowledge"), () => tell({order: "acknowledge", alarm: alarm.code}), "acknowledge"),
+  buttons.append(button(word("order-acknowledge"), () => giveAlarmOrder({order: "acknowledge", alarm: alarm.code}), "acknowledge"),
     button(word("order-shelve"), () => askShelve(alarm.code), "shelve"));
   item.append(head, make("p", state.join(" · "), "about"), help, buttons);
   return item;
 }
 
-async function tell(order) {
-  const why = me === null ? word("stop-login") : await give(order);
+async function giveAlarmOrder(order) {
+  const why = me === null ? word("stop-login") : await sendOrder(order);
   at("alarm_answer").textContent = why || word("order-" + order.order) + ": " + word("order-taken");
 }
 
@@ -44,12 +44,12 @@ at("shelve").addEventListener("submit", (event) => {
   event.preventDefault();
   at("shelve").close();
   const minutes = Number(at("shelve_minutes").value);
-  tell({order: "shelve", alarm: at("shelve").dataset.code, minutes, reason: at("shelve_reason").value});
+  giveAlarmOrder({order: "shelve", alarm: at("shelve").dataset.code, minutes, reason: at("shelve_reason").value});
 });
-at("acknowledge_all").addEventListener("click", () => tell({order: "acknowledge"}));
+at("acknowledge_all").addEventListener("click", () => giveAlarmOrder({order: "acknowledge"}));
 at("alarm_search").addEventListener("input", () => { drawnAlarms = ""; showView(); showPast(); });
 
-// --- those that stand ---
+// --- active alarms ---
 
 let drawnAlarms = "";
 
@@ -61,12 +61,12 @@ function showStanding() {
   at("standing").replaceChildren(...(shown.length ? shown.map(standing) : [make("li", word("no_alarm"))]));
 }
 
-// --- those that were ---
+// --- past alarms ---
 
 let past = [];
 
 async function readPast() {
-  const members = {since: moment(at("alarm_since").value), limit: 500};
+  const members = {since: rfc3339(at("alarm_since").value), limit: 500};
   at("alarm_print").href = "/api/history/report/alarms" + query({since: members.since, lang: language});
   try {
     past = (await (await ask("/api/history/alarms" + query(members))).json()).reverse();
@@ -77,7 +77,7 @@ async function readPast() {
   showPast();
 }
 
-// Rows of before have their text in English only: beside it the cause that the catalogue has for the code.
+// Rows of older versions have an English text only; Chinese then shows the cause from the catalogue.
 function pastText(it) {
   const text = make("span", (language === "zh" && (it.text_zh || it.cause_zh)) || it.text);
   text.title = it.text;

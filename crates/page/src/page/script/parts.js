@@ -1,10 +1,10 @@
-// What several pages show of lots and parts of the history.
+// Lots and parts of the history, as several pages show them.
 
 const readLots = async () => (await ask("/api/history/list")).json();
 
 const verdictCell = (verdict) => {
   const cell = make("td", undefined, verdict);
-  cell.append(make("span", known("verdict-" + verdict, verdict), "verdict"));
+  cell.append(make("span", wordOr("verdict-" + verdict, verdict), "verdict"));
   return cell;
 };
 
@@ -18,7 +18,7 @@ function partLink(part) {
 
 const seconds = (when) => Date.parse(when) / 1000;
 
-// Rows of [label, bars], a bar {from, to, name, kind} in seconds; ticks on round seconds.
+// Draws rows of [label, bars] over a time axis; a bar is {from, to, name, kind} with times in seconds.
 function timeBars(rows, label) {
   const all = rows.flatMap(([, bars]) => bars), high = 24, left = 190, wide = 1000 - left;
   const begin = Math.min(...all.map((it) => it.from)), span = Math.max(...all.map((it) => it.to)) - begin || 1;
@@ -48,7 +48,7 @@ function timeBars(rows, label) {
   return svg;
 }
 
-// Probes up to verdict, and from there to the beam of the bin.
+// Returns the bar of the test, from probes up to verdict, and the bar of the way to the beam of the bin.
 function partBars(part) {
   const judged = seconds(part.time), bars = [];
   if (part.test_s !== null) bars.push({from: judged - part.test_s, to: judged, name: word("h-test_s")});

@@ -1,4 +1,4 @@
-// Which page is open, and everything begun.
+// Opens pages, shows views, and starts everything.
 
 let current = "operator";
 
@@ -27,7 +27,7 @@ function showView() {
   }
   showAlarmBar(view.alarms);
   sound(view.alarms);
-  notice();
+  recordActivity();
   PAGES[current]?.show?.();
 }
 
@@ -49,12 +49,12 @@ at("language").addEventListener("click", () => {
   language = language === "zh" ? "en" : "zh";
   // Answers in the other language go.
   for (const element of document.querySelectorAll(".answer")) element.textContent = "";
-  kept.set("lang", language);
+  stored.set("lang", language);
   showAll();
 });
 at("theme").addEventListener("click", () => {
   theme = theme === "dark" ? "light" : "dark";
-  kept.set("theme", theme);
+  stored.set("theme", theme);
   showAll();
 });
 addEventListener("hashchange", openPage);
