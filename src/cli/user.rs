@@ -2,7 +2,7 @@
 
 use anyhow::Context;
 use app::exit::Exit;
-use page::access::{Register, Role, beside};
+use page::access::{Register, Role, access_path};
 use std::io::{BufRead, Write};
 use std::path::Path;
 
@@ -52,7 +52,7 @@ enum Action {
 
 /// Runs the command.
 pub fn run(db: &Path, args: UserArgs) -> anyhow::Result<Exit> {
-    let mut register = Register::open(&beside(db))?;
+    let mut register = Register::open(&access_path(db))?;
     match args.action {
         Action::List => {
             let mut out = std::io::stdout().lock();
@@ -78,7 +78,7 @@ pub fn run(db: &Path, args: UserArgs) -> anyhow::Result<Exit> {
 
 fn password(from_stdin: bool) -> anyhow::Result<String> {
     if !from_stdin {
-        return Ok(Register::drawn_password()?);
+        return Ok(Register::random_password()?);
     }
     let mut line = String::new();
     std::io::stdin()

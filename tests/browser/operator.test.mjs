@@ -110,6 +110,27 @@ for (const size of SIZES) {
   });
 }
 
+test("every state with every stage keeps clear of the figures below it", async () => {
+  const page = await visit(browser, rig, { role: "operator" });
+  const codes = (family) => Object.keys(WORDS).filter((it) => it.startsWith(family + "-")).map((it) => it.slice(family.length + 1));
+  const overlaps = () => page.evaluate(([states, stages]) => {
+    const drawn = (id) => { const range = document.createRange(); range.selectNodeContents(at(id)); return range.getBoundingClientRect(); };
+    const shown = [...states.map((doing) => ({ doing, stage: null })), ...stages.map((stage) => ({ doing: "testing", stage }))];
+    return shown.filter((it) => {
+      view = { ...view, ...it };
+      showOperator();
+      const [column, answer] = [at("state").parentElement, at("order_answer").getBoundingClientRect()];
+      return drawn("state").bottom > drawn("judged").top || column.scrollHeight > column.clientHeight ||
+        answer.bottom > column.getBoundingClientRect().bottom;
+    });
+  }, [codes("state"), codes("stage")]);
+  assert.deepEqual(await overlaps(), []);
+  await picture(page, "operator-stage");
+  await page.click("#language");
+  assert.deepEqual(await overlaps(), []);
+  await leave(page);
+});
+
 test("old values turn grey within 3 s, and the page comes back by itself", async () => {
   const page = await visit(browser, rig);
   // By the page's own clock, from the last word of the rig: how late this test is woken does not matter.

@@ -20,7 +20,7 @@ use std::collections::BTreeMap;
 use texts::Args;
 
 /// The whole state shown on the page.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct View {
     /// Wall-clock time at which the cycle published this view, at any pace: microseconds since 1970 UTC.
     pub at_us: i64,
@@ -95,7 +95,7 @@ pub struct RecentPart {
 }
 
 /// The part judged last.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct LastPart {
     /// Number in the lot.
     pub seq: u64,
@@ -143,7 +143,7 @@ pub struct AlarmLine {
 }
 
 /// A line of modules.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct LineView {
     /// Name in the wiring.
     pub name: String,
@@ -154,7 +154,7 @@ pub struct LineView {
 }
 
 /// Health of a module, counted since the start.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct ModuleView {
     /// Two hexadecimal digits, as on the module.
     pub address: String,

@@ -1,13 +1,12 @@
-//! Everything that may be asked of the screen's interface, as one list: the router is made of it, and so is the OpenAPI
-//! document (`GET /api/openapi.json`). A route that is not in the list does not exist; one that is cannot be forgotten in
-//! the document.
+//! The list of all routes. Both the router and the OpenAPI document (`GET /api/openapi.json`) are made from it, so that the
+//! document is complete.
 
 mod document;
 mod history;
 mod recipes;
 
 use super::access::Role;
-use super::router::Desk;
+use super::router::AppState;
 use super::{calibration, events, login, lots, metrics, mimic, orders, page, trace};
 use axum::Json;
 use axum::handler::Handler;
@@ -17,7 +16,7 @@ use std::sync::LazyLock;
 const JSON: &str = "application/json";
 const HTML: &str = "text/html";
 
-/// The method of a route; a route has one.
+/// The one method of a route.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Method {
     Get,
@@ -28,24 +27,24 @@ pub(super) enum Method {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Member {
     pub name: &'static str,
-    /// Unit, range, meaning.
+    /// Meaning with unit, range and default.
     pub about: &'static str,
     pub required: bool,
 }
 
 /// One route.
 #[derive(Debug)]
-pub(super) struct Offer {
+pub(super) struct Route {
     pub path: &'static str,
     pub method: Method,
     pub about: &'static str,
     /// Media type of the answer.
     pub gives: &'static str,
-    /// Of the query string, or of the JSON body of a `POST`.
+    /// Members of the query string, or of the JSON body of a `POST`.
     pub members: Vec<Member>,
-    /// Weakest role that may ask; `None`: anybody.
+    /// Weakest role that may use the route; `None` when it needs no login.
     pub role: Option<Role>,
-    pub handler: MethodRouter<Desk>,
+    pub handler: MethodRouter<AppState>,
 }
 
 const fn may(name: &'static str, about: &'static str) -> Member {
@@ -64,12 +63,12 @@ const fn must(name: &'static str, about: &'static str) -> Member {
     }
 }
 
-impl Offer {
+impl Route {
     fn get<T: 'static>(
         path: &'static str,
         gives: &'static str,
         about: &'static str,
-        handler: impl Handler<T, Desk>,
+        handler: impl Handler<T, AppState>,
     ) -> Self {
         Self {
             path,
@@ -85,7 +84,7 @@ impl Offer {
     fn post<T: 'static>(
         path: &'static str,
         about: &'static str,
-        handler: impl Handler<T, Desk>,
+        handler: impl Handler<T, AppState>,
     ) -> Self {
         Self {
             method: Method::Post,
@@ -105,26 +104,33 @@ impl Offer {
     }
 }
 
-/// All of them.
-pub(super) fn offers() -> Vec<Offer> {
-    let mut offers = vec![
-        Offer::get("/", HTML, "The page, whole in one answer.", page::page),
-        Offer::get("/api/view", JSON, "The whole view.", super::router::view),
-        Offer::get(
+/// Returns all routes.
+pub(super) fn routes() -> Vec<Route> {
+    let mut routes = vec![
+        Route::get("/", HTML, "The page, with everything that the operator needs.", page::page),
+        Route::get(
+            "/page/{file}",
+            "text/javascript",
+            "The script of another page; `GET /` names it.",
+            page::script,
+        )
+        .with(&[must("file", "Name with a hash of the script.")]),
+        Route::get("/api/view", JSON, "The whole view.", super::router::view),
+        Route::get(
             "/api/events",
             "text/event-stream",
-            "The view as server-sent events `view`: at once, then on change; `beat` each second.",
+            "The view as server-sent events `view`: at once, on change, otherwise once a second; `beat` each second.",
             events::events,
         ),
-        Offer::post(
+        Route::post(
             "/api/login",
             "A session: in the cookie, and as a token.",
             login::log_in,
         )
         .with(&[must("user", "As added by `relayrig user`."), must("password", "")]),
-        Offer::post("/api/logout", "Ends the session that the request brings.", login::log_out),
-        Offer::get("/api/me", JSON, "Name and role, or null for a stranger.", login::me),
-        Offer::post(
+        Route::post("/api/logout", "Ends the session that the request brings.", login::log_out),
+        Route::get("/api/me", JSON, "Name and role, or null without a session.", login::me),
+        Route::post(
             "/api/orders",
             "An order to the station: taken, or 409 with the reason in English and Chinese. `mode`, `jog`, `step`, \
              `shelve`, `release_lot` and `replaced` take a maintainer.",
@@ -132,42 +138,42 @@ pub(super) fn offers() -> Vec<Offer> {
         )
         .with(&ORDER)
         .needs(Role::Operator),
-        Offer::get(
+        Route::get(
             "/mimic.svg",
             "image/svg+xml",
             "The machine to scale, from the front and from above.",
             mimic::picture,
         ),
-        Offer::get(
+        Route::get(
             "/api/trace",
             JSON,
             "The last traffic of every line, with its meaning.",
             trace::trace,
         )
         .with(&[may("last", "Messages of each line, 1 to 1000; 100 without it.")]),
-        Offer::get(
+        Route::get(
             "/api/lots",
             JSON,
-            "Lots over all their runs, the one run last first, each with what may be ordered of it.",
+            "Lots over all their runs, latest run first, each with the orders that its state allows.",
             lots::lots,
         )
         .with(&[
-            may("limit", "So many at most, 1 to 200; 20 without it."),
-            may("offset", "So many left out in front."),
+            may("limit", "Most lots of the answer, 1 to 200; 20 without it."),
+            may("offset", "Number of lots to skip."),
         ]),
-        Offer::get("/api/wear", JSON, "Uses of what wears since it was replaced.", lots::wear),
-        Offer::get(
+        Route::get("/api/wear", JSON, "Uses of each wearing part since its replacement.", lots::wear),
+        Route::get(
             "/api/calibration",
             JSON,
-            "Factors with date, uncertainty and due date; golden parts with what was read last.",
+            "Factors with date, uncertainty and due date; reference parts with their last readings.",
             calibration::calibration,
         ),
-        Offer::get("/metrics", "text/plain", "Figures as Prometheus text.", metrics::metrics),
-        Offer::get("/api/openapi.json", JSON, "This document.", openapi),
+        Route::get("/metrics", "text/plain", "Figures as Prometheus text.", metrics::metrics),
+        Route::get("/api/openapi.json", JSON, "This document.", openapi),
     ];
-    offers.extend(history::offers());
-    offers.extend(recipes::offers());
-    offers
+    routes.extend(history::routes());
+    routes.extend(recipes::routes());
+    routes
 }
 
 /// Body of an order.
@@ -186,27 +192,27 @@ const ORDER: [Member; 11] = [
         "Of `acknowledge` (all without it) and `shelve`: code of the alarm.",
     ),
     may("minutes", "Of `shelve`: 1 to 480; 30 without it."),
-    may("reason", "Of `shelve` and `hold_lot`: why."),
+    may("reason", "Reason of `shelve` and `hold_lot`."),
     may(
         "lot",
-        "Of `start` (without it the lot under way goes on), `hold_lot`, `release_lot`, `close_lot`: its name.",
+        "Of `start` (without it the lot under way continues), `hold_lot`, `release_lot`, `close_lot`: name of the lot.",
     ),
     may("recipe", "Of `start` with a lot: name of its recipe."),
     may(
         "count",
-        "Of `start` with a lot: parts wanted; without it the lot goes on until it is ended.",
+        "Of `start` with a lot: number of parts; without it the lot continues until it is ended.",
     ),
     may(
         "retest",
-        "Of `start` with a lot: its parts are tested again, to which this person has agreed.",
+        "Of `start` with a lot that is tested again: name of the person who agreed.",
     ),
     may(
         "counter",
-        "Of `replaced`: `probe_touches` or `jaw_closings`, which begins anew.",
+        "Of `replaced`: the counter to reset, `probe_touches` or `jaw_closings`.",
     ),
 ];
 
-static DOCUMENT: LazyLock<serde_json::Value> = LazyLock::new(|| document::of(&offers()));
+static DOCUMENT: LazyLock<serde_json::Value> = LazyLock::new(|| document::of(&routes()));
 
 async fn openapi() -> Json<serde_json::Value> {
     Json(DOCUMENT.clone())

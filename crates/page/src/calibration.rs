@@ -1,16 +1,18 @@
-//! `GET /api/calibration`: what measurements lean on, of the rig that the view shows.
+//! `GET /api/calibration`: calibration factors and reference parts of the rig in the view.
 
-use super::error::HmiError;
-use super::router::Desk;
+use super::error::ApiError;
+use super::router::AppState;
 use axum::Json;
 use axum::extract::State;
 use config::Plant;
 use history::inquiry::instruments::{Instruments, instruments};
 
 /// `GET /api/calibration`.
-pub(super) async fn calibration(State(desk): State<Desk>) -> Result<Json<Instruments>, HmiError> {
-    let simulated = desk.shared.view.borrow().simulated;
-    let dir = desk.shared.config.clone();
+pub(super) async fn calibration(
+    State(app): State<AppState>,
+) -> Result<Json<Instruments>, ApiError> {
+    let simulated = app.shared.view.borrow().simulated;
+    let dir = app.shared.config.clone();
     let read = move |archive: &history::Archive| {
         let plant = Plant::load(&dir)?;
         Ok(instruments(
@@ -19,5 +21,5 @@ pub(super) async fn calibration(State(desk): State<Desk>) -> Result<Json<Instrum
             &plant.golden.certificates(),
         )?)
     };
-    desk.readers.read(read).await.map(Json)
+    app.readers.read(read).await.map(Json)
 }

@@ -1,4 +1,4 @@
-//! Every refusal of the screen's interface, with its status and a sentence for the one who asked.
+//! Every refusal of the HTTP interface, with its status and a sentence for the client.
 
 use super::access::{AccessError, Role};
 use axum::Json;
@@ -12,112 +12,112 @@ use serde_json::json;
 use std::time::Duration;
 use texts::{Lang, Message};
 
-/// Why a request was not fulfilled.
+/// Reason for the refusal of a request; each variant names its HTTP status.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum HmiError {
-    /// 404.
+pub(super) enum ApiError {
+    /// 404: no route has this path.
     #[error("there is nothing at {path}")]
     NoSuchRoute {
-        /// The path asked for.
+        /// Path of the request.
         path: String,
     },
-    /// 405; the header `Allow` says what is.
+    /// 405; the header `Allow` lists the methods of the path.
     #[error("{path} does not take {method}")]
     WrongMethod {
-        /// The path asked for.
+        /// Path of the request.
         path: String,
-        /// The method used.
+        /// Method of the request.
         method: Method,
     },
-    /// 403: a page from elsewhere wants something done.
+    /// 403: a page of another site sent an order.
     #[error("orders are taken from this rig's own page only; found {found}")]
     CrossSite {
-        /// The header that gave it away.
+        /// Name and value of the header that shows it.
         found: String,
     },
-    /// 401.
+    /// 401: the request has no valid session.
     #[error("{reason}: log in first")]
     NotLoggedIn {
-        /// Why the request counts as a stranger's.
+        /// Reason, English.
         reason: &'static str,
     },
-    /// 401: which of them is not said.
+    /// 401: name or password is wrong; the answer does not say which.
     #[error("{}", refusal("wrong_password").say(Lang::En))]
     WrongPassword,
-    /// 403: known, but not trusted with this.
+    /// 403: the role of the person is too weak.
     #[error("{}", not_allowed(*.found, *.needed).say(Lang::En))]
     NotAllowed {
-        /// The role that the person has.
+        /// Role of the person.
         found: Role,
-        /// The weakest role that may.
+        /// Weakest role that suffices.
         needed: Role,
     },
-    /// 429; the header `Retry-After` says it in seconds.
+    /// 429; the header `Retry-After` gives the time in seconds.
     #[error("{}", too_many_tries(*.wait).say(Lang::En))]
     TooManyTries {
-        /// Until the next try.
+        /// Time until the next try.
         wait: Duration,
     },
-    /// 500: the people could not be looked up.
+    /// 500: the file of people failed.
     #[error(transparent)]
     Access(#[from] AccessError),
-    /// 400, 413, 415 or 422 of axum, all of them with its own text.
+    /// 400, 413 or 415: axum cannot read the body.
     #[error("{reason}")]
     Body {
-        /// What is wrong with the body.
+        /// Message of axum.
         reason: String,
-        /// Which of them.
+        /// The status.
         status: StatusCode,
     },
-    /// 400.
+    /// 400: no order has this name.
     #[error("there is no order {found:?}; known are {known}")]
     UnknownOrder {
-        /// The word found.
+        /// The name, cut at 40 characters.
         found: String,
-        /// The words known.
+        /// Names of all orders.
         known: String,
     },
-    /// 409: known, but not now or not here.
+    /// 409: the station refuses the order now.
     #[error("{order}: {}", .why.say(Lang::En))]
     NotNow {
-        /// The order.
+        /// Name of the order.
         order: &'static str,
-        /// Why not.
+        /// Reason in both languages.
         why: Message,
     },
-    /// 400: a query string that is no filter.
+    /// 400: the query string is malformed.
     #[error("{reason}")]
     Query {
-        /// Found and expected.
+        /// Message with what was found and expected.
         reason: String,
     },
-    /// 400 for what cannot be meant, 404 for what never was, else as the history itself.
+    /// 400 for a malformed question, 404 for a lot, run or part that does not exist, otherwise as [`Self::History`].
     #[error(transparent)]
     Inquiry(#[from] InquiryError),
-    /// 404, 503 or 500.
+    /// 404 without a history file, 503 when it is locked, otherwise 500.
     #[error(transparent)]
     History(#[from] HistoryError),
-    /// 404 for a recipe or revision that never was, else 500: the files of the plant are not as they should be.
+    /// 404 for an unknown recipe or revision, otherwise 500: a file of the configuration is faulty.
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// 400 with the key for a value, 404 for a recipe that never was, 409 for a change that came second.
+    /// 400 with the key of a refused value, 404 for an unknown recipe, 409 when another revision came first.
     #[error("{refused}")]
     Revision {
-        /// Why it was not saved.
+        /// Error of the configuration.
         refused: ConfigError,
     },
-    /// 500: done, but nobody will find it in the audit.
+    /// 500: the program saved the revision but could not write it to the audit.
     #[error("the revision was saved, but not noted in the audit of orders: {source}")]
-    Unnoted {
-        /// Why not.
+    NotAudited {
+        /// Error of the history.
         source: HistoryError,
     },
-    /// 500: a reader ended without an answer.
+    /// 500: a blocking task panicked or was cancelled.
     #[error("the reader of the history ended without an answer")]
     ReaderLost,
 }
 
-impl HmiError {
+impl ApiError {
     fn status(&self) -> StatusCode {
         match self {
             Self::NoSuchRoute { .. } => StatusCode::NOT_FOUND,
@@ -135,14 +135,14 @@ impl HmiError {
             Self::Inquiry(InquiryError::NotThere { .. }) => StatusCode::NOT_FOUND,
             Self::Inquiry(InquiryError::Write(_) | InquiryError::Sheet(_))
             | Self::Access(_)
-            | Self::Unnoted { .. }
+            | Self::NotAudited { .. }
             | Self::ReaderLost => StatusCode::INTERNAL_SERVER_ERROR,
             Self::Config(found) => of_config(found, StatusCode::INTERNAL_SERVER_ERROR),
             Self::Revision { refused } => of_config(refused, StatusCode::BAD_REQUEST),
         }
     }
 
-    /// What stands beside status and reason.
+    /// Returns the further members of the answer.
     fn more(&self) -> serde_json::Value {
         match self {
             Self::Revision {
@@ -160,7 +160,7 @@ impl HmiError {
         }
     }
 
-    /// What an operator meets; the rest is met by scripts and by whoever mends the plant.
+    /// Returns the refusal in both languages if an operator may get it; other refusals are English only.
     fn message(&self) -> Option<Message> {
         Some(match self {
             Self::NotNow { why, .. } => why.clone(),
@@ -203,7 +203,7 @@ fn of_history(history: &HistoryError) -> Option<&'static str> {
     }
 }
 
-/// `wrong` is the status of a file whose text is refused.
+/// Returns the status of a configuration error; `wrong` is that of a refused text.
 fn of_config(found: &ConfigError, wrong: StatusCode) -> StatusCode {
     match found {
         ConfigError::UnknownRecipe { .. } | ConfigError::UnknownRevision { .. } => {
@@ -228,7 +228,7 @@ fn unread(history: &HistoryError) -> StatusCode {
     }
 }
 
-impl IntoResponse for HmiError {
+impl IntoResponse for ApiError {
     fn into_response(self) -> Response {
         let status = self.status();
         let word = status.canonical_reason().unwrap_or("refused");
@@ -244,7 +244,7 @@ impl IntoResponse for HmiError {
     }
 }
 
-impl From<JsonRejection> for HmiError {
+impl From<JsonRejection> for ApiError {
     fn from(found: JsonRejection) -> Self {
         let status = match found.status() {
             StatusCode::UNPROCESSABLE_ENTITY => StatusCode::BAD_REQUEST,
@@ -255,7 +255,7 @@ impl From<JsonRejection> for HmiError {
     }
 }
 
-impl From<QueryRejection> for HmiError {
+impl From<QueryRejection> for ApiError {
     fn from(found: QueryRejection) -> Self {
         let reason = found.body_text();
         Self::Query { reason }

@@ -2,15 +2,14 @@
 //!
 //! | event | data | when |
 //! |---|---|---|
-//! | `view` | the whole view | at once on connecting, then on change, at most 20 times a second |
-//! | `beat` | `{"alive":true}` | each second; `false` once nobody makes views any more |
+//! | `view` | the whole view | on connecting; on change, at most 20 times a second; otherwise once a second |
+//! | `beat` | `{"alive":true}` | each second; `false` after the controller has ended |
 //!
-//! A screen that heard nothing for three seconds, or hears `"alive":false`, shows old values and must
-//! say so. A slow screen skips views, it never gets a stale one after a newer one. The stream ends
-//! when the program does.
+//! A browser that receives nothing for three seconds, or `"alive":false`, has old values and must show them as such. A slow
+//! browser skips views and never gets an older one after a newer one. The stream ends with the program.
 
-use super::over;
-use super::router::Desk;
+use super::end_of_program;
+use super::router::AppState;
 use axum::extract::State;
 use axum::response::Sse;
 use axum::response::sse::Event;
@@ -26,34 +25,33 @@ use tokio::time::{Instant, sleep_until};
 
 /// Least time between two views on one stream.
 const PACE: Duration = Duration::from_millis(50);
-/// Time between two beats.
+/// Time between two beats, and between two views that show the same.
 const BEAT: Duration = Duration::from_secs(1);
-/// How long a browser waits before it connects again.
+/// Time that a browser waits before it connects again.
 const RETRY: Duration = Duration::from_secs(1);
 
 /// `GET /api/events`.
 pub(super) async fn events(
-    State(desk): State<Desk>,
+    State(app): State<AppState>,
 ) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {
-    let feed = Feed::new(&desk);
+    let feed = Feed::new(&app);
     Sse::new(stream::unfold(feed, |mut feed| async move {
         let event = feed.next().await?;
         Some((Ok(event), feed))
     }))
 }
 
-/// One screen's place in the stream.
+/// The stream of one browser.
 struct Feed {
     view: watch::Receiver<View>,
     over: Pin<Box<dyn Future<Output = ()> + Send>>,
-    /// The first view has gone out.
-    greeted: bool,
-    next_view: Instant,
+    /// The last view sent, none before the first.
+    sent: Option<(Instant, View)>,
     next_beat: Instant,
     _counted: Counted,
 }
 
-/// What comes next.
+/// The next event.
 enum Turn {
     View,
     Beat,
@@ -61,25 +59,23 @@ enum Turn {
 }
 
 impl Feed {
-    fn new(desk: &Desk) -> Self {
+    fn new(app: &AppState) -> Self {
         Self {
-            view: desk.shared.view.clone(),
-            over: Box::pin(over(desk.ended.clone())),
-            greeted: false,
-            next_view: Instant::now(),
+            view: app.shared.view.clone(),
+            over: Box::pin(end_of_program(app.ended.clone())),
+            sent: None,
             next_beat: Instant::now() + BEAT,
-            _counted: Counted::new(&desk.screens),
+            _counted: Counted::new(&app.streams),
         }
     }
 
     async fn next(&mut self) -> Option<Event> {
         match self.turn().await {
             Turn::View => {
-                let first = !self.greeted;
-                self.greeted = true;
-                self.next_view = Instant::now() + PACE;
-                let text = serde_json::to_string(&*self.view.borrow_and_update());
-                let event = Event::default().event("view").data(text.ok()?);
+                let view = self.view.borrow_and_update().clone();
+                let event = Event::default().event("view");
+                let event = event.data(serde_json::to_string(&view).ok()?);
+                let first = self.sent.replace((Instant::now(), view)).is_none();
                 Some(if first { event.retry(RETRY) } else { event })
             }
             Turn::Beat => {
@@ -92,36 +88,46 @@ impl Feed {
         }
     }
 
-    /// A beat that is due goes before a view, so that a busy rig does not silence it.
+    /// Prefers a due beat to a view: a busy rig must not suppress it.
     async fn turn(&mut self) -> Turn {
-        if !self.greeted {
+        let Some((at, sent)) = &mut self.sent else {
             return Turn::View;
-        }
-        let (view, next_view) = (&mut self.view, self.next_view);
+        };
         tokio::select! {
             biased;
             () = &mut self.over => Turn::Over,
             () = sleep_until(self.next_beat) => Turn::Beat,
-            () = changed(view, next_view) => Turn::View,
+            () = changed(&mut self.view, *at, sent) => Turn::View,
         }
     }
 }
 
-/// Resolves at a view not sent yet, no sooner than `after`; never when none will come.
-async fn changed(view: &mut watch::Receiver<View>, after: Instant) {
-    sleep_until(after).await;
-    if view.changed().await.is_err() {
-        std::future::pending::<()>().await;
+/// Resolves at a view that differs from `sent`, no sooner than [`PACE`] after `at`, and at any new view [`BEAT`] after it;
+/// never without a sender of views.
+async fn changed(views: &mut watch::Receiver<View>, at: Instant, sent: &mut View) {
+    sleep_until(at + PACE).await;
+    while views.changed().await.is_ok() {
+        if at.elapsed() >= BEAT || !shows_same(&views.borrow_and_update(), sent) {
+            return;
+        }
     }
+    std::future::pending().await
+}
+
+/// Compares all but the wall-clock times, which each turn of the cycle changes; `sent` takes those of `view`.
+fn shows_same(view: &View, sent: &mut View) -> bool {
+    sent.at_us = view.at_us;
+    sent.machine.phases_s.clone_from(&view.machine.phases_s);
+    view == sent
 }
 
 /// Counts a stream as long as it lives.
 struct Counted(Arc<AtomicUsize>);
 
 impl Counted {
-    fn new(screens: &Arc<AtomicUsize>) -> Self {
-        screens.fetch_add(1, Ordering::Relaxed);
-        Self(Arc::clone(screens))
+    fn new(streams: &Arc<AtomicUsize>) -> Self {
+        streams.fetch_add(1, Ordering::Relaxed);
+        Self(Arc::clone(streams))
     }
 }
 

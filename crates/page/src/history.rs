@@ -1,19 +1,19 @@
-//! `/api/history/...`: the command `history` over HTTP, with the same filter in the query string.
+//! `/api/history/...`: the command `history` over HTTP, with its filter in the query string.
 //!
 //! The filter is [`Filter`]: `lot`, `run`, `recipe`, `since`, `until` (RFC 3339), `verdict`, `bin`, `kind`
-//! (`lot` when absent, `golden`, `all`), `suspect`, `param`, `min`, `max`, and of an ordered answer the page: `limit`,
+//! (`lot` when absent, `golden`, `all`), `suspect`, `param`, `min`, `max`, and the page of a long answer: `limit`,
 //! `offset`.
 //!
 //! | route | members of the filter | others | answer |
 //! |---|---|---|---|
 //! | `list` | `lot`, `run`, `recipe` | | array of runs with their counts |
-//! | `show` | `lot`, `run`, `kind` | `seq` | array with that part of every run, down to the raw replies |
-//! | `query` | all | | array of parts, streamed: it may be long |
-//! | `count` | all but the page | | `{"parts": n}`: how long `query` would be |
-//! | `yield` | `since`, `until` | | counts of verdicts of all production parts in the span |
+//! | `show` | `lot`, `run`, `kind` | `seq` | array with the part `seq` of every run, down to the raw replies |
+//! | `query` | all | | array of parts, streamed because it may be long |
+//! | `count` | all but the page | | `{"parts": n}`: parts that `query` would return |
+//! | `yield` | `since`, `until` | | counts of the verdicts of all parts of lots in the span |
 //! | `stats` | `param` and all but `min`, `max` | | one object, as `history stats --json` |
-//! | `histogram` | the same | | `{"from", "width", "counts", "low", "high"}`, limits where all runs agree |
-//! | `spc` | the same; without `param` the share of every bin | `subgroup`, `rules`, `last` | array of control charts |
+//! | `histogram` | the same | | `{"from", "width", "counts", "low", "high"}`, limits only where those of all runs agree |
+//! | `spc` | the same; without `param` charts of the share of every bin | `subgroup`, `rules`, `last` | array of control charts |
 //! | `alarms` | `lot`, `run`, `recipe`, `since`, `until`, page | | array of alarms in order of time |
 //! | `rejudge` | `lot`, `run`, `recipe` | `changed` | array of parts with the verdict of that recipe, then a summary, streamed |
 //! | `orders` | `lot`, `run`, `recipe`, `since`, `until`, page | `who` | array of orders with their answers in order of time |
@@ -24,20 +24,18 @@
 //! | `export.csv` | all | | CSV with byte order mark, streamed |
 //! | `export.xlsx` | all | `lang` | spreadsheet with charts, of a bounded number of parts |
 //!
-//! `lang` is `zh` (when absent) or `en`. A member that a route does not use is refused rather than ignored:
-//! 400 with the name. What never was is 404. Readers work beside the async threads, a few at a time, and
-//! hold up no writer.
+//! `lang` is `zh` (when absent) or `en`. A route refuses a member that it does not use: 400 with the name. An unknown lot,
+//! run or part is 404. A few readers at a time work on blocking threads; they do not delay the writer.
 
-mod asked;
 pub(super) mod export;
 mod feed;
+mod members;
 pub(super) mod paper;
 mod readers;
 pub(super) mod rejudge;
 
-use super::error::HmiError;
-use super::router::Desk;
-use asked::{Audited, Charting, asked};
+use super::error::ApiError;
+use super::router::AppState;
 use axum::Json;
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Query, State};
@@ -45,9 +43,10 @@ use axum::http::Uri;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 use history::inquiry::charts::{Charted, charts};
-use history::inquiry::figures::{Classes, figures, histogram};
+use history::inquiry::figures::{self, Classes};
 use history::inquiry::{InquiryError, checks};
 use history::{Alarm, Archive, Filter, LotSummary, Moment, OrderEntry, Part, Yield};
+use members::{AuditMembers, ChartMembers, split};
 use quality::Summary;
 use quality::rules::Rules;
 pub(super) use readers::Readers;
@@ -57,21 +56,21 @@ use tokio::task::spawn_blocking;
 
 type Filtered = Result<Query<Filter>, QueryRejection>;
 
-/// Members of the filter that alarms and orders know.
+/// Members of the filter that the lists of alarms and orders take.
 const OF_ALARMS: &[&str] = &["lot", "run", "recipe", "since", "until", "limit", "offset"];
 
 /// `GET /api/history/query`.
 pub(super) async fn query(
-    State(desk): State<Desk>,
+    State(app): State<AppState>,
     filter: Filtered,
-) -> Result<Response, HmiError> {
+) -> Result<Response, ApiError> {
     let Query(filter) = filter?;
     checks::validate(&filter)?;
-    let (archive, place) = desk.readers.open().await?;
+    let (archive, place) = app.readers.open().await?;
     let param = filter.param.clone();
     let known = move || checks::parameters(&archive, param.as_deref()).map(|_| archive);
     let archive = spawn_blocking(known).await;
-    let archive = archive.map_err(|_| HmiError::ReaderLost)??;
+    let archive = archive.map_err(|_| ApiError::ReaderLost)??;
     let parts = feed::streamed((archive, place), move |archive, out| {
         feed::parts(archive, &filter, out)
     });
@@ -80,9 +79,9 @@ pub(super) async fn query(
 
 /// `GET /api/history/count`.
 pub(super) async fn count(
-    State(desk): State<Desk>,
+    State(app): State<AppState>,
     filter: Filtered,
-) -> Result<Json<Value>, HmiError> {
+) -> Result<Json<Value>, ApiError> {
     let Query(filter) = filter?;
     checks::validate(&filter)?;
     if filter.limit.is_some() || filter.offset.is_some() {
@@ -92,40 +91,40 @@ pub(super) async fn count(
         checks::parameters(archive, filter.param.as_deref())?;
         Ok(json!({"parts": archive.how_many(&filter)?}))
     };
-    desk.readers.read(read).await.map(Json)
+    app.readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/list`.
 pub(super) async fn list(
-    State(desk): State<Desk>,
+    State(app): State<AppState>,
     filter: Filtered,
-) -> Result<Json<Vec<LotSummary>>, HmiError> {
+) -> Result<Json<Vec<LotSummary>>, ApiError> {
     let Query(filter) = filter?;
     checks::only(&filter, "list", &["lot", "run", "recipe"])?;
     let read = move |archive: &Archive| Ok(archive.lots(&filter)?);
-    desk.readers.read(read).await.map(Json)
+    app.readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/yield`.
 pub(super) async fn yields(
-    State(desk): State<Desk>,
+    State(app): State<AppState>,
     filter: Filtered,
-) -> Result<Json<Yield>, HmiError> {
+) -> Result<Json<Yield>, ApiError> {
     let Query(filter) = filter?;
     checks::only(&filter, "yield", &["since", "until"])?;
     let since = filter.since.unwrap_or(Moment(i64::MIN));
     let until = filter.until.unwrap_or(Moment(i64::MAX));
     let read = move |archive: &Archive| Ok(archive.yield_between(since, until)?);
-    desk.readers.read(read).await.map(Json)
+    app.readers.read(read).await.map(Json)
 }
 
-/// Which part.
+/// Members of `show`: the part.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Which {
+pub(super) struct PartQuery {
     lot: String,
     seq: u64,
-    /// Only of this run.
+    /// Number of the run; all runs when absent.
     run: Option<u32>,
     /// `lot` (when absent) or `golden`.
     kind: Option<String>,
@@ -133,10 +132,10 @@ pub(super) struct Which {
 
 /// `GET /api/history/show`.
 pub(super) async fn show(
-    State(desk): State<Desk>,
-    which: Result<Query<Which>, QueryRejection>,
-) -> Result<Json<Vec<Part>>, HmiError> {
-    let Query(Which {
+    State(app): State<AppState>,
+    which: Result<Query<PartQuery>, QueryRejection>,
+) -> Result<Json<Vec<Part>>, ApiError> {
+    let Query(PartQuery {
         lot,
         seq,
         run,
@@ -153,35 +152,36 @@ pub(super) async fn show(
         }
         Ok(parts)
     };
-    desk.readers.read(read).await.map(Json)
+    app.readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/stats`.
 pub(super) async fn stats(
-    State(desk): State<Desk>,
+    State(app): State<AppState>,
     filter: Filtered,
-) -> Result<Json<Summary>, HmiError> {
+) -> Result<Json<Summary>, ApiError> {
     let (param, filter) = of_one_parameter(filter?.0, "stats")?;
-    let read = move |archive: &Archive| Ok(figures(archive, &param, &filter, None)?.summary);
-    desk.readers.read(read).await.map(Json)
+    let read =
+        move |archive: &Archive| Ok(figures::figures(archive, &param, &filter, None)?.summary);
+    app.readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/histogram`.
-pub(super) async fn classes(
-    State(desk): State<Desk>,
+pub(super) async fn histogram(
+    State(app): State<AppState>,
     filter: Filtered,
-) -> Result<Json<Classes>, HmiError> {
+) -> Result<Json<Classes>, ApiError> {
     let (param, filter) = of_one_parameter(filter?.0, "histogram")?;
-    let read = move |archive: &Archive| Ok(histogram(archive, &param, &filter)?);
-    desk.readers.read(read).await.map(Json)
+    let read = move |archive: &Archive| Ok(figures::histogram(archive, &param, &filter)?);
+    app.readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/spc`.
 pub(super) async fn spc(
-    State(desk): State<Desk>,
+    State(app): State<AppState>,
     uri: Uri,
-) -> Result<Json<Vec<Charted>>, HmiError> {
-    let (filter, how) = asked::<Charting>(&uri)?;
+) -> Result<Json<Vec<Charted>>, ApiError> {
+    let (filter, how) = split::<ChartMembers>(&uri)?;
     checks::validate(&filter)?;
     if how.lang.is_some() {
         return Err(InquiryError::member("lang", "`spc` has no words, `report/chart` has").into());
@@ -191,32 +191,32 @@ pub(super) async fn spc(
         let charts = charted(archive, filter, &how)?;
         Ok(charts.into_iter().map(|it| it.last(last)).collect())
     };
-    desk.readers.read(read).await.map(Json)
+    app.readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/alarms`.
 pub(super) async fn alarms(
-    State(desk): State<Desk>,
+    State(app): State<AppState>,
     filter: Filtered,
-) -> Result<Json<Vec<Alarm>>, HmiError> {
+) -> Result<Json<Vec<Alarm>>, ApiError> {
     let Query(filter) = filter?;
     checks::only(&filter, "alarms", OF_ALARMS)?;
     let read = move |archive: &Archive| Ok(archive.alarms(&filter)?);
-    desk.readers.read(read).await.map(Json)
+    app.readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/orders`.
 pub(super) async fn orders(
-    State(desk): State<Desk>,
+    State(app): State<AppState>,
     uri: Uri,
-) -> Result<Json<Vec<OrderEntry>>, HmiError> {
-    let (filter, Audited { who }) = asked(&uri)?;
+) -> Result<Json<Vec<OrderEntry>>, ApiError> {
+    let (filter, AuditMembers { who }) = split(&uri)?;
     checks::only(&filter, "orders", OF_ALARMS)?;
     let read = move |archive: &Archive| Ok(archive.orders(&filter, who.as_deref())?);
-    desk.readers.read(read).await.map(Json)
+    app.readers.read(read).await.map(Json)
 }
 
-fn of_one_parameter(mut filter: Filter, route: &str) -> Result<(String, Filter), HmiError> {
+fn of_one_parameter(mut filter: Filter, route: &str) -> Result<(String, Filter), ApiError> {
     checks::validate(&filter)?;
     if filter.min.is_some() || filter.max.is_some() {
         let reason = format!("`{route}` is about all values, not a range of them");
@@ -232,8 +232,8 @@ fn of_one_parameter(mut filter: Filter, route: &str) -> Result<(String, Filter),
 fn charted(
     archive: &Archive,
     mut filter: Filter,
-    how: &Charting,
-) -> Result<Vec<Charted>, HmiError> {
+    how: &ChartMembers,
+) -> Result<Vec<Charted>, ApiError> {
     let param = filter.param.take();
     if filter.min.is_some() || filter.max.is_some() {
         let reason = "a control chart is about all values, not a range of them";

@@ -1,9 +1,9 @@
 //! `POST /api/login`, `POST /api/logout`, `GET /api/me`.
 
 use super::access::Person;
-use super::error::HmiError;
-use super::router::Desk;
-use super::{gate, origin};
+use super::error::ApiError;
+use super::router::AppState;
+use super::{origin, sessions};
 use axum::Json;
 use axum::extract::State;
 use axum::extract::rejection::JsonRejection;
@@ -18,42 +18,42 @@ pub(super) struct Login {
     password: String,
 }
 
-/// Its answer; the same session is in the cookie.
+/// Answer of `POST /api/login`; the cookie holds the same token.
 #[derive(Debug, Serialize)]
 struct LoggedIn {
     #[serde(flatten)]
     person: Person,
-    /// For `Authorization: Bearer`.
+    /// Token for `Authorization: Bearer`.
     token: String,
 }
 
 pub(super) async fn log_in(
-    State(desk): State<Desk>,
+    State(app): State<AppState>,
     headers: HeaderMap,
     body: Result<Json<Login>, JsonRejection>,
-) -> Result<impl IntoResponse, HmiError> {
-    origin::ours(&headers)?;
+) -> Result<impl IntoResponse, ApiError> {
+    origin::check(&headers)?;
     let Json(Login { user, password }) = body?;
-    let (person, token) = desk.shared.gate.log_in(user, password).await?;
+    let (person, token) = app.shared.sessions.log_in(user, password).await?;
     tracing::info!("{} {} logged in", person.role, person.name);
-    let cookie = AppendHeaders([(SET_COOKIE, gate::cookie(Some(&token)))]);
+    let cookie = AppendHeaders([(SET_COOKIE, sessions::cookie(Some(&token)))]);
     Ok((cookie, Json(LoggedIn { person, token })))
 }
 
 pub(super) async fn log_out(
-    State(desk): State<Desk>,
+    State(app): State<AppState>,
     headers: HeaderMap,
-) -> Result<impl IntoResponse, HmiError> {
-    origin::ours(&headers)?;
-    desk.shared.gate.log_out(&headers).await?;
-    let cookie = AppendHeaders([(SET_COOKIE, gate::cookie(None))]);
+) -> Result<impl IntoResponse, ApiError> {
+    origin::check(&headers)?;
+    app.shared.sessions.log_out(&headers).await?;
+    let cookie = AppendHeaders([(SET_COOKIE, sessions::cookie(None))]);
     Ok((cookie, Json(serde_json::json!({ "logged_out": true }))))
 }
 
-/// The person, or `null` for a stranger.
+/// `GET /api/me`: returns the person, `null` without a valid session.
 pub(super) async fn me(
-    State(desk): State<Desk>,
+    State(app): State<AppState>,
     headers: HeaderMap,
-) -> Result<Json<Option<Person>>, HmiError> {
-    Ok(Json(desk.shared.gate.who(&headers).await?))
+) -> Result<Json<Option<Person>>, ApiError> {
+    Ok(Json(app.shared.sessions.who(&headers).await?))
 }

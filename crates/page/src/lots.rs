@@ -1,15 +1,15 @@
-//! `/api/lots`, `/api/wear`: what the page of lots shows beside the view.
+//! `/api/lots` and `/api/wear`, for the page of lots.
 //!
 //! | route | members | answer |
 //! |---|---|---|
-//! | `GET /api/lots` | `limit`, `offset` | array of lots, the one run last first: state, recipe, counts over all runs, and `why_not` |
-//! | `GET /api/wear` | | array of counters of what wears, of the rig that is shown |
+//! | `GET /api/lots` | `limit`, `offset` | array of lots, latest run first: state, recipe, counts over all runs, and `why_not` |
+//! | `GET /api/wear` | | array of wear counters of the rig in the view |
 //!
-//! `why_not` names each order about lots with null, or with the reason (`code`, `args`, `en`, `zh`) for which the state of the lot
-//! forbids it. Of the lot under way the buttons of the view tell the same.
+//! `why_not` maps each order about lots to null, or to the reason (`code`, `args`, `en`, `zh`) why the state of the lot forbids
+//! it. For the lot under way the buttons of the view apply instead.
 
-use super::error::HmiError;
-use super::router::Desk;
+use super::error::ApiError;
+use super::router::AppState;
 use axum::Json;
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Query, State};
@@ -18,41 +18,41 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use texts::Message;
 
-/// Lots of an answer when nobody says how many.
+/// Default of `limit`.
 const SHOWN: u32 = 20;
-/// The most that may be asked for: every one is counted.
+/// Greatest `limit`; each lot costs a count over its parts.
 const MOST: u32 = 200;
 
-/// A lot with what may be ordered of it.
+/// A lot with the orders that its state allows.
 #[derive(Debug, Serialize)]
-pub(super) struct Listed {
+pub(super) struct ListedLot {
     #[serde(flatten)]
     line: LotEntry,
     why_not: BTreeMap<&'static str, Option<Message>>,
 }
 
-/// Of the query string.
+/// Members of the query string.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Page {
+pub(super) struct Paging {
     limit: Option<u32>,
     offset: Option<u32>,
 }
 
 /// `GET /api/lots`.
 pub(super) async fn lots(
-    State(desk): State<Desk>,
-    page: Result<Query<Page>, QueryRejection>,
-) -> Result<Json<Vec<Listed>>, HmiError> {
-    let Query(Page { limit, offset }) = page?;
+    State(app): State<AppState>,
+    page: Result<Query<Paging>, QueryRejection>,
+) -> Result<Json<Vec<ListedLot>>, ApiError> {
+    let Query(Paging { limit, offset }) = page?;
     let limit = limit.unwrap_or(SHOWN);
     if !(1..=MOST).contains(&limit) {
         let reason = format!("limit: found {limit}, expected 1 to {MOST}");
-        return Err(HmiError::Query { reason });
+        return Err(ApiError::Query { reason });
     }
     let read = move |archive: &Archive| Ok(archive.lot_book(limit, offset.unwrap_or(0))?);
-    let book = desk.readers.read(read).await?;
-    let listed = book.into_iter().map(|line| Listed {
+    let book = app.readers.read(read).await?;
+    let listed = book.into_iter().map(|line| ListedLot {
         why_not: why_not(line.standing.state),
         line,
     });
@@ -68,8 +68,8 @@ fn why_not(state: LotState) -> BTreeMap<&'static str, Option<Message>> {
 }
 
 /// `GET /api/wear`.
-pub(super) async fn wear(State(desk): State<Desk>) -> Result<Json<Vec<Wear>>, HmiError> {
-    let simulated = desk.shared.view.borrow().simulated;
+pub(super) async fn wear(State(app): State<AppState>) -> Result<Json<Vec<Wear>>, ApiError> {
+    let simulated = app.shared.view.borrow().simulated;
     let read = move |archive: &Archive| Ok(archive.wear(simulated)?);
-    desk.readers.read(read).await.map(Json)
+    app.readers.read(read).await.map(Json)
 }

@@ -1,9 +1,8 @@
 //! `GET /metrics`: the view as Prometheus text (exposition format 0.0.4).
 //!
-//! Figures of the lot are gauges, for they begin anew with each lot. A figure that is not known is
-//! left out; zero would be a statement.
+//! Figures of the lot are gauges, because each lot starts them at zero. An unknown figure is absent rather than zero.
 
-use super::router::Desk;
+use super::router::AppState;
 use axum::extract::State;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::IntoResponse;
@@ -18,13 +17,13 @@ use std::fmt;
 use std::sync::atomic::Ordering;
 
 /// `GET /metrics`.
-pub(super) async fn metrics(State(desk): State<Desk>) -> impl IntoResponse {
-    let alive = desk.shared.view.has_changed().is_ok();
-    let screens = desk.screens.load(Ordering::Relaxed);
+pub(super) async fn metrics(State(app): State<AppState>) -> impl IntoResponse {
+    let alive = app.shared.view.has_changed().is_ok();
+    let streams = app.streams.load(Ordering::Relaxed);
     let text = text(Scrape {
-        view: desk.shared.view.borrow().clone(),
+        view: app.shared.view.borrow().clone(),
         alive,
-        screens,
+        streams,
     });
     (
         [(CONTENT_TYPE, "text/plain; version=0.0.4; charset=utf-8")],
@@ -36,18 +35,18 @@ fn text(scrape: Scrape) -> String {
     let mut registry = Registry::default();
     registry.register_collector(Box::new(scrape));
     let mut text = String::new();
-    // Without the end mark of OpenMetrics, which this format does not have.
-    encode_registry(&mut text, &registry).expect("a String takes every text");
+    // `encode` would add the end mark of OpenMetrics, which this format does not have.
+    encode_registry(&mut text, &registry).expect("writing to a String cannot fail");
     text
 }
 
-/// The figures of one request.
+/// The state that one request reports.
 #[derive(Debug)]
 struct Scrape {
     view: View,
-    /// A controller makes views.
+    /// True while a controller publishes views.
     alive: bool,
-    screens: usize,
+    streams: usize,
 }
 
 impl Collector for Scrape {
@@ -77,7 +76,7 @@ impl Scrape {
         out.one("relayrig_up", "1 while a controller makes views.", up)?;
         let help = "1 if the rig is simulated.";
         out.one("relayrig_simulated", help, simulated)?;
-        out.one("relayrig_screens", "Open streams of events.", self.screens)
+        out.one("relayrig_screens", "Open streams of events.", self.streams)
     }
 }
 
@@ -115,7 +114,7 @@ fn parts(out: &mut Figures<'_>, view: &View) -> fmt::Result {
     out.each("relayrig_cycle_seconds", help, phases)
 }
 
-/// Name after the prefix, help and figure of a module.
+/// Name without the prefix, help, and the figure of a module.
 type Figure<V> = (&'static str, &'static str, fn(&ModuleView) -> V);
 
 const COUNTS: [Figure<u64>; 6] = [
@@ -145,7 +144,7 @@ const LATENCIES: [Figure<Option<f64>>; 2] = [
     }),
 ];
 
-/// How the modules are doing, one row for each.
+/// Writes the health of the modules, one row each.
 fn modules(out: &mut Figures<'_>, view: &View) -> fmt::Result {
     let labelled = || {
         view.lines.iter().flat_map(|line| {
@@ -175,7 +174,7 @@ fn alarms(view: &View) -> BTreeMap<String, u64> {
 /// A label and its value.
 type Label<'a> = (&'static str, &'a str);
 
-/// One row for each entry of a table.
+/// Writes one row for each entry of a table.
 fn by<'a, V: Copy>(
     label: &'static str,
     table: &'a BTreeMap<String, V>,
@@ -194,7 +193,7 @@ impl Figures<'_> {
         figure.encode_gauge(&value)
     }
 
-    /// A row for each set of labels.
+    /// Writes one row for each set of labels.
     fn each<'a, const N: usize, V: EncodeGaugeValue>(
         &mut self,
         name: &str,
@@ -210,7 +209,7 @@ impl Figures<'_> {
         Ok(())
     }
 
-    /// The same; leaves the figure out where it has no row.
+    /// Does the same, and omits a figure without rows.
     fn known<'a, const N: usize, V: EncodeGaugeValue>(
         &mut self,
         name: &str,
@@ -230,7 +229,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn figures_have_a_type_and_unknown_ones_are_left_out() {
+    fn figures_have_a_type_and_unknown_ones_are_absent() {
         let view = View {
             judged: 7,
             ..View::default()
@@ -238,7 +237,7 @@ mod tests {
         let text = text(Scrape {
             view,
             alive: true,
-            screens: 2,
+            streams: 2,
         });
         assert!(
             text.contains("# TYPE relayrig_lot_parts_judged gauge\nrelayrig_lot_parts_judged 7\n")
@@ -256,7 +255,7 @@ mod tests {
         let text = text(Scrape {
             view,
             alive: true,
-            screens: 0,
+            streams: 0,
         });
         assert!(text.contains(r#"lot="a\"b\\c\nd""#));
     }

@@ -1,20 +1,20 @@
-//! The machine to scale, as SVG: from the front above, from above below, one x axis for both.
+//! The machine to scale, as SVG: the front view at the top, the view from above below it, with a common x axis.
 //!
 //! Units of the drawing are millimetres. A body that rides on actuators is a group with
-//! `data-rides='[["sort_z",0,-1], ..]'`: for each millimetre of the stroke the group goes so far to the
-//! right and down. A part stands in each of its places and is shown in those that hold one. Who moves the
-//! groups is the page, from `view.machine`.
+//! `data-rides='[["sort_z",0,-1], ..]'`: actuator, and the way of the group to the right and down per millimetre of stroke.
+//! The drawing has a part in every place that can hold one. The page moves the groups and shows the parts from
+//! `view.machine`.
 //!
-//! Drawn back to front: what lies lower comes first from above, what lies further off from the front.
+//! Bodies are drawn back to front: the lowest first in the view from above, the farthest first in the front view.
 
-use super::router::Desk;
+use super::router::AppState;
 use axum::extract::State;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::IntoResponse;
 use machine::view::{Mimic, MimicBody};
 use maud::{Markup, html};
 
-/// Room around each view, mm.
+/// Margin around each view, mm.
 const BORDER_MM: f64 = 6.0;
 
 /// Extent of one view in its own axes, mm.
@@ -24,7 +24,7 @@ struct Extent {
     high: [f64; 2],
 }
 
-/// Which of the two pictures, and how it lies in the drawing.
+/// One of the two views.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Side {
     Front,
@@ -46,7 +46,7 @@ impl Side {
         }
     }
 
-    /// Right and down in the drawing for a way in space.
+    /// Projects a displacement in space to right and down in the drawing.
     fn shift(self, [x, y, z]: [f64; 3]) -> (f64, f64) {
         match self {
             Self::Front => (x, -z),
@@ -54,7 +54,7 @@ impl Side {
         }
     }
 
-    /// What is nearer to the eye is drawn later.
+    /// Returns the key of the drawing order: nearer bodies have greater ones.
     fn nearness(self, body: &MimicBody) -> f64 {
         match self {
             // From the front (-y) the smallest y is nearest.
@@ -65,12 +65,12 @@ impl Side {
 }
 
 /// `GET /mimic.svg`.
-pub(super) async fn picture(State(desk): State<Desk>) -> impl IntoResponse {
-    let svg = drawing(&desk.shared.mimic).into_string();
+pub(super) async fn picture(State(app): State<AppState>) -> impl IntoResponse {
+    let svg = drawing(&app.shared.mimic).into_string();
     ([(CONTENT_TYPE, "image/svg+xml")], svg)
 }
 
-/// Both views; empty for a machine without bodies.
+/// Draws both views; returns an empty drawing for a machine without bodies.
 pub(super) fn drawing(mimic: &Mimic) -> Markup {
     let all = |side: Side| {
         extent(
@@ -88,7 +88,7 @@ pub(super) fn drawing(mimic: &Mimic) -> Markup {
     let width = front.high[0] - front.low[0] + 2.0 * BORDER_MM;
     let height = |it: Extent| it.high[1] - it.low[1] + 2.0 * BORDER_MM;
     let top = -front.high[1] - BORDER_MM;
-    // Below the front view begins the one from above.
+    // Offset of the view from above, below the front view.
     let down = top + height(front) + above.high[1] + BORDER_MM;
     let whole = height(front) + height(above);
     html! {
@@ -140,7 +140,7 @@ fn points(polygon: &[[f64; 2]]) -> String {
     points.join(" ")
 }
 
-/// Hundredths of a millimetre are finer than any screen.
+/// Rounds to 0.01 mm, which is finer than a pixel.
 fn mm(value: f64) -> f64 {
     // Adding zero turns a negative zero into a positive one.
     (value * 100.0).round() / 100.0 + 0.0

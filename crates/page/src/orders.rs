@@ -1,14 +1,14 @@
-//! Orders: what a screen wants done.
+//! `POST /api/orders`: hands orders to the cycle.
 //!
-//! An order goes to the cycle, which answers it in its next turn: taken, or not now and why, in English and
-//! Chinese. A client can tell "not now" (409) from "no such thing" (400). Nothing is stored here: an order
-//! that the controller does not take at once is refused, never kept for later. What a person may not order goes
-//! to the controller too, marked as denied, because the audit has one writer. Strangers leave nothing there.
+//! The cycle answers in its next turn: it takes the order, or refuses it with the reason in English and Chinese (409). An
+//! unknown order gets 400. Nothing is stored here: when the queue is full the order is refused. An order that the role of
+//! the person forbids also goes to the cycle, marked as denied, because the audit has one writer. Orders without a login
+//! leave no trace.
 
 use super::access::{Person, Role};
-use super::error::HmiError;
-use super::router::Desk;
-use super::{gate, origin};
+use super::error::ApiError;
+use super::router::AppState;
+use super::{origin, sessions};
 use axum::Json;
 use axum::extract::rejection::{ExtensionRejection, JsonRejection};
 use axum::extract::{ConnectInfo, State};
@@ -19,24 +19,28 @@ use std::net::SocketAddr;
 use texts::Message;
 use tokio::sync::oneshot;
 
-/// Orders that wait for the next turn; more at once than fingers on a panel.
+/// Capacity of the queue of orders between two turns of the cycle.
 pub const WAITING: usize = 16;
 
-/// Body of the answer.
+/// Body of the answer to an accepted order.
 #[derive(Debug, Serialize)]
-pub(super) struct Taken {
+pub(super) struct Accepted {
     order: &'static str,
 }
 
 /// `POST /api/orders`.
 pub(super) async fn order(
-    State(desk): State<Desk>,
+    State(app): State<AppState>,
     from: Result<ConnectInfo<SocketAddr>, ExtensionRejection>,
     headers: HeaderMap,
     body: Result<Json<Order>, JsonRejection>,
-) -> Result<Json<Taken>, HmiError> {
-    origin::ours(&headers)?;
-    let person = desk.shared.gate.at_least(Role::Operator, &headers).await?;
+) -> Result<Json<Accepted>, ApiError> {
+    origin::check(&headers)?;
+    let person = app
+        .shared
+        .sessions
+        .at_least(Role::Operator, &headers)
+        .await?;
     let Json(order) = body?;
     let by = By {
         who: person.name.clone(),
@@ -46,21 +50,21 @@ pub(super) async fn order(
     let word = match allowed(&person, &order) {
         Ok(word) => word,
         Err(refused) => {
-            note(&desk, order, by, refused.to_string());
+            note(&app, order, by, refused.to_string());
             return Err(refused);
         }
     };
-    match give(&desk, order, by).await {
-        None => Err(HmiError::NotNow {
+    match send(&app, order, by).await {
+        None => Err(ApiError::NotNow {
             order: word,
             why: Message::new("refusal", "controller_ended"),
         }),
-        Some(Err(why)) => Err(HmiError::NotNow { order: word, why }),
-        Some(Ok(())) => Ok(Json(Taken { order: word })),
+        Some(Err(why)) => Err(ApiError::NotNow { order: word, why }),
+        Some(Ok(())) => Ok(Json(Accepted { order: word })),
     }
 }
 
-/// Whoever moves single actuators, hides alarms or releases what was held must know the machine.
+/// Returns the weakest role that may give `order`; a maintainer for what takes knowledge of the machine.
 fn needs(order: &Order) -> Role {
     match order.order.as_str() {
         "mode" | "jog" | "step" | "shelve" | "release_lot" | "replaced" => Role::Maintainer,
@@ -68,27 +72,28 @@ fn needs(order: &Order) -> Role {
     }
 }
 
-/// The word of an order that is known and that the person may give.
-fn allowed(person: &Person, order: &Order) -> Result<&'static str, HmiError> {
-    gate::trusted(person, needs(order))?;
+/// Returns the name of the order. Fails when it is unknown or the role of the person is too weak.
+fn allowed(person: &Person, order: &Order) -> Result<&'static str, ApiError> {
+    sessions::require_role(person, needs(order))?;
     let known = || ORDERS.into_iter().chain(LOT_ORDERS);
     known()
         .find(|known| *known == order.order)
-        .ok_or_else(|| HmiError::UnknownOrder {
+        .ok_or_else(|| ApiError::UnknownOrder {
             found: order.order.chars().take(40).collect(),
             known: known().collect::<Vec<_>>().join(", "),
         })
 }
 
-async fn give(desk: &Desk, order: Order, by: By) -> Option<Answer> {
+/// Sends the order and returns the answer of the cycle; `None` when the controller has ended or its queue is full.
+async fn send(app: &AppState, order: Order, by: By) -> Option<Answer> {
     let (answer, answered) = oneshot::channel();
     let request = OrderRequest::new(order, by, move |it| drop(answer.send(it)));
-    desk.shared.orders.try_send(request).ok()?;
+    app.shared.orders.try_send(request).ok()?;
     answered.await.ok()
 }
 
-/// For the audit; a controller that has ended or is too busy to listen writes none.
-fn note(desk: &Desk, order: Order, by: By, why: String) {
+/// Sends a denied order to the audit; it is lost when the controller has ended or its queue is full.
+fn note(app: &AppState, order: Order, by: By, why: String) {
     let request = OrderRequest::denied(order, by, why);
-    let _ = desk.shared.orders.try_send(request);
+    let _ = app.shared.orders.try_send(request);
 }

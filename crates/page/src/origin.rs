@@ -1,21 +1,21 @@
-//! Where an order comes from.
+//! Refuses orders that a page of another site makes a browser send.
 //!
-//! A browser sends `Origin` with every POST and a script cannot forge it. An order is taken when
-//! - `Sec-Fetch-Site`, if there is one, says `same-origin` or `none`, and
-//! - `Origin`, if there is one, is `http://` or `https://` plus exactly the `Host` of this request, and
-//! - with an `Origin`, that host is an address, `localhost`, a name without a dot, or one under
-//!   `.local` or `.internal`: a public name that was made to point here could otherwise pass as ours.
+//! A browser sends `Origin` with every POST, and the script of a page cannot forge it. An order passes when
+//! - `Sec-Fetch-Site`, if present, is `same-origin` or `none`, and
+//! - `Origin`, if present, is `http://` or `https://` and exactly the `Host` of the request, and
+//! - with an `Origin`, that host is an IP address, a name without a dot, or a name under `.local` or `.internal`. This
+//!   defeats DNS rebinding, by which a public name resolves to this rig.
 //!
-//! Without either header there is no browser, hence nobody to be misled by a foreign page.
+//! A request with neither header comes from a program that is no browser, and passes.
 
-use super::error::HmiError;
+use super::error::ApiError;
 use axum::http::{HeaderMap, HeaderName, header, uri::Authority};
 use std::net::IpAddr;
 
 const SEC_FETCH_SITE: HeaderName = HeaderName::from_static("sec-fetch-site");
 
-/// Refuses an order that a page from elsewhere sends.
-pub(super) fn ours(headers: &HeaderMap) -> Result<(), HmiError> {
+/// Fails when a page of another site sent the request.
+pub(super) fn check(headers: &HeaderMap) -> Result<(), ApiError> {
     if let Some(site) = headers.get(SEC_FETCH_SITE)
         && site != "same-origin"
         && site != "none"
@@ -56,10 +56,10 @@ fn is_near(host: &str) -> bool {
         || name.ends_with(".internal")
 }
 
-fn refusal(header: &str, value: &[u8]) -> HmiError {
+fn refusal(header: &str, value: &[u8]) -> ApiError {
     let value: String = String::from_utf8_lossy(value).chars().take(80).collect();
     let found = format!("{header}: {value}");
-    HmiError::CrossSite { found }
+    ApiError::CrossSite { found }
 }
 
 #[cfg(test)]
@@ -72,11 +72,11 @@ mod tests {
         for (name, value) in pairs {
             headers.append(*name, value.parse().unwrap());
         }
-        ours(&headers).is_ok()
+        check(&headers).is_ok()
     }
 
     #[test]
-    fn the_own_page_and_a_script_may_order() {
+    fn orders_of_the_own_page_and_of_scripts_pass() {
         assert!(judged(&[("host", "127.0.0.1:8080")]));
         for host in [
             "127.0.0.1:8080",
@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn a_page_from_elsewhere_may_not() {
+    fn orders_of_other_sites_are_refused() {
         let host = ("host", "127.0.0.1:8080");
         for origin in [
             "http://evil.example",
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn a_public_name_that_points_here_is_not_ours() {
+    fn a_public_name_of_this_host_is_refused() {
         let name = "rig.evil.example:8080";
         assert!(!judged(&[
             ("host", name),

@@ -1,71 +1,79 @@
-//! The page: one answer that holds everything, so that it shows even when nothing else is reachable.
+//! The page. The first answer holds everything that the operator's page needs; the script of any other page follows when
+//! a browser first opens that page. Nothing comes from another host.
 //!
-//! Texts, looks and scripts are put together once from the files in `page/`, words from the catalogue. The policy sent along lets
-//! the browser run just that script, by its hash, and talk to this rig only.
+//! Every answer is put together and compressed once, from the files in `page/` and the catalogue of texts. The policy lets a
+//! browser run the inline script, by its hash, and scripts of this rig, which all have the media type of a script.
 
+mod fetched;
 mod kinds;
-mod policy;
+mod packed;
 
-use axum::http::header::{CONTENT_SECURITY_POLICY, CONTENT_TYPE};
+use super::error::ApiError;
+use axum::extract::Path;
+use axum::http::HeaderMap;
+use axum::http::header::{CACHE_CONTROL, CONTENT_SECURITY_POLICY};
 use axum::response::IntoResponse;
+use data_encoding::BASE64;
+use packed::Packed;
+use sha2::{Digest, Sha256};
 use std::sync::LazyLock;
 
 const FRAME: &str = include_str!("page/page.html");
-const PAGES: &str = concat!(
-    include_str!("page/pages/alarms.html"),
-    include_str!("page/pages/calibration.html"),
-    include_str!("page/pages/history.html"),
-    include_str!("page/pages/lots.html"),
-    include_str!("page/pages/quality.html"),
-    include_str!("page/pages/recipes.html"),
-    include_str!("page/pages/rejudge.html"),
-    include_str!("page/pages/service.html"),
-);
 const LOOK: &str = concat!(
     include_str!("page/look.css"),
     include_str!("page/pages.css")
 );
-/// One script in the order of use: what is shared, a file per page, and the start of everything.
+/// What every page shares, the operator's page, and the start of everything, in this order.
 const SCRIPT: &str = concat!(
     include_str!("page/script/shared.js"),
-    include_str!("page/script/said.js"),
+    include_str!("page/script/texts.js"),
+    include_str!("page/script/pages.js"),
     include_str!("page/script/link.js"),
     include_str!("page/script/orders.js"),
     include_str!("page/script/people.js"),
     include_str!("page/script/mimic.js"),
     include_str!("page/script/operator.js"),
-    include_str!("page/script/alarms.js"),
-    include_str!("page/script/history.js"),
-    include_str!("page/script/lots.js"),
-    include_str!("page/script/calibration.js"),
-    include_str!("page/script/quality.js"),
-    include_str!("page/script/cycles.js"),
-    include_str!("page/script/recipe_sheet.js"),
-    include_str!("page/script/recipes.js"),
-    include_str!("page/script/rejudge.js"),
-    include_str!("page/script/service.js"),
-    include_str!("page/script/trace.js"),
+    include_str!("page/script/alarm_bar.js"),
+    include_str!("page/script/activity.js"),
+    include_str!("page/script/parts.js"),
     include_str!("page/script/start.js"),
 );
 
-static WORDS: LazyLock<String> = LazyLock::new(kinds::words);
-static PAGE: LazyLock<String> = LazyLock::new(|| {
-    FRAME
-        .replace("<!--pages-->", PAGES)
+static PAGE: LazyLock<Packed> = LazyLock::new(|| {
+    let page = FRAME
         .replace("/*look*/", LOOK)
-        .replace("/*words*/", &WORDS)
+        .replace("/*words*/", &kinds::words())
         .replace("/*kinds*/", &kinds::json())
-        .replace("/*script*/", SCRIPT)
+        .replace("/*scripts*/", &fetched::json())
+        .replace("/*script*/", SCRIPT);
+    Packed::new("text/html; charset=utf-8", page)
 });
-static POLICY: LazyLock<String> = LazyLock::new(|| policy::of(LOOK, SCRIPT));
+static POLICY: LazyLock<String> = LazyLock::new(|| {
+    let hash = |text: &str| BASE64.encode(&Sha256::digest(text));
+    let (look, script) = (hash(LOOK), hash(SCRIPT));
+    format!(
+        "default-src 'none'; style-src 'sha256-{look}'; script-src 'self' 'sha256-{script}'; connect-src 'self'; \
+         img-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    )
+});
 
 /// `GET /`.
-pub(super) async fn page() -> impl IntoResponse {
-    let headers = [
-        (CONTENT_TYPE, "text/html; charset=utf-8"),
-        (CONTENT_SECURITY_POLICY, POLICY.as_str()),
-    ];
-    (headers, PAGE.as_str())
+pub(super) async fn page(headers: HeaderMap) -> impl IntoResponse {
+    let policy = [(CONTENT_SECURITY_POLICY, POLICY.as_str())];
+    (policy, PAGE.answer(&headers))
+}
+
+/// `GET /page/{file}`: fails when no page has this version of a script.
+pub(super) async fn script(
+    Path(file): Path<String>,
+    headers: HeaderMap,
+) -> Result<impl IntoResponse, ApiError> {
+    let path = format!("/page/{file}");
+    let Some(script) = fetched::SCRIPTS.get(&path) else {
+        return Err(ApiError::NoSuchRoute { path });
+    };
+    let kept = [(CACHE_CONTROL, "public, max-age=31536000, immutable")];
+    Ok((kept, script.answer(&headers)))
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! `/api/recipes/...`: what the recipes say, and their next revisions.
+//! `/api/recipes/...`: recipes, their revisions and new revisions.
 //!
 //! | route | members | answer |
 //! |---|---|---|
@@ -7,14 +7,14 @@
 //! | `GET /api/recipes/card` | `name`, `lang` | operation process card for A4 |
 //! | `POST /api/recipes/revise` | `name`, `from`, `values` | the new revision |
 //!
-//! Everybody reads; an engineer revises, and whatever a known person tried is in the audit of orders with the answer. The
-//! history is opened first: where nothing can be noted nothing is changed.
+//! Reading needs no login; a revision needs an engineer. The audit of orders gets every try of a logged-in person with its
+//! outcome. The history is opened before the change, so that a revision without an audit is impossible to begin.
 
 use super::access::{Person, Role};
-use super::error::HmiError;
+use super::error::ApiError;
 use super::history::paper::{Page, on_paper};
-use super::router::Desk;
-use super::{gate, origin};
+use super::router::AppState;
+use super::{origin, sessions};
 use axum::Json;
 use axum::extract::rejection::{ExtensionRejection, JsonRejection, QueryRejection};
 use axum::extract::{ConnectInfo, Query, State};
@@ -32,28 +32,28 @@ use tokio::task::spawn_blocking;
 
 /// A recipe in the list.
 #[derive(Debug, Serialize)]
-pub(super) struct Listed {
+pub(super) struct ListedRecipe {
     name: String,
     title_en: String,
     title_zh: String,
     number: Option<u32>,
     hash: Option<String>,
     saved_at_us: Option<i64>,
-    /// Why it does not load.
+    /// Error that keeps it from loading; absent for a good recipe.
     trouble: Option<String>,
 }
 
 /// `GET /api/recipes`.
-pub(super) async fn list(State(desk): State<Desk>) -> Result<Json<Vec<Listed>>, HmiError> {
-    let dir = desk.shared.config.clone();
-    beside(move || {
+pub(super) async fn list(State(app): State<AppState>) -> Result<Json<Vec<ListedRecipe>>, ApiError> {
+    let dir = app.shared.config.clone();
+    blocking(move || {
         let names = config::recipe_names(&dir).into_iter();
         Ok(Json(names.map(|name| listed(&dir, name)).collect()))
     })
     .await
 }
 
-fn listed(dir: &Path, name: String) -> Listed {
+fn listed(dir: &Path, name: String) -> ListedRecipe {
     let found = config::revision(dir, &name, None);
     let title = |path: &str| {
         let fields = found
@@ -63,7 +63,7 @@ fn listed(dir: &Path, name: String) -> Listed {
         let title = fields.iter().find(|it| it.path == path)?.value.as_str();
         Some(title?.to_owned())
     };
-    Listed {
+    ListedRecipe {
         title_en: title("title_en").unwrap_or_default(),
         title_zh: title("title_zh").unwrap_or_default(),
         number: found.as_ref().ok().map(|it| it.number),
@@ -74,39 +74,39 @@ fn listed(dir: &Path, name: String) -> Listed {
     }
 }
 
-/// Which revision.
+/// Members of `show`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Which {
+pub(super) struct RevisionQuery {
     name: String,
     revision: Option<u32>,
 }
 
 /// `GET /api/recipes/show`.
 pub(super) async fn show(
-    State(desk): State<Desk>,
-    which: Result<Query<Which>, QueryRejection>,
-) -> Result<Json<Revision>, HmiError> {
-    let Query(Which { name, revision }) = which?;
-    let dir = desk.shared.config.clone();
-    beside(move || Ok(Json(config::revision(&dir, &name, revision)?))).await
+    State(app): State<AppState>,
+    which: Result<Query<RevisionQuery>, QueryRejection>,
+) -> Result<Json<Revision>, ApiError> {
+    let Query(RevisionQuery { name, revision }) = which?;
+    let dir = app.shared.config.clone();
+    blocking(move || Ok(Json(config::revision(&dir, &name, revision)?))).await
 }
 
-/// Which card.
+/// Members of `card`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Printed {
+pub(super) struct CardQuery {
     name: String,
     lang: Option<Lang>,
 }
 
 /// `GET /api/recipes/card`.
 pub(super) async fn card(
-    State(desk): State<Desk>,
-    printed: Result<Query<Printed>, QueryRejection>,
-) -> Result<Page, HmiError> {
-    let Query(Printed { name, lang }) = printed?;
-    let dir = desk.shared.config.clone();
+    State(app): State<AppState>,
+    printed: Result<Query<CardQuery>, QueryRejection>,
+) -> Result<Page, ApiError> {
+    let Query(CardQuery { name, lang }) = printed?;
+    let dir = app.shared.config.clone();
     let made = move || {
         let recipe = config::load_recipe(&dir, &name)?;
         let paper = paper(lang.unwrap_or(Lang::Zh));
@@ -118,22 +118,26 @@ pub(super) async fn card(
             &paper.made,
         )))
     };
-    beside(made).await
+    blocking(made).await
 }
 
 /// `POST /api/recipes/revise`.
 pub(super) async fn revise(
-    State(desk): State<Desk>,
+    State(app): State<AppState>,
     from: Result<ConnectInfo<SocketAddr>, ExtensionRejection>,
     headers: HeaderMap,
     body: Result<Json<Change>, JsonRejection>,
-) -> Result<Json<Revision>, HmiError> {
-    origin::ours(&headers)?;
-    let person = desk.shared.gate.at_least(Role::Operator, &headers).await?;
+) -> Result<Json<Revision>, ApiError> {
+    origin::check(&headers)?;
+    let person = app
+        .shared
+        .sessions
+        .at_least(Role::Operator, &headers)
+        .await?;
     let Json(change) = body?;
     let origin = from.map_or_else(|_| String::new(), |from| from.0.ip().to_string());
-    let (dir, db) = (desk.shared.config.clone(), desk.shared.db.clone());
-    beside(move || {
+    let (dir, db) = (app.shared.config.clone(), app.shared.db.clone());
+    blocking(move || {
         let mut audit = Store::open(&db, &Identity::of_this_program())?;
         let done = revised(&dir, &person, &change);
         let noted = audit.record(&[Row::Order(OrderRecord {
@@ -146,17 +150,17 @@ pub(super) async fn revise(
             refused: done.as_ref().err().map(ToString::to_string),
         })]);
         match (done, noted) {
-            (Ok(_), Err(source)) => Err(HmiError::Unnoted { source }),
+            (Ok(_), Err(source)) => Err(ApiError::NotAudited { source }),
             (done, _) => done.map(Json),
         }
     })
     .await
 }
 
-fn revised(dir: &Path, person: &Person, change: &Change) -> Result<Revision, HmiError> {
-    gate::trusted(person, Role::Engineer)?;
+fn revised(dir: &Path, person: &Person, change: &Change) -> Result<Revision, ApiError> {
+    sessions::require_role(person, Role::Engineer)?;
     let plant = Plant::load(dir)?;
-    config::revise(&plant, change).map_err(|refused| HmiError::Revision { refused })
+    config::revise(&plant, change).map_err(|refused| ApiError::Revision { refused })
 }
 
 fn noted_as(change: &Change, saved: Option<&Revision>) -> serde_json::Value {
@@ -164,11 +168,11 @@ fn noted_as(change: &Change, saved: Option<&Revision>) -> serde_json::Value {
     json!({"order": "revise", "recipe": change.name, "revision": number, "from": change.from, "values": change.values})
 }
 
-/// What `work` makes of files, beside the async threads.
-async fn beside<T: Send + 'static>(
-    work: impl FnOnce() -> Result<T, HmiError> + Send + 'static,
-) -> Result<T, HmiError> {
+/// Runs `work` on a blocking thread.
+async fn blocking<T: Send + 'static>(
+    work: impl FnOnce() -> Result<T, ApiError> + Send + 'static,
+) -> Result<T, ApiError> {
     spawn_blocking(work)
         .await
-        .map_err(|_| HmiError::ReaderLost)?
+        .map_err(|_| ApiError::ReaderLost)?
 }

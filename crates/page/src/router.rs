@@ -1,6 +1,6 @@
-//! From the list of routes to a service, and what holds for all of them.
+//! The router, its shared state and the headers of every answer.
 
-use super::error::HmiError;
+use super::error::ApiError;
 use super::history::Readers;
 use super::{Shared, api};
 use axum::Json;
@@ -16,54 +16,54 @@ use tokio::sync::watch;
 /// Largest body of a request, bytes.
 pub(super) const BODY_LIMIT: usize = 16 * 1024;
 
-/// What every route may use.
+/// State that every route may use.
 #[derive(Debug, Clone)]
-pub(super) struct Desk {
+pub(super) struct AppState {
     pub shared: Shared,
-    /// True once the program ends.
+    /// True when the program ends.
     pub ended: watch::Receiver<bool>,
-    /// Streams of events now open.
-    pub screens: Arc<AtomicUsize>,
+    /// Number of open event streams.
+    pub streams: Arc<AtomicUsize>,
     pub readers: Readers,
 }
 
-/// All routes over `shared`.
+/// Returns the router of all routes.
 pub(super) fn router(shared: Shared, ended: watch::Receiver<bool>) -> Router {
-    let desk = Desk {
+    let app = AppState {
         readers: Readers::new(shared.db.clone()),
         shared,
         ended,
-        screens: Arc::default(),
+        streams: Arc::default(),
     };
-    let offers = api::offers().into_iter();
-    offers
-        .fold(Router::new(), |router, offer| {
-            router.route(offer.path, offer.handler)
+    let routes = api::routes().into_iter();
+    routes
+        .fold(Router::new(), |router, route| {
+            router.route(route.path, route.handler)
         })
-        .fallback(nothing_there)
+        .fallback(no_such_route)
         .method_not_allowed_fallback(wrong_method)
         .layer(DefaultBodyLimit::max(BODY_LIMIT))
-        .layer(from_fn(plain_headers))
-        .with_state(desk)
+        .layer(from_fn(default_headers))
+        .with_state(app)
 }
 
 /// `GET /api/view`.
-pub(super) async fn view(State(desk): State<Desk>) -> Json<machine::view::View> {
-    Json(desk.shared.view.borrow().clone())
+pub(super) async fn view(State(app): State<AppState>) -> Json<machine::view::View> {
+    Json(app.shared.view.borrow().clone())
 }
 
-async fn nothing_there(uri: Uri) -> HmiError {
+async fn no_such_route(uri: Uri) -> ApiError {
     let path = uri.path().to_owned();
-    HmiError::NoSuchRoute { path }
+    ApiError::NoSuchRoute { path }
 }
 
-async fn wrong_method(method: Method, uri: Uri) -> HmiError {
+async fn wrong_method(method: Method, uri: Uri) -> ApiError {
     let path = uri.path().to_owned();
-    HmiError::WrongMethod { path, method }
+    ApiError::WrongMethod { path, method }
 }
 
-/// Nothing is kept by browsers or proxies, guessed at, or shown inside another page.
-async fn plain_headers(request: Request, next: Next) -> Response {
+/// Forbids browsers and proxies to keep an answer that does not allow it itself, to guess its type, and to frame it.
+async fn default_headers(request: Request, next: Next) -> Response {
     const ALWAYS: [(HeaderName, &str); 4] = [
         (header::CACHE_CONTROL, "no-store"),
         (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
@@ -73,7 +73,7 @@ async fn plain_headers(request: Request, next: Next) -> Response {
     let mut response = next.run(request).await;
     for (name, value) in ALWAYS {
         let value = HeaderValue::from_static(value);
-        response.headers_mut().insert(name, value);
+        response.headers_mut().entry(name).or_insert(value);
     }
     response
 }

@@ -1,4 +1,4 @@
-//! Every route as a client sees it, without a browser.
+//! Tests of every route as a client without a browser sees it.
 
 #![allow(clippy::unwrap_used)]
 
@@ -16,7 +16,7 @@ mod routes;
 mod shutdown;
 
 use super::access::{Register, Role};
-use super::{Gate, Shared, Traffic, WAITING, router};
+use super::{Sessions, Shared, Traffic, WAITING, router};
 use axum::Router;
 use axum::body::{Body, to_bytes};
 use axum::http::{Request, StatusCode};
@@ -28,28 +28,28 @@ use tokio::sync::{mpsc, watch};
 use tokio::task::JoinHandle;
 use tower::ServiceExt;
 
-/// Of everybody at the bench.
+/// Password of all people of the tests.
 const PASSWORD: &str = "open sesame";
 
-/// A screen with both ends of its channels.
+/// Orders that reached the audit as denied, one line each.
 type Denied = Arc<Mutex<Vec<String>>>;
 
-struct Bench {
+/// A server with the other ends of its channels.
+struct Fixture {
     view: watch::Sender<View>,
     ended: watch::Sender<bool>,
     stop: Arc<AtomicBool>,
-    /// Orders that came for the audit alone.
     denied: Denied,
     controller: JoinHandle<()>,
     orders: mpsc::Sender<OrderRequest>,
     router: Router,
     db: PathBuf,
-    gate: Gate,
-    /// Session of an operator.
+    sessions: Sessions,
+    /// Token of an operator's session.
     token: String,
 }
 
-impl Bench {
+impl Fixture {
     fn new() -> Self {
         static NEXT: AtomicU32 = AtomicU32::new(0);
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
@@ -73,9 +73,9 @@ impl Bench {
         }
         let now_us = jiff::Timestamp::now().as_microsecond();
         let (_, token) = register.log_in("li", PASSWORD, now_us).unwrap().unwrap();
-        let (gate, _) = Gate::open(&people).unwrap();
+        let (sessions, _) = Sessions::open(&people).unwrap();
         let shared = Shared {
-            gate: gate.clone(),
+            sessions: sessions.clone(),
             mimic: Arc::new(some_mimic()),
             view: looking,
             traffic: some_traffic(),
@@ -93,7 +93,7 @@ impl Bench {
             orders,
             router,
             db,
-            gate,
+            sessions,
             token,
         }
     }
@@ -124,7 +124,7 @@ impl Bench {
         format!("Bearer {}", self.token)
     }
 
-    /// Nobody makes views any more.
+    /// Ends the controller: views stop.
     async fn end_of_the_controller(&mut self) {
         self.view = watch::channel(View::default()).0;
         self.controller.abort();
@@ -136,7 +136,7 @@ impl Bench {
     }
 }
 
-/// Takes `stop` and the orders of maintenance, and nothing else.
+/// Accepts `stop` and the orders of a maintainer, refuses all others.
 async fn controller(
     mut asked: mpsc::Receiver<OrderRequest>,
     stop: Arc<AtomicBool>,
@@ -163,7 +163,7 @@ async fn controller(
     }
 }
 
-impl Drop for Bench {
+impl Drop for Fixture {
     fn drop(&mut self) {
         if let Some(folder) = self.db.parent() {
             let _ = std::fs::remove_dir_all(folder);
@@ -186,7 +186,7 @@ impl Answer {
         std::str::from_utf8(&self.body).unwrap()
     }
 
-    /// The reason of a refusal with this status.
+    /// Returns the reason of a refusal; panics on another status.
     fn refused(&self, status: u16) -> String {
         assert_eq!(self.status.as_u16(), status, "{}", self.text());
         let json = self.json();
@@ -195,7 +195,7 @@ impl Answer {
     }
 }
 
-/// A copy of the configuration beside the history.
+/// Copies the configuration beside the history.
 fn some_config(db: &Path) -> PathBuf {
     let original = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
     let copy = db.with_file_name("config");

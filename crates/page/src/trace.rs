@@ -1,10 +1,10 @@
 //! `GET /api/trace`: the last traffic of every line with its meaning.
 //!
-//! `last` is how many messages of each line, 1 to [`MOST`]; 100 without it. Before a run has opened its lines the array is
-//! empty.
+//! `last` is the number of messages of each line, 1 to [`MOST`]; 100 when absent. The array is empty until a run has opened
+//! its lines.
 
-use super::error::HmiError;
-use super::router::Desk;
+use super::error::ApiError;
+use super::router::AppState;
 use axum::Json;
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Query, State};
@@ -13,20 +13,20 @@ use serde::Deserialize;
 use std::fmt;
 use std::sync::Arc;
 
-/// What the lines themselves remember.
+/// Greatest `last`: messages that each line keeps.
 const MOST: usize = 1000;
 
-/// Gives the last so many messages of every line.
-type Look = dyn Fn(usize) -> Vec<LineTraffic> + Send + Sync;
+/// Returns the last messages of every line; the argument is their greatest number per line.
+type ReadTraffic = dyn Fn(usize) -> Vec<LineTraffic> + Send + Sync;
 
-/// Where traffic is read from; copies read the same.
+/// Access to the traffic of the lines; clones read the same lines.
 #[derive(Clone)]
-pub struct Traffic(Arc<Look>);
+pub struct Traffic(Arc<ReadTraffic>);
 
 impl Traffic {
-    /// From whoever holds the lines; `look` is called with the number of messages wanted.
-    pub fn new(look: impl Fn(usize) -> Vec<LineTraffic> + Send + Sync + 'static) -> Self {
-        Self(Arc::new(look))
+    /// Wraps `read`, which returns at most the given number of messages of each line.
+    pub fn new(read: impl Fn(usize) -> Vec<LineTraffic> + Send + Sync + 'static) -> Self {
+        Self(Arc::new(read))
     }
 }
 
@@ -36,22 +36,22 @@ impl fmt::Debug for Traffic {
     }
 }
 
-/// Of the query string.
+/// Members of the query string.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Asked {
+pub(super) struct TraceQuery {
     last: Option<usize>,
 }
 
 pub(super) async fn trace(
-    State(desk): State<Desk>,
-    asked: Result<Query<Asked>, QueryRejection>,
-) -> Result<Json<Vec<LineTraffic>>, HmiError> {
-    let Query(Asked { last }) = asked?;
+    State(app): State<AppState>,
+    asked: Result<Query<TraceQuery>, QueryRejection>,
+) -> Result<Json<Vec<LineTraffic>>, ApiError> {
+    let Query(TraceQuery { last }) = asked?;
     let last = last.unwrap_or(100);
     if !(1..=MOST).contains(&last) {
         let reason = format!("last: found {last}, expected 1 to {MOST}");
-        return Err(HmiError::Query { reason });
+        return Err(ApiError::Query { reason });
     }
-    Ok(Json((desk.shared.traffic.0)(last)))
+    Ok(Json((app.shared.traffic.0)(last)))
 }

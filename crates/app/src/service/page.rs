@@ -45,15 +45,15 @@ impl Page {
             .set_nonblocking(true)
             .context("the page's socket")?;
         let address = listener.local_addr().context("the page's socket")?;
-        let people = access::beside(&files.db);
-        let (gate, first) = ::page::Gate::open(&people)?;
+        let people = access::access_path(&files.db);
+        let (sessions, first) = ::page::Sessions::open(&people)?;
         let first_login = first.map(|(name, password)| FirstLogin {
             name,
             password,
             people,
         });
         let shared = ::page::Shared {
-            gate,
+            sessions,
             mimic: Arc::new(mimic),
             view: controls.view.subscribe(),
             traffic: ::page::Traffic::new(controls.traffic()),

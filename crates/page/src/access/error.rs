@@ -1,76 +1,76 @@
-//! Why a person could not be looked up, added or changed.
+//! Errors of the file of people.
 
 use std::path::PathBuf;
 
-/// Each variant says what was being done; the cause stays in `source()`.
+/// Failure to look up, add, change or remove a person; `source()` gives the cause.
 #[derive(Debug, thiserror::Error)]
 pub enum AccessError {
-    /// The file is that of another program, or of a later version of this one.
+    /// The file belongs to another program or to a later version of this one.
     #[error(
         "{path} is not a list of people that this program knows ({found}); it was left untouched"
     )]
     Foreign {
-        /// The file found.
+        /// The file.
         path: PathBuf,
-        /// What it is instead.
+        /// Application id and schema number in its header.
         found: String,
     },
-    /// Any answer of the database but the wanted one.
+    /// SQLite failed.
     #[error("{doing}")]
     Database {
-        /// What was being done.
+        /// The step that failed.
         doing: &'static str,
-        /// The cause.
+        /// Error of SQLite.
         source: rusqlite::Error,
     },
-    /// A name that is taken.
+    /// A person with this name exists.
     #[error("there is a user {name:?} already")]
     Taken {
-        /// The name.
+        /// The name as given.
         name: String,
     },
-    /// A name nobody has.
+    /// No person has this name.
     #[error("there is no user {name:?}")]
     Unknown {
-        /// The name.
+        /// The name as given.
         name: String,
     },
-    /// A name that a screen could not show or a person not type.
+    /// The name has a wrong length or characters other than letters, digits, `.`, `-`, `_`.
     #[error("user name {found:?}: expected 1 to 40 letters, digits, `.`, `-` or `_`")]
     Name {
-        /// The name.
+        /// The name as given.
         found: String,
     },
-    /// Too short to withstand guessing, or too long to be hashed in good time.
+    /// The password is shorter or longer than allowed.
     #[error("a password has {found} characters: expected {least} to {most}")]
     Password {
-        /// Characters found.
+        /// Its length, characters.
         found: usize,
-        /// Fewest.
+        /// Least length, characters.
         least: usize,
-        /// Most.
+        /// Greatest length, characters.
         most: usize,
     },
-    /// The last engineer can neither leave nor become something else: nobody could add another.
+    /// The person is the only engineer; without an engineer nobody could change recipes.
     #[error("{name:?} is the only engineer; make another one first")]
     LastEngineer {
-        /// The name.
+        /// The name as given.
         name: String,
     },
-    /// A hash that does not read, or a random source that gives nothing.
+    /// A stored hash is malformed, hashing failed, or the random source of the system failed.
     #[error("{doing}: {reason}")]
     Crypto {
-        /// What was being done.
+        /// The step that failed.
         doing: &'static str,
-        /// Its own words.
+        /// Message of the library.
         reason: String,
     },
 }
 
-/// Shorthand of this module.
+/// Result of this module.
 pub(super) type Result<T> = std::result::Result<T, AccessError>;
 
-/// Gives a database answer the sentence of what was being done.
+/// Adds the step that failed to an error of SQLite.
 pub(super) trait Doing<T> {
     fn doing(self, doing: &'static str) -> Result<T>;
 }

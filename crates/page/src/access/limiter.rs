@@ -1,17 +1,16 @@
-//! How often a wrong password may be tried.
+//! Limits the tries of wrong passwords.
 //!
-//! Five per name and thirty in all within five minutes; then the next try waits until the oldest of
-//! them is five minutes old. A right password clears its name. What is remembered is bounded: thirty
-//! failures, whatever names were tried.
+//! Allows five failures per name and thirty in all within five minutes. The next try must wait until the oldest of them is
+//! five minutes old. A right password clears the failures of its name. Memory is bounded by thirty failures.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-/// How long a failure counts.
+/// Time for which a failure counts.
 const WINDOW: Duration = Duration::from_secs(300);
-/// Failures of one name.
+/// Most failures of one name within [`WINDOW`].
 const PER_NAME: usize = 5;
-/// Failures of all names: more than a shift's typing errors, far fewer than a guesser needs.
+/// Most failures of all names within [`WINDOW`]: above the typing errors of a shift, far below what guessing needs.
 const IN_ALL: usize = 30;
 
 /// The failures that still count, oldest first.
@@ -21,7 +20,7 @@ pub(crate) struct Limiter {
 }
 
 impl Limiter {
-    /// How long `name` has to wait before its next try; `None` when it may try now.
+    /// Returns the time until the next try of `name`; `None` when it may try now.
     pub fn wait(&mut self, name: &str, now: Instant) -> Option<Duration> {
         self.forget(now);
         let mut own = self.failures.iter().rev().filter(|(_, it)| it == name);
@@ -31,13 +30,13 @@ impl Limiter {
         Some(WINDOW.saturating_sub(now.duration_since(oldest.0)))
     }
 
-    /// Counts a wrong password.
+    /// Counts a wrong password of `name`.
     pub fn failed(&mut self, name: &str, now: Instant) {
         self.forget(now);
         self.failures.push_back((now, name.to_owned()));
     }
 
-    /// Forgets the wrong ones of `name`.
+    /// Forgets the failures of `name`.
     pub fn succeeded(&mut self, name: &str) {
         self.failures.retain(|(_, it)| it != name);
     }
@@ -58,7 +57,7 @@ mod tests {
     const SECOND: Duration = Duration::from_secs(1);
 
     #[test]
-    fn the_sixth_try_waits_until_the_first_is_five_minutes_old() {
+    fn the_sixth_try_waits_five_minutes_from_the_first() {
         let start = Instant::now();
         let mut limiter = Limiter::default();
         for number in 0..5 {
@@ -72,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn thirty_names_with_one_failure_each_stop_everybody_for_a_while() {
+    fn thirty_failures_of_different_names_block_all_names() {
         let start = Instant::now();
         let mut limiter = Limiter::default();
         for number in 0..30 {
@@ -83,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn the_right_password_clears_its_own_name_only() {
+    fn a_right_password_clears_its_own_name_only() {
         let start = Instant::now();
         let mut limiter = Limiter::default();
         for name in ["li", "wang"] {

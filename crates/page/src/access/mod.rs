@@ -1,15 +1,14 @@
-//! Who may order what: people, passwords, sessions.
+//! People, their roles, passwords and sessions.
 //!
-//! - A stranger looks. Whoever wants something done logs in; what a [`Role`] may do is in `role.rs`.
-//! - People and sessions stand in a file of their own beside the history (`relayrig-access.db` beside
-//!   `relayrig.db`): a history is copied, mailed and backed up, hashes of passwords are not.
-//! - Passwords are kept as Argon2id strings (RFC 9106) with their own salt and parameters. Sessions
-//!   are 256 random bits; the file keeps only their SHA-256, so that a copied file opens no session.
-//! - A file without people gets one engineer with a random password, which is told once.
-//! - Wrong passwords are counted per name and in all (`limiter.rs`); a name that does not exist costs
-//!   the same time as one that does.
+//! - Reading needs no login; every change needs one. `role.rs` says what each [`Role`] may do.
+//! - People and sessions have a file beside the history (`relayrig-access.db` beside `relayrig.db`), because histories are
+//!   copied, mailed and backed up, and hashes of passwords must not be.
+//! - The file holds each password as an Argon2id string (RFC 9106) with its salt and parameters. A session token has 256
+//!   random bits; the file holds only its SHA-256, so that a copy of the file opens no session.
+//! - A file without people gets one engineer with a random password, which the program prints once.
+//! - `limiter.rs` counts wrong passwords. A login takes the same time for known and unknown names.
 //!
-//! Nothing here knows HTTP; `login.rs` of the screen does.
+//! This module does not depend on HTTP; `login.rs` does.
 
 mod error;
 mod limiter;
@@ -19,8 +18,8 @@ mod role;
 
 pub use error::AccessError;
 pub(crate) use limiter::Limiter;
-pub use register::{Person, Register, beside};
+pub use register::{Person, Register, access_path};
 pub use role::Role;
 
-/// How long a session lasts: a shift with its overlaps. Seconds.
+/// Life of a session, seconds: a shift with its overlaps.
 pub const SESSION_S: i64 = 12 * 3600;

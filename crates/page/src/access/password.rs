@@ -1,19 +1,20 @@
-//! Passwords and random words.
+//! Hashes of passwords, and random tokens.
 //!
-//! Argon2id with the library's own parameters (19 MiB, 2 passes, 1 lane: the first choice that OWASP
-//! gives); a hash carries its parameters, so that later ones may be stronger.
+//! Uses Argon2id with the default parameters of the library (19 MiB, 2 passes, 1 lane), which OWASP recommends. A hash
+//! includes its parameters, so that later versions may raise them.
 
 use super::error::{AccessError, Result};
 use argon2::Argon2;
 use argon2::password_hash::phc::PasswordHash;
 use argon2::password_hash::{PasswordHasher, PasswordVerifier};
+use data_encoding::HEXLOWER;
 
-/// NIST SP 800-63B asks for 8 at least.
+/// Least length, characters (NIST SP 800-63B).
 const LEAST: usize = 8;
-/// Longer ones would only cost time.
+/// Greatest length, characters: bounds the time of hashing.
 const MOST: usize = 200;
 
-/// The string to keep. Takes some 20 ms.
+/// Returns the Argon2id string of `password`; takes about 20 ms. Fails when the length is out of range.
 pub(super) fn hash(password: &str) -> Result<String> {
     let found = password.chars().count();
     if !(LEAST..=MOST).contains(&found) {
@@ -28,8 +29,8 @@ pub(super) fn hash(password: &str) -> Result<String> {
     Ok(hash.to_string())
 }
 
-/// Whether `password` is the one that `kept` was made of. Takes as long as [`hash`].
-pub(super) fn fits(password: &str, kept: &str) -> Result<bool> {
+/// Checks `password` against the Argon2id string `kept`; takes as long as [`hash`].
+pub(super) fn matches(password: &str, kept: &str) -> Result<bool> {
     if password.chars().count() > MOST {
         return Ok(false);
     }
@@ -39,16 +40,11 @@ pub(super) fn fits(password: &str, kept: &str) -> Result<bool> {
         .is_ok())
 }
 
-/// `bytes` random bytes in hexadecimal.
+/// Returns `bytes` random bytes in hexadecimal.
 pub(super) fn random(bytes: usize) -> Result<String> {
-    use std::fmt::Write;
     let mut drawn = vec![0_u8; bytes];
     getrandom::fill(&mut drawn).map_err(|error| trouble("drawing a random number", &error))?;
-    Ok(drawn.iter().fold(String::new(), |mut text, byte| {
-        // Writing to a string cannot fail.
-        let _ = write!(text, "{byte:02x}");
-        text
-    }))
+    Ok(HEXLOWER.encode(&drawn))
 }
 
 fn trouble(doing: &'static str, error: &dyn std::fmt::Display) -> AccessError {
@@ -62,17 +58,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_hash_fits_its_password_and_no_other_and_has_a_salt_of_its_own() {
+    fn a_hash_matches_only_its_password_and_is_salted() {
         let kept = hash("correct horse").unwrap();
         assert!(kept.starts_with("$argon2id$"), "{kept}");
-        assert!(fits("correct horse", &kept).unwrap());
-        assert!(!fits("correct horsf", &kept).unwrap());
-        assert!(!fits("", &kept).unwrap());
+        assert!(matches("correct horse", &kept).unwrap());
+        assert!(!matches("correct horsf", &kept).unwrap());
+        assert!(!matches("", &kept).unwrap());
         assert_ne!(kept, hash("correct horse").unwrap());
     }
 
     #[test]
-    fn passwords_that_are_too_short_or_too_long_are_refused_with_the_bounds() {
+    fn passwords_of_wrong_length_are_refused_with_the_bounds() {
         assert!(
             hash("1234567")
                 .unwrap_err()

@@ -1,54 +1,54 @@
 //! The file of people and sessions.
 //!
-//! Times are microseconds UTC and come from the caller. Names are compared as typed.
+//! Callers pass the time, microseconds since 1970 UTC. Names are case-sensitive.
 
 use super::error::{AccessError, Doing, Result};
 use super::role::NoRole;
 use super::{Role, SESSION_S, password};
+use data_encoding::HEXLOWER;
 use rusqlite::{Connection, OptionalExtension, params};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
-use std::fmt::Write;
 use std::fs::OpenOptions;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// `RRac`, in the header of the file.
+/// `RRac`: application id in the header of the file.
 const APPLICATION_ID: i64 = 0x5252_6163;
 const SCHEMA: i64 = 1;
-/// Name of the one who is made at the first start.
+/// Name of the engineer whom the first start adds.
 const FIRST: &str = "engineer";
-/// A hash of nobody's password, of the same cost as a real one.
+/// Hash that no password matches: checking it costs an unknown name the time of a known one.
 const NOBODY: &str = "$argon2id$v=19$m=19456,t=2,p=1$c29tZSBzYWx0IGhlcmU$\
                       zY2ZxH5hG1m3pV0Q3mCkGd5dTn0l2yq0hXo1m3u9m6E";
 
-/// Somebody who has logged in.
+/// A person of the file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Person {
-    /// As typed at login.
+    /// Name for the login, 1 to 40 characters.
     pub name: String,
-    /// What the person may do.
+    /// Role, which bounds the orders of the person.
     pub role: Role,
 }
 
-/// The open file. Blocking; a login takes some 20 ms of work.
+/// The open file. Every call blocks; a login computes for about 20 ms.
 #[derive(Debug)]
 pub struct Register {
     connection: Connection,
 }
 
-/// Where the people of a history file are kept: `relayrig-access.db` for `relayrig.db`.
+/// Returns the path of the file of people that belongs to `history`: `relayrig-access.db` for `relayrig.db`.
 #[must_use]
-pub fn beside(history: &Path) -> PathBuf {
+pub fn access_path(history: &Path) -> PathBuf {
     let stem = history.file_stem().unwrap_or_default().to_string_lossy();
     history.with_file_name(format!("{stem}-access.db"))
 }
 
 impl Register {
-    /// Opens the file, made when missing.
+    /// Opens the file, or creates it.
     ///
     /// # Errors
-    /// A file of another program or a later version is refused and left untouched.
+    /// Refuses a file of another program or of a later version, and does not change it.
     pub fn open(path: &Path) -> Result<Self> {
         const DOING: &str = "opening the list of people";
         own(path);
@@ -79,23 +79,22 @@ impl Register {
         Ok(Self { connection })
     }
 
-    /// Makes the first engineer when there is nobody; gives name and password, which is told nowhere
-    /// else and never again.
+    /// Adds an engineer to a file without people; returns name and password, of which the file holds only the hash.
     pub fn first_engineer(&mut self, now_us: i64) -> Result<Option<(String, String)>> {
         if self.count("SELECT count(*) FROM person", "counting people")? > 0 {
             return Ok(None);
         }
-        let drawn = Self::drawn_password()?;
+        let drawn = Self::random_password()?;
         self.add(FIRST, Role::Engineer, &drawn, now_us)?;
         Ok(Some((FIRST.to_owned(), drawn)))
     }
 
-    /// A password that nobody has to think of: 64 random bits.
-    pub fn drawn_password() -> Result<String> {
+    /// Returns a password of 64 random bits in hexadecimal.
+    pub fn random_password() -> Result<String> {
         password::random(8)
     }
 
-    /// Everybody, by name.
+    /// Returns all people in order of their names.
     pub fn people(&self) -> Result<Vec<Person>> {
         const DOING: &str = "listing people";
         let mut rows = self
@@ -106,7 +105,7 @@ impl Register {
         people.collect::<rusqlite::Result<_>>().doing(DOING)
     }
 
-    /// Adds somebody.
+    /// Adds a person. Fails when the name is taken or malformed or the password has a wrong length.
     pub fn add(&mut self, name: &str, role: Role, password: &str, now_us: i64) -> Result<()> {
         let typed = |it: char| it.is_alphanumeric() || ".-_".contains(it);
         if !(1..=40).contains(&name.chars().count()) || !name.chars().all(typed) {
@@ -124,7 +123,7 @@ impl Register {
         }
     }
 
-    /// Gives a new password and ends the person's sessions.
+    /// Changes the password and ends the person's sessions. Fails for an unknown name.
     pub fn set_password(&mut self, name: &str, password: &str) -> Result<()> {
         const DOING: &str = "changing a password";
         let hash = password::hash(password)?;
@@ -135,10 +134,10 @@ impl Register {
             .execute("DELETE FROM session WHERE person = ?1", [name])
             .doing(DOING)?;
         change.commit().doing(DOING)?;
-        known(found, name)
+        require_found(found, name)
     }
 
-    /// Removes somebody with all sessions; never the last engineer.
+    /// Removes a person with all sessions. Fails for an unknown name and for the last engineer.
     pub fn remove(&mut self, name: &str) -> Result<()> {
         let others = "SELECT count(*) FROM person WHERE role = 'engineer' AND name <> ?1";
         let others: i64 = self
@@ -159,10 +158,10 @@ impl Register {
             .connection
             .execute(sql, [name])
             .doing("removing a person")?;
-        known(found, name)
+        require_found(found, name)
     }
 
-    /// A session for name and password: the person and the token; `None` when they do not fit.
+    /// Opens a session; returns the person and the token, `None` when name or password is wrong.
     pub fn log_in(
         &mut self,
         name: &str,
@@ -179,7 +178,7 @@ impl Register {
             .optional()
             .doing(DOING)?;
         let kept = found.as_ref().map_or(NOBODY, |(_, hash)| hash.as_str());
-        let fits = password::fits(password, kept)?;
+        let fits = password::matches(password, kept)?;
         let Some((person, _)) = found.filter(|_| fits) else {
             return Ok(None);
         };
@@ -197,7 +196,7 @@ impl Register {
         Ok(Some((person, token)))
     }
 
-    /// Whose session `token` is, while it lasts.
+    /// Returns the person of the session `token`; `None` for an unknown or expired one.
     pub fn holder(&self, token: &str, now_us: i64) -> Result<Option<Person>> {
         let sql = "SELECT name, role FROM session JOIN person ON person = name
                    WHERE token_sha256 = ?1 AND until_us > ?2";
@@ -206,7 +205,7 @@ impl Register {
         found.doing("looking up a session")
     }
 
-    /// Ends a session; an unknown one is over already.
+    /// Ends a session; ignores an unknown token.
     pub fn log_out(&mut self, token: &str) -> Result<()> {
         let sql = "DELETE FROM session WHERE token_sha256 = ?1";
         self.connection
@@ -248,7 +247,7 @@ fn person(row: &rusqlite::Row<'_>) -> rusqlite::Result<Person> {
     Ok(Person { name, role })
 }
 
-fn known(rows: usize, name: &str) -> Result<()> {
+fn require_found(rows: usize, name: &str) -> Result<()> {
     match rows {
         0 => Err(AccessError::Unknown {
             name: name.to_owned(),
@@ -258,13 +257,7 @@ fn known(rows: usize, name: &str) -> Result<()> {
 }
 
 fn digest(token: &str) -> String {
-    Sha256::digest(token.as_bytes())
-        .iter()
-        .fold(String::new(), |mut text, byte| {
-            // Writing to a string cannot fail.
-            let _ = write!(text, "{byte:02x}");
-            text
-        })
+    HEXLOWER.encode(&Sha256::digest(token))
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What a person is trusted with. A role may do all that the ones before it may.
+//! Roles. Each may do all that the weaker ones may.
 
 use serde::Serialize;
 use std::fmt;
@@ -9,19 +9,19 @@ use thiserror::Error;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Role {
-    /// Runs lots: every command of the state model, acknowledging alarms.
+    /// Runs lots, gives every PackML command, acknowledges alarms.
     Operator,
-    /// Also moves single actuators, changes the mode, shelves alarms.
+    /// Also jogs actuators, changes the mode, shelves alarms.
     Maintainer,
     /// Also changes recipes and people.
     Engineer,
 }
 
 impl Role {
-    /// All of them, weakest first.
+    /// All roles, weakest first.
     pub const ALL: [Self; 3] = [Self::Operator, Self::Maintainer, Self::Engineer];
 
-    /// The word in the file, on the command line and over HTTP.
+    /// Returns the name in the file, on the command line and over HTTP.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -38,7 +38,7 @@ impl fmt::Display for Role {
     }
 }
 
-/// A word that is no role.
+/// The word found, which names no role.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{0:?}: expected operator, maintainer or engineer")]
 pub struct NoRole(String);

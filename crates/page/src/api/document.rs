@@ -1,6 +1,6 @@
 //! The OpenAPI document of a list of routes.
 
-use super::{Member, Method, Offer};
+use super::{Member, Method, Route};
 use utoipa::openapi::content::ContentBuilder;
 use utoipa::openapi::path::{
     HttpMethod, OperationBuilder, ParameterBuilder, ParameterIn, PathItem,
@@ -9,45 +9,45 @@ use utoipa::openapi::request_body::RequestBodyBuilder;
 use utoipa::openapi::schema::{ObjectBuilder, SchemaType, Type};
 use utoipa::openapi::{Components, Info, OpenApiBuilder, Paths, Required, ResponseBuilder, Schema};
 
-/// What a refusal may be, for every route.
+/// Refusals of every route: status and meaning.
 const REFUSALS: [(&str, &str); 4] = [
-    (
-        "400",
-        "What was asked cannot be meant; the reason says why.",
-    ),
-    ("404", "It never was."),
+    ("400", "The request is malformed; the reason says why."),
+    ("404", "There is no such thing."),
     ("413", "The body is larger than 16 kB."),
-    ("500", "The rig's own trouble; the reason says which."),
+    ("500", "The program failed; the reason says at what."),
 ];
-/// And of one that changes something.
+/// Further refusals of a route that changes something.
 const OF_ORDERS: [(&str, &str); 4] = [
-    ("401", "Nobody is logged in, or the password is wrong."),
-    ("403", "The role does not suffice, or another site asked."),
     (
-        "409",
-        "Not now; the reason stands in `reason` and `reason_zh`.",
+        "401",
+        "The request has no valid session, or the password is wrong.",
     ),
+    (
+        "403",
+        "The role is too weak, or the request comes from another site.",
+    ),
+    ("409", "Refused now; `reason` and `reason_zh` say why."),
     (
         "429",
-        "Too many wrong passwords; `Retry-After` says how long.",
+        "Too many wrong passwords; `Retry-After` gives the wait in seconds.",
     ),
 ];
 
-/// As JSON; empty if it could not be written, which a test excludes.
-pub(super) fn of(offers: &[Offer]) -> serde_json::Value {
+/// Returns the document as JSON; empty if serialising fails, which a test excludes.
+pub(super) fn of(routes: &[Route]) -> serde_json::Value {
     let mut paths = Paths::new();
-    for offer in offers {
-        let method = match offer.method {
+    for route in routes {
+        let method = match route.method {
             Method::Get => HttpMethod::Get,
             Method::Post => HttpMethod::Post,
         };
-        let item = PathItem::new(method, operation(offer));
-        paths.paths.insert(offer.path.to_owned(), item);
+        let item = PathItem::new(method, operation(route));
+        paths.paths.insert(route.path.to_owned(), item);
     }
     let mut components = Components::new();
     let refusal = object(&[
         super::must("error", "The status in a word."),
-        super::must("reason", "A sentence for whoever asked."),
+        super::must("reason", "The reason as a sentence, English."),
         super::may("reason_zh", "The same in Chinese."),
         super::may("code", "The same as a code, where it has one."),
     ]);
@@ -60,45 +60,45 @@ pub(super) fn of(offers: &[Offer]) -> serde_json::Value {
     serde_json::to_value(document).unwrap_or_default()
 }
 
-fn operation(offer: &Offer) -> OperationBuilder {
-    let (words, answer) = (offer.about, ContentBuilder::new().build());
+fn operation(route: &Route) -> OperationBuilder {
+    let (words, answer) = (route.about, ContentBuilder::new().build());
     let done = ResponseBuilder::new()
         .description("Done.")
-        .content(offer.gives, answer);
+        .content(route.gives, answer);
     let mut operation = OperationBuilder::new()
         .summary(Some(words))
         .response("200", done);
-    if let Some(role) = offer.role {
-        operation = operation.description(Some(format!("Takes the role {role} at least.")));
+    if let Some(role) = route.role {
+        operation = operation.description(Some(format!("Needs at least the role {role}.")));
     }
-    let more: &[_] = match offer.method {
+    let more: &[_] = match route.method {
         Method::Get => &[],
         Method::Post => &OF_ORDERS,
     };
     for (status, meaning) in REFUSALS.iter().chain(more) {
         operation = operation.response(*status, ResponseBuilder::new().description(*meaning));
     }
-    match offer.method {
-        Method::Get => offer
-            .members
-            .iter()
-            .fold(operation, |it, member| it.parameter(in_query(member))),
+    match route.method {
+        Method::Get => route.members.iter().fold(operation, |it, member| {
+            it.parameter(parameter(route.path, member))
+        }),
         Method::Post => {
-            let body = ContentBuilder::new().schema(Some(object(&offer.members)));
+            let body = ContentBuilder::new().schema(Some(object(&route.members)));
             let body = RequestBodyBuilder::new().content(super::JSON, body.build());
             operation.request_body(Some(body.build()))
         }
     }
 }
 
-fn in_query(member: &Member) -> ParameterBuilder {
+fn parameter(path: &str, member: &Member) -> ParameterBuilder {
+    let in_path = path.contains(&format!("{{{}}}", member.name));
+    let place = [ParameterIn::Query, ParameterIn::Path][usize::from(in_path)].clone();
     ParameterBuilder::new()
         .name(member.name)
-        .parameter_in(ParameterIn::Query)
-        .required(if member.required {
-            Required::True
-        } else {
-            Required::False
+        .parameter_in(place)
+        .required(match member.required {
+            true => Required::True,
+            false => Required::False,
         })
         .description(Some(member.about))
         .schema(Some(text(member)))

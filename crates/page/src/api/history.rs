@@ -1,15 +1,15 @@
-//! The routes of the history; what their members mean stands in [`crate`]'s file about them, too.
+//! The routes of the history; `history.rs` explains their members.
 
-use super::{HTML, JSON, Member, Offer, may, must};
+use super::{HTML, JSON, Member, Route, may, must};
 use crate::history::{self, export, paper, rejudge};
 
 const LOT: Member = may("lot", "Name of the lot.");
 const RUN: Member = may("run", "Number of the run within its lot.");
 const RECIPE: Member = may("recipe", "Name of the recipe.");
-const SINCE: Member = may("since", "Not before, RFC 3339.");
-const UNTIL: Member = may("until", "Before, RFC 3339.");
+const SINCE: Member = may("since", "Earliest time, RFC 3339.");
+const UNTIL: Member = may("until", "Time before which the entries lie, RFC 3339.");
 const VERDICT: Member = may("verdict", "`pass`, `fail`, `void`, `unjudged`.");
-const BIN: Member = may("bin", "Bin that the verdict asks for.");
+const BIN: Member = may("bin", "Bin of the verdict.");
 const KIND: Member = may("kind", "`lot` (without it), `golden`, `all`.");
 const SUSPECT: Member = may(
     "suspect",
@@ -18,12 +18,15 @@ const SUSPECT: Member = may(
 const PARAM: Member = may("param", "Parameter key with its unit, as in an export.");
 const MIN: Member = may("min", "Least value of `param`.");
 const MAX: Member = may("max", "Largest value of `param`.");
-const LIMIT: Member = may("limit", "So many at most.");
-const OFFSET: Member = may("offset", "So many left out in front.");
+const LIMIT: Member = may("limit", "Most entries of the answer.");
+const OFFSET: Member = may("offset", "Number of entries to skip.");
 const LANG: Member = may("lang", "`zh` (without it) or `en`.");
 const SUBGROUP: Member = may("subgroup", "Parts of a subgroup, 1 to 10; 1 without it.");
 const RULES: Member = may("rules", "`nelson` (without it) or `western-electric`.");
-const LAST: Member = may("last", "Only the last so many points; 200 without it.");
+const LAST: Member = may(
+    "last",
+    "Number of points, counted from the last; 200 without it.",
+);
 
 const RUNS: [Member; 3] = [LOT, RUN, RECIPE];
 const PAGE: [Member; 2] = [LIMIT, OFFSET];
@@ -31,26 +34,26 @@ const FILTER: [Member; 9] = [LOT, RUN, RECIPE, SINCE, UNTIL, VERDICT, BIN, KIND,
 const RANGE: [Member; 3] = [PARAM, MIN, MAX];
 const CHART: [Member; 3] = [SUBGROUP, RULES, LAST];
 
-pub(super) fn offers() -> Vec<Offer> {
-    let mut offers = read();
-    offers.extend(printed());
-    offers
+pub(super) fn routes() -> Vec<Route> {
+    let mut routes = read();
+    routes.extend(printed());
+    routes
 }
 
-fn read() -> Vec<Offer> {
+fn read() -> Vec<Route> {
     let about_one = [must("param", PARAM.about)];
     vec![
-        Offer::get(
+        Route::get(
             "/api/history/list",
             JSON,
             "Runs of lots with their counts.",
             history::list,
         )
         .with(&RUNS),
-        Offer::get(
+        Route::get(
             "/api/history/show",
             JSON,
-            "That part of every run, down to the raw replies.",
+            "The part `seq` of every run, down to the raw replies.",
             history::show,
         )
         .with(&[
@@ -59,31 +62,31 @@ fn read() -> Vec<Offer> {
             RUN,
             KIND,
         ]),
-        Offer::get(
+        Route::get(
             "/api/history/query",
             JSON,
-            "Parts that the filter leaves.",
+            "Parts that match the filter.",
             history::query,
         )
         .with(&FILTER)
         .with(&RANGE)
         .with(&PAGE),
-        Offer::get(
+        Route::get(
             "/api/history/count",
             JSON,
-            "How many `query` would give.",
+            "Number of parts that `query` would return.",
             history::count,
         )
         .with(&FILTER)
         .with(&RANGE),
-        Offer::get(
+        Route::get(
             "/api/history/yield",
             JSON,
-            "Verdicts of all production parts in the span.",
+            "Counts of the verdicts of all parts of lots in the span.",
             history::yields,
         )
         .with(&[SINCE, UNTIL]),
-        Offer::get(
+        Route::get(
             "/api/history/stats",
             JSON,
             "Statistics of one parameter.",
@@ -91,19 +94,19 @@ fn read() -> Vec<Offer> {
         )
         .with(&FILTER)
         .with(&about_one),
-        Offer::get(
+        Route::get(
             "/api/history/histogram",
             JSON,
             "Counts in classes of equal width.",
-            history::classes,
+            history::histogram,
         )
         .with(&FILTER)
         .with(&about_one),
-        Offer::get("/api/history/spc", JSON, "Control charts.", history::spc)
+        Route::get("/api/history/spc", JSON, "Control charts.", history::spc)
             .with(&FILTER)
             .with(&[PARAM])
             .with(&CHART),
-        Offer::get(
+        Route::get(
             "/api/history/alarms",
             JSON,
             "Alarms in order of time.",
@@ -112,10 +115,10 @@ fn read() -> Vec<Offer> {
         .with(&RUNS)
         .with(&[SINCE, UNTIL])
         .with(&PAGE),
-        Offer::get(
+        Route::get(
             "/api/history/rejudge",
             JSON,
-            "What that recipe would have said of every part of the lot; the summary comes last. Nothing is written.",
+            "The verdict of every part of the lot by another recipe, then a summary; writes nothing.",
             rejudge::rejudge,
         )
         .with(&[
@@ -124,10 +127,10 @@ fn read() -> Vec<Offer> {
             RUN,
             may("changed", "`true`: only parts whose verdict changes."),
         ]),
-        Offer::get(
+        Route::get(
             "/api/history/orders",
             JSON,
-            "The audit: who ordered what, and whether it was taken.",
+            "The audit of orders: person, order and outcome.",
             history::orders,
         )
         .with(&RUNS)
@@ -136,11 +139,11 @@ fn read() -> Vec<Offer> {
     ]
 }
 
-/// Paper and files.
-fn printed() -> Vec<Offer> {
+/// Reports for printing, and exports.
+fn printed() -> Vec<Route> {
     let cycle = may("ideal_cycle_s", "Shortest cycle the line can keep, s.");
     vec![
-        Offer::get(
+        Route::get(
             "/api/history/report/lot",
             HTML,
             "Report of a lot for A4.",
@@ -148,7 +151,7 @@ fn printed() -> Vec<Offer> {
         )
         .with(&RUNS)
         .with(&[LANG, cycle]),
-        Offer::get(
+        Route::get(
             "/api/history/report/certificate",
             HTML,
             "Certificate of a part for A4.",
@@ -156,7 +159,7 @@ fn printed() -> Vec<Offer> {
         )
         .with(&RUNS)
         .with(&[must("seq", "Number of the part."), LANG]),
-        Offer::get(
+        Route::get(
             "/api/history/report/chart",
             HTML,
             "Control charts for A4.",
@@ -165,7 +168,7 @@ fn printed() -> Vec<Offer> {
         .with(&FILTER)
         .with(&[PARAM, LANG])
         .with(&CHART),
-        Offer::get(
+        Route::get(
             "/api/history/report/alarms",
             HTML,
             "List of alarms for A4.",
@@ -174,7 +177,7 @@ fn printed() -> Vec<Offer> {
         .with(&RUNS)
         .with(&[SINCE, UNTIL, LANG])
         .with(&PAGE),
-        Offer::get(
+        Route::get(
             "/api/history/export.csv",
             "text/csv",
             "Parts as CSV with byte order mark.",
@@ -183,7 +186,7 @@ fn printed() -> Vec<Offer> {
         .with(&FILTER)
         .with(&RANGE)
         .with(&PAGE),
-        Offer::get(
+        Route::get(
             "/api/history/export.xlsx",
             "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
             "Parts as a spreadsheet with charts, 100,000 at most.",

@@ -1,12 +1,12 @@
-//! `/api/history/export.csv` and `.xlsx`: `history export` over HTTP. CSV is streamed, however long; a
-//! spreadsheet must be whole before it leaves, so it has an end ([`SHEET_PARTS`]).
+//! `/api/history/export.csv` and `.xlsx`: `history export` over HTTP. CSV is streamed without a limit; a spreadsheet is
+//! complete in memory before it is sent, so [`SHEET_PARTS`] limits it.
 //!
-//! Such a copy does not count for the retention: nobody here sees whether it arrived.
+//! Retention does not count such an export, because the server cannot know whether it arrived.
 
-use super::super::error::HmiError;
-use super::super::router::Desk;
-use super::asked::{Printed, asked, language};
+use super::super::error::ApiError;
+use super::super::router::AppState;
 use super::feed;
+use super::members::{ReportMembers, language, split};
 use axum::extract::State;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
 use axum::http::{HeaderName, Uri};
@@ -16,7 +16,7 @@ use history::inquiry::{InquiryError, checks, export};
 use std::io::{self, Write};
 use tokio::task::spawn_blocking;
 
-/// Parts of a spreadsheet that one answer holds, some 15 MB; larger ones are made by the command line.
+/// Most parts of a spreadsheet, about 15 MB; the command `history export` makes larger ones.
 const SHEET_PARTS: u64 = 100_000;
 
 type Saved = [(HeaderName, &'static str); 2];
@@ -41,19 +41,19 @@ const XLSX: Saved = [
 
 /// `GET /api/history/export.csv`.
 pub(in super::super) async fn csv(
-    State(desk): State<Desk>,
+    State(app): State<AppState>,
     filter: super::Filtered,
-) -> Result<Response, HmiError> {
+) -> Result<Response, ApiError> {
     let filter = filter?.0;
     checks::validate(&filter)?;
-    let (archive, place) = desk.readers.open().await?;
+    let (archive, place) = app.readers.open().await?;
     let asked = filter.clone();
     let known = move || {
         checks::known_runs(&archive, &asked)?;
         checks::parameters(&archive, asked.param.as_deref()).map(|it| (archive, it))
     };
     let known = spawn_blocking(known).await;
-    let (archive, keys) = known.map_err(|_| HmiError::ReaderLost)??;
+    let (archive, keys) = known.map_err(|_| ApiError::ReaderLost)??;
     let lines = feed::streamed((archive, place), move |archive, out| {
         out.write_all(BYTE_ORDER_MARK.as_bytes())?;
         export::csv_lines(archive, &filter, &keys, out).map_err(io::Error::other)
@@ -63,10 +63,10 @@ pub(in super::super) async fn csv(
 
 /// `GET /api/history/export.xlsx`.
 pub(in super::super) async fn xlsx(
-    State(desk): State<Desk>,
+    State(app): State<AppState>,
     uri: Uri,
-) -> Result<(Saved, Vec<u8>), HmiError> {
-    let (filter, own) = asked::<Printed>(&uri)?;
+) -> Result<(Saved, Vec<u8>), ApiError> {
+    let (filter, own) = split::<ReportMembers>(&uri)?;
     checks::validate(&filter)?;
     super::paper::refuse("seq", own.seq.is_some())?;
     super::paper::refuse("ideal_cycle_s", own.ideal_cycle_s.is_some())?;
@@ -85,5 +85,5 @@ pub(in super::super) async fn xlsx(
         let mut book = export::spreadsheet(archive, &filter, &keys, language, || {})?;
         Ok(book.save_to_buffer().map_err(InquiryError::from)?)
     };
-    Ok((XLSX, desk.readers.read(made).await?))
+    Ok((XLSX, app.readers.read(made).await?))
 }

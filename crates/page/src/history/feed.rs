@@ -1,8 +1,8 @@
-//! Answers from the file to the client, one part at a time: memory does not grow with the answer.
+//! Streams answers from the file to the client, one part at a time: memory does not grow with the answer.
 //!
-//! The reader fills pieces of some 32 kB and hands them over; a client that takes none for
-//! [`PATIENCE`] is dropped, so that no reader stays in the file for ever. An error after the first
-//! piece cuts the answer off: its last chunk never comes, which no client takes for whole.
+//! The reader sends pieces of about 32 kB. It drops a client that takes none for [`CLIENT_TIMEOUT`], so that no reader keeps
+//! the file open for ever. After an error in the middle the final chunk is missing, so that the client sees the answer as
+//! incomplete.
 
 use axum::body::{Body, Bytes};
 use futures_util::stream;
@@ -14,14 +14,14 @@ use tokio::sync::mpsc::{self, Sender};
 use tokio::task::spawn_blocking;
 use tokio::time::timeout;
 
-/// How long a client may take nothing.
-const PATIENCE: Duration = Duration::from_secs(10);
-/// A piece is handed over once it is this long.
+/// Longest time for which a client may take no piece.
+const CLIENT_TIMEOUT: Duration = Duration::from_secs(10);
+/// Size from which a piece is sent, bytes.
 const PIECE: usize = 32 * 1024;
 
 type Piece = io::Result<Bytes>;
 
-/// What `write` writes, from a thread of its own that keeps the archive and its place to the end.
+/// Streams what `write` writes, on a blocking thread that keeps the archive and its permit until the end.
 pub(super) fn streamed(
     (archive, place): (Archive, impl Send + 'static),
     write: impl FnOnce(&Archive, &mut Pieces) -> io::Result<()> + Send + 'static,
@@ -30,8 +30,8 @@ pub(super) fn streamed(
     let runtime = Handle::current();
     spawn_blocking(move || {
         let mut out = Pieces::new(runtime, sender);
-        if let Err(error) = write(&archive, &mut out).and_then(|()| out.hand_over()) {
-            // Nobody left to tell when the client has gone.
+        if let Err(error) = write(&archive, &mut out).and_then(|()| out.send_piece()) {
+            // Fails only when the client has gone.
             let _ = out.send(Err(error));
         }
         drop(place);
@@ -42,7 +42,7 @@ pub(super) fn streamed(
     }))
 }
 
-/// The parts that `filter` leaves, as a JSON array.
+/// Writes the parts that match `filter` as a JSON array.
 pub(super) fn parts(archive: &Archive, filter: &Filter, out: &mut Pieces) -> io::Result<()> {
     let mut lead: &[u8] = b"[\n";
     let all = archive.each(filter, |part| {
@@ -54,7 +54,7 @@ pub(super) fn parts(archive: &Archive, filter: &Filter, out: &mut Pieces) -> io:
     out.write_all(if lead == b"[\n" { b"[]\n" } else { b"\n]\n" })
 }
 
-/// The reader's end.
+/// Sending end of a stream; collects bytes to pieces.
 pub(super) struct Pieces {
     text: Vec<u8>,
     runtime: Handle,
@@ -71,15 +71,15 @@ impl Pieces {
         }
     }
 
-    fn hand_over(&mut self) -> io::Result<()> {
+    fn send_piece(&mut self) -> io::Result<()> {
         let piece = Bytes::from(std::mem::take(&mut self.text));
         self.send(Ok(piece))
     }
 
     fn send(&self, piece: Piece) -> io::Result<()> {
         let sent = self.runtime.block_on(async {
-            // The timer is made inside, where the runtime is known.
-            timeout(PATIENCE, self.sender.send(piece)).await
+            // Inside the async block, because a timer needs the context of the runtime.
+            timeout(CLIENT_TIMEOUT, self.sender.send(piece)).await
         });
         match sent {
             Ok(Ok(())) => Ok(()),
@@ -93,7 +93,7 @@ impl Write for Pieces {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.text.extend_from_slice(bytes);
         if self.text.len() >= PIECE {
-            self.hand_over()?;
+            self.send_piece()?;
         }
         Ok(bytes.len())
     }

@@ -1,16 +1,16 @@
-//! Who reads the history for screens, and how many at the same time.
+//! Readers of the history for HTTP clients, limited in number.
 
-use super::super::error::HmiError;
+use super::super::error::ApiError;
 use history::Archive;
 use std::path::PathBuf;
 use std::sync::Arc;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::task::spawn_blocking;
 
-/// Readers at the same time; further ones wait.
+/// Most readers at the same time; further ones wait.
 const AT_ONCE: usize = 4;
 
-/// The file, and the places before it.
+/// The history file and the permits to read it.
 #[derive(Debug, Clone)]
 pub(in super::super) struct Readers {
     db: PathBuf,
@@ -23,20 +23,20 @@ impl Readers {
         Self { db, places }
     }
 
-    /// An open archive and the place it takes, to be dropped together.
-    pub async fn open(&self) -> Result<(Archive, OwnedSemaphorePermit), HmiError> {
+    /// Opens the archive; the caller keeps the permit as long as the archive.
+    pub async fn open(&self) -> Result<(Archive, OwnedSemaphorePermit), ApiError> {
         let place = Arc::clone(&self.places).acquire_owned().await;
-        let place = place.map_err(|_| HmiError::ReaderLost)?;
+        let place = place.map_err(|_| ApiError::ReaderLost)?;
         let db = self.db.clone();
         let archive = spawn_blocking(move || Archive::open(&db)).await;
-        Ok((archive.map_err(|_| HmiError::ReaderLost)??, place))
+        Ok((archive.map_err(|_| ApiError::ReaderLost)??, place))
     }
 
-    /// What `read` makes of the archive, beside the async threads.
+    /// Runs `read` over the archive on a blocking thread.
     pub async fn read<T: Send + 'static>(
         &self,
-        read: impl FnOnce(&Archive) -> Result<T, HmiError> + Send + 'static,
-    ) -> Result<T, HmiError> {
+        read: impl FnOnce(&Archive) -> Result<T, ApiError> + Send + 'static,
+    ) -> Result<T, ApiError> {
         let (archive, place) = self.open().await?;
         let work = move || {
             let found = read(&archive);
@@ -45,6 +45,6 @@ impl Readers {
         };
         spawn_blocking(work)
             .await
-            .map_err(|_| HmiError::ReaderLost)?
+            .map_err(|_| ApiError::ReaderLost)?
     }
 }

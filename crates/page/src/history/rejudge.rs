@@ -1,7 +1,7 @@
-//! `/api/history/rejudge`: the parts of a lot held against a recipe, as `history rejudge --json`. Nothing is written.
+//! `/api/history/rejudge`: judges the stored values of a lot by a recipe, as `history rejudge --json`; writes nothing.
 
-use super::super::error::HmiError;
-use super::super::router::Desk;
+use super::super::error::ApiError;
+use super::super::router::AppState;
 use super::feed::{self, Pieces};
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Query, State};
@@ -14,38 +14,38 @@ use serde::Deserialize;
 use std::io::{self, Write};
 use tokio::task::spawn_blocking;
 
-/// Which lot by which recipe.
+/// Members: the lot and the recipe.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(in super::super) struct Asked {
+pub(in super::super) struct RejudgeQuery {
     lot: String,
     recipe: String,
-    /// Only this run of the lot.
+    /// Number of the run; all runs when absent.
     run: Option<u32>,
-    /// Only parts whose verdict changes.
+    /// True for parts with a changed verdict only.
     #[serde(default)]
     changed: bool,
 }
 
-/// `GET /api/history/rejudge`: an array of parts, the summary last.
+/// `GET /api/history/rejudge`: returns an array of parts with the summary as its last element.
 pub(in super::super) async fn rejudge(
-    State(desk): State<Desk>,
-    asked: Result<Query<Asked>, QueryRejection>,
-) -> Result<Response, HmiError> {
-    let Query(Asked {
+    State(app): State<AppState>,
+    asked: Result<Query<RejudgeQuery>, QueryRejection>,
+) -> Result<Response, ApiError> {
+    let Query(RejudgeQuery {
         lot,
         recipe,
         run,
         changed,
     }) = asked?;
-    let (archive, place) = desk.readers.open().await?;
-    let dir = desk.shared.config.clone();
-    let prepared = spawn_blocking(move || -> Result<(Archive, Rejudging), HmiError> {
+    let (archive, place) = app.readers.open().await?;
+    let dir = app.shared.config.clone();
+    let prepared = spawn_blocking(move || -> Result<(Archive, Rejudging), ApiError> {
         let recipe = load_recipe(&dir, &recipe)?;
         let question = Rejudging::of(&archive, lot, run, recipe)?;
         Ok((archive, question))
     });
-    let (archive, question) = prepared.await.map_err(|_| HmiError::ReaderLost)??;
+    let (archive, question) = prepared.await.map_err(|_| ApiError::ReaderLost)??;
     let parts = feed::streamed((archive, place), move |archive, out| {
         written(&question, archive, changed, out)
     });

@@ -1,11 +1,10 @@
-//! What the page gets from the catalogue and the kinds of device, as JSON: its words, and every characteristic with its
-//! unit and names.
+//! Data of the first answer, as JSON: the texts of the pages, and every characteristic with its unit and names.
 
 use machine::dut::Characteristic;
 use serde_json::{Value, json};
 use texts::Lang;
 
-/// Families of texts that the page has no use for: their texts come with what they belong to, or stand on paper.
+/// Families of texts that the pages do not use: their texts come with alarms, reasons and refusals, or are for print only.
 const ELSEWHERE: [&str; 10] = [
     "alarm",
     "card",
@@ -19,13 +18,13 @@ const ELSEWHERE: [&str; 10] = [
     "wears",
 ];
 
-/// `{"characteristics": [{"key", "unit", "en", "zh"}]}`.
+/// Returns `{"characteristics": [{"key", "unit", "en", "zh"}]}`.
 pub(super) fn json() -> String {
     let characteristics: Vec<Value> = Characteristic::all().map(named).collect();
     json!({ "characteristics": characteristics }).to_string()
 }
 
-/// `{id: {"en", "zh"}}`.
+/// Returns `{id: {"en", "zh"}}`.
 pub(super) fn words() -> String {
     let shown = texts::plain().filter(|it| {
         let family = it.id.split_once('-').map(|(family, _)| family);

@@ -1,4 +1,4 @@
-//! The page as text: whole, self-contained, and with every word that it uses.
+//! The answers of the page as text: complete, small, and with every text that they use.
 
 #![allow(clippy::unwrap_used)]
 
@@ -12,10 +12,25 @@ use std::collections::{BTreeMap, BTreeSet};
 type Table = BTreeMap<String, BTreeMap<String, String>>;
 
 fn table() -> Table {
-    serde_json::from_str(&WORDS).unwrap()
+    serde_json::from_str(&kinds::words()).unwrap()
 }
 
-/// Texts between `before` and the next `"`.
+fn first() -> &'static str {
+    std::str::from_utf8(&PAGE.plain).unwrap()
+}
+
+/// Markup of the first answer and of all pages.
+static MARKUP: LazyLock<String> = LazyLock::new(|| {
+    let pages = fetched::SOURCES.iter().map(|[_, markup, _]| *markup);
+    std::iter::once(FRAME).chain(pages).collect()
+});
+/// Code of the first answer and of all pages.
+static CODE: LazyLock<String> = LazyLock::new(|| {
+    let pages = fetched::SOURCES.iter().map(|[_, _, code]| *code);
+    std::iter::once(SCRIPT).chain(pages).collect()
+});
+
+/// Returns the texts between `before` and the next `"`.
 fn quoted(text: &str, before: &str) -> BTreeSet<String> {
     let pieces = text.split(before).skip(1);
     pieces
@@ -26,7 +41,7 @@ fn quoted(text: &str, before: &str) -> BTreeSet<String> {
 #[test]
 fn every_quantity_reaches_the_page_by_its_kind() {
     let kinds: Value = serde_json::from_str(&kinds::json()).unwrap();
-    assert!(PAGE.contains(&kinds::json()));
+    assert!(first().contains(&kinds::json()));
     let keys: Vec<&str> = kinds["characteristics"]
         .as_array()
         .unwrap()
@@ -34,24 +49,24 @@ fn every_quantity_reaches_the_page_by_its_kind() {
         .map(|it| it["key"].as_str().unwrap())
         .collect();
     assert!(Characteristic::all().map(|it| it.key()).eq(keys));
-    for text in [SCRIPT, WORDS.as_str()] {
+    for text in [CODE.as_str(), &kinds::words()] {
         assert!(!Characteristic::all().any(|it| text.contains(it.key())));
     }
 }
 
 #[test]
-fn every_word_that_the_page_uses_is_in_the_table() {
+fn every_used_text_is_in_the_catalogue() {
     let table = table();
     let mut used = BTreeSet::new();
-    for (text, before) in [FRAME, PAGES]
-        .iter()
-        .flat_map(|it| [(it, "data-word=\""), (it, "data-label=\"")])
-    {
+    for (text, before) in [
+        (&*MARKUP, "data-word=\""),
+        (&MARKUP, "data-label=\""),
+        (&CODE, "word(\""),
+        (&CODE, "word(missing ? \""),
+    ] {
         used.extend(quoted(text, before));
     }
-    used.extend(quoted(SCRIPT, "word(\""));
-    used.extend(quoted(SCRIPT, "{word: \""));
-    // A key that ends in a hyphen is the begin of a family, completed by what the rig says.
+    // An id that ends in a hyphen is the start of a family; a code of the rig completes it.
     let (families, words): (Vec<_>, Vec<_>) = used.iter().partition(|it| it.ends_with('-'));
     for word in words {
         assert!(table.contains_key(word), "{word}");
@@ -65,7 +80,7 @@ fn every_word_that_the_page_uses_is_in_the_table() {
 }
 
 #[test]
-fn every_word_in_the_table_is_used() {
+fn every_text_of_the_pages_is_used() {
     let families = [
         "link",
         "order",
@@ -92,7 +107,7 @@ fn every_word_in_the_table_is_used() {
     ];
     for key in table().keys() {
         let family = key.split('-').next().unwrap();
-        let used = [FRAME, PAGES, SCRIPT]
+        let used = [&MARKUP, &CODE]
             .iter()
             .any(|it| it.contains(&format!("\"{key}\"")));
         assert!(
@@ -106,7 +121,7 @@ fn every_word_in_the_table_is_used() {
 fn every_listed_bin_verdict_and_mode_has_a_name() {
     let table = table();
     let list = |name: &str| {
-        let text = SCRIPT.split(&format!("const {name} = [")).nth(1).unwrap();
+        let text = CODE.split(&format!("const {name} = [")).nth(1).unwrap();
         let text = text.split(']').next().unwrap();
         text.split('"')
             .skip(1)
@@ -132,7 +147,7 @@ fn every_listed_bin_verdict_and_mode_has_a_name() {
 }
 
 #[test]
-fn every_key_of_a_recipe_and_every_word_that_it_may_have_is_on_the_screen_in_words() {
+fn every_key_and_choice_of_a_recipe_has_a_text() {
     let table = table();
     let recipe = config::revision("../../config".as_ref(), "jzc-22f-012", None).unwrap();
     for field in serde_json::to_value(recipe).unwrap()["fields"]
@@ -154,7 +169,7 @@ fn every_key_of_a_recipe_and_every_word_that_it_may_have_is_on_the_screen_in_wor
 }
 
 #[test]
-fn every_body_of_the_scene_has_a_word_on_the_screen() {
+fn every_body_of_the_scene_has_a_text() {
     let table = table();
     let scene = std::fs::read_to_string("../../config/scene.toml").unwrap();
     let scene: toml::Table = scene.parse().unwrap();
@@ -175,11 +190,11 @@ fn every_body_of_the_scene_has_a_word_on_the_screen() {
     }
 }
 
-/// All scripts share one scope: the later of two functions would take the place of the other without a word.
+/// A fetched script sees the names of the first answer; a second definition would hide the first silently.
 #[test]
-fn no_two_scripts_of_the_page_give_one_name_twice() {
+fn every_top_level_name_of_the_scripts_is_unique() {
     let mut seen = std::collections::BTreeSet::new();
-    for line in SCRIPT.lines() {
+    for line in CODE.lines() {
         let words = line.strip_prefix("async ").unwrap_or(line);
         let Some(("function" | "const" | "let", rest)) = words.split_once(' ') else {
             continue;
@@ -192,35 +207,61 @@ fn no_two_scripts_of_the_page_give_one_name_twice() {
     assert!(seen.len() > 100, "{}", seen.len());
 }
 
+/// Largest first answer as sent, bytes.
+const FIRST_BYTES: usize = 60_000;
+
 #[test]
-fn the_page_is_whole_small_and_asks_nobody_else() {
-    assert!(PAGE.len() < 150_000, "{}", PAGE.len());
+fn the_first_answer_is_small_and_names_no_other_host() {
+    assert!(PAGE.gzip.len() < FIRST_BYTES, "{}", PAGE.gzip.len());
+    assert!(PAGE.gzip.len() > 10_000 && PAGE.plain.len() < 150_000);
     for mark in [
-        "<!--pages-->",
         "/*look*/",
         "/*words*/",
         "/*kinds*/",
+        "/*scripts*/",
         "/*script*/",
     ] {
         assert_eq!(FRAME.matches(mark).count(), 1);
-        assert!(!PAGE.contains(mark));
+        assert!(!first().contains(mark));
     }
-    for foreign in ["http://", "https://", "//cdn", "@import", "src=", "url("] {
-        assert!(!PAGE.contains(foreign), "{foreign}");
+    let scripts = fetched::SCRIPTS.values().map(|it| &it.plain[..]);
+    for text in scripts.chain([first().as_bytes()]) {
+        let text = std::str::from_utf8(text).unwrap();
+        for foreign in ["http://", "https://", "//cdn", "@import", "src=", "url("] {
+            assert!(!text.contains(foreign), "{foreign}");
+        }
     }
 }
 
 #[test]
-fn nothing_inside_ends_its_element_early() {
-    let kinds = kinds::json();
+fn each_page_of_the_menu_comes_once() {
+    let paths: BTreeMap<String, String> = serde_json::from_str(&fetched::json()).unwrap();
+    for page in quoted(FRAME, "href=\"#") {
+        assert!(page == "operator" || paths.contains_key(&page), "{page}");
+    }
+    let pages = quoted(&MARKUP, "data-page=\"");
+    assert_eq!(MARKUP.matches("data-page=").count(), pages.len());
+    assert_eq!(paths.len(), pages.len() - 2, "operator and fetching");
+    for page in paths.keys() {
+        assert!(CODE.contains(&format!("PAGES.{page} = ")), "{page}");
+        assert!(!FRAME.contains(&format!("data-page=\"{page}\"")));
+    }
+    for path in paths.values() {
+        assert!(fetched::SCRIPTS.contains_key(path), "{path}");
+    }
+}
+
+#[test]
+fn no_inline_text_ends_its_element_early() {
+    let (words, kinds) = (kinds::words(), kinds::json());
     for (text, end) in [
         (LOOK, "</style"),
-        (&WORDS, "</script"),
+        (&words, "</script"),
         (&kinds, "</script"),
         (SCRIPT, "</script"),
     ] {
         assert!(!text.to_ascii_lowercase().contains(end));
     }
-    assert!(PAGE.contains(&format!("<style>{LOOK}</style>")));
-    assert!(PAGE.contains(&format!("<script>{SCRIPT}</script>")));
+    assert!(first().contains(&format!("<style>{LOOK}</style>")));
+    assert!(first().contains(&format!("<script>{SCRIPT}</script>")));
 }

@@ -1,12 +1,12 @@
-//! Every route of the list, whoever asks and however: the document names it, and nothing but its own form is taken.
+//! Every route of the list: documented, open to the right roles, closed to malformed requests.
 
 use super::*;
 use crate::api::{self, Method};
 
-/// Somebody of each role, and a stranger.
-fn askers(bench: &Bench) -> [Option<String>; 4] {
+/// No token, then a token of each role, weakest first.
+fn askers(fixture: &Fixture) -> [Option<String>; 4] {
     let now_us = jiff::Timestamp::now().as_microsecond();
-    let mut register = Register::open(&bench.db.with_file_name("people.db")).unwrap();
+    let mut register = Register::open(&fixture.db.with_file_name("people.db")).unwrap();
     register.add("zhao", Role::Engineer, PASSWORD, 0).unwrap();
     let mut token = |name: &str| {
         let session = register.log_in(name, PASSWORD, now_us).unwrap();
@@ -25,45 +25,45 @@ fn request(method: &str, path: &str, token: Option<&str>, body: &str) -> Request
 }
 
 fn paths(method: Method) -> Vec<&'static str> {
-    let offers = api::offers().into_iter();
-    offers
+    let routes = api::routes().into_iter();
+    routes
         .filter(|it| it.method == method)
         .map(|it| it.path)
         .collect()
 }
 
 #[tokio::test]
-async fn the_document_names_every_route_with_its_members_and_its_refusals() {
-    let answer = Bench::new().get("/api/openapi.json").await;
+async fn the_document_has_routes_with_members_and_refusals() {
+    let answer = Fixture::new().get("/api/openapi.json").await;
     let document = answer.json();
     assert!(document["openapi"].as_str().unwrap().starts_with("3."));
-    let offers = api::offers();
-    assert_eq!(document["paths"].as_object().unwrap().len(), offers.len());
-    for offer in offers {
-        let (word, members) = match offer.method {
+    let routes = api::routes();
+    assert_eq!(document["paths"].as_object().unwrap().len(), routes.len());
+    for route in routes {
+        let (word, members) = match route.method {
             Method::Get => ("get", "parameters"),
             Method::Post => ("post", "requestBody"),
         };
-        let said = &document["paths"][offer.path][word];
+        let said = &document["paths"][route.path][word];
         assert!(
             !said["summary"].as_str().unwrap().is_empty(),
             "{}",
-            offer.path
+            route.path
         );
         let refusals = said["responses"].as_object().unwrap();
         assert!(refusals.contains_key("200") && refusals.contains_key("400"));
         let members = said[members].to_string();
-        for member in &offer.members {
+        for member in &route.members {
             let quoted = format!("\"{}\"", member.name);
-            assert!(members.contains(&quoted), "{} {quoted}", offer.path);
+            assert!(members.contains(&quoted), "{} {quoted}", route.path);
         }
     }
 }
 
 #[tokio::test]
-async fn whoever_looks_gets_the_same_answer_in_every_role() {
-    let bench = Bench::new();
-    let askers = askers(&bench);
+async fn reading_gives_the_same_answer_to_every_role() {
+    let fixture = Fixture::new();
+    let askers = askers(&fixture);
     for path in paths(Method::Get) {
         // Its stream has no end.
         if path == "/api/events" {
@@ -71,7 +71,9 @@ async fn whoever_looks_gets_the_same_answer_in_every_role() {
         }
         let mut answers = Vec::new();
         for token in &askers {
-            let answer = bench.ask(request("GET", path, token.as_deref(), "")).await;
+            let answer = fixture
+                .ask(request("GET", path, token.as_deref(), ""))
+                .await;
             assert!(
                 ![401, 403, 405, 500].contains(&answer.status.as_u16()),
                 "{path}"
@@ -84,10 +86,10 @@ async fn whoever_looks_gets_the_same_answer_in_every_role() {
 }
 
 #[tokio::test]
-async fn an_order_takes_a_role_and_each_role_may_what_the_weaker_ones_may() {
-    let bench = Bench::new();
-    let askers = askers(&bench);
-    // A stranger, operator, maintainer, engineer.
+async fn an_order_needs_a_role_or_a_stronger_one() {
+    let fixture = Fixture::new();
+    let askers = askers(&fixture);
+    // Statuses without login, for an operator, a maintainer, an engineer.
     for (order, expected) in [
         (r#"{"order":"stop"}"#, [401, 200, 200, 200]),
         (r#"{"order":"start"}"#, [401, 409, 409, 409]),
@@ -123,19 +125,19 @@ async fn an_order_takes_a_role_and_each_role_may_what_the_weaker_ones_may() {
     ] {
         for (token, expected) in askers.iter().zip(expected) {
             let asked = request("POST", "/api/orders", token.as_deref(), order);
-            assert_eq!(bench.ask(asked).await.status, expected, "{order}");
+            assert_eq!(fixture.ask(asked).await.status, expected, "{order}");
         }
     }
 }
 
 #[tokio::test]
 async fn every_route_has_one_method() {
-    let bench = Bench::new();
+    let fixture = Fixture::new();
     for (path, allowed) in (paths(Method::Get).into_iter().map(|it| (it, "GET,HEAD")))
         .chain(paths(Method::Post).into_iter().map(|it| (it, "POST")))
     {
         for method in ["PUT", "DELETE", "PATCH", "OPTIONS"] {
-            let answer = bench.ask(request(method, path, None, "")).await;
+            let answer = fixture.ask(request(method, path, None, "")).await;
             assert!(answer.refused(405).contains(method), "{path}");
             assert_eq!(answer.headers["allow"], allowed, "{path}");
         }
@@ -143,9 +145,9 @@ async fn every_route_has_one_method() {
 }
 
 #[tokio::test]
-async fn a_body_that_is_too_large_or_no_json_is_refused_before_anything_is_done() {
-    let bench = Bench::new();
-    let operator = bench.token.clone();
+async fn a_large_or_malformed_body_is_refused_without_effect() {
+    let fixture = Fixture::new();
+    let operator = fixture.token.clone();
     let large = format!("{{\"order\":\"{}\"}}", "x".repeat(router::BODY_LIMIT));
     for path in ["/api/login", "/api/orders"] {
         for (body, status) in [
@@ -157,43 +159,46 @@ async fn a_body_that_is_too_large_or_no_json_is_refused_before_anything_is_done(
             (r#"{"order":7,"user":7,"password":7}"#, 400),
         ] {
             let asked = request("POST", path, Some(&operator), body);
-            assert!(!bench.ask(asked).await.refused(status).is_empty(), "{path}");
+            assert!(
+                !fixture.ask(asked).await.refused(status).is_empty(),
+                "{path}"
+            );
         }
     }
-    assert!(!bench.stopped());
+    assert!(!fixture.stopped());
 }
 
 #[tokio::test]
-async fn a_query_that_no_route_knows_is_refused_where_members_are_taken() {
-    let bench = Bench::new();
-    let offers = api::offers().into_iter();
-    for offer in offers.filter(|it| it.method == Method::Get && !it.members.is_empty()) {
-        let path = format!("{}?hastily_typed=1", offer.path);
-        let answer = bench.get(&path).await;
+async fn routes_with_members_refuse_unknown_ones() {
+    let fixture = Fixture::new();
+    let routes = api::routes().into_iter();
+    for route in routes.filter(|it| it.method == Method::Get && !it.members.is_empty()) {
+        let path = format!("{}?hastily_typed=1", route.path);
+        let answer = fixture.get(&path).await;
         assert!([400, 404].contains(&answer.status.as_u16()), "{path}");
     }
 }
 
 #[tokio::test]
-async fn a_session_that_has_run_out_or_was_ended_orders_nothing() {
-    let bench = Bench::new();
-    let mut register = Register::open(&bench.db.with_file_name("people.db")).unwrap();
+async fn an_expired_or_ended_session_orders_nothing() {
+    let fixture = Fixture::new();
+    let mut register = Register::open(&fixture.db.with_file_name("people.db")).unwrap();
     let long_ago_us = jiff::Timestamp::now().as_microsecond() - 13 * 3_600_000_000;
     let session = register.log_in("li", PASSWORD, long_ago_us).unwrap();
     let (_, old) = session.unwrap();
-    let ended = bench.token.clone();
+    let ended = fixture.token.clone();
     let out = request("POST", "/api/logout", Some(&ended), "{}");
-    assert_eq!(bench.ask(out).await.status, 200);
+    assert_eq!(fixture.ask(out).await.status, 200);
     for token in [old.as_str(), &ended, "", "0123", &"f".repeat(64)] {
         let asked = request("POST", "/api/orders", Some(token), r#"{"order":"stop"}"#);
-        assert!(bench.ask(asked).await.refused(401).contains("log in"));
+        assert!(fixture.ask(asked).await.refused(401).contains("log in"));
     }
-    assert!(!bench.stopped());
+    assert!(!fixture.stopped());
 }
 
 #[tokio::test]
-async fn a_path_that_climbs_leads_nowhere() {
-    let bench = Bench::new();
+async fn a_path_out_of_the_tree_is_404() {
+    let fixture = Fixture::new();
     for path in [
         "/../etc/passwd",
         "/api/../../etc/passwd",
@@ -205,6 +210,6 @@ async fn a_path_that_climbs_leads_nowhere() {
         "/API/VIEW",
         "/api/view;x=1",
     ] {
-        assert!(!bench.get(path).await.refused(404).is_empty(), "{path}");
+        assert!(!fixture.get(path).await.refused(404).is_empty(), "{path}");
     }
 }

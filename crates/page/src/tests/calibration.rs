@@ -1,4 +1,4 @@
-//! What measurements lean on: dates, uncertainties, golden parts.
+//! Calibrations and reference parts over HTTP.
 
 use super::*;
 use ::history::{
@@ -12,7 +12,7 @@ use serde_json::json;
 
 const HOUR_US: i64 = 3_600_000_000;
 
-/// Made at an instant, due a day later.
+/// A calibration made at `at_us` and due a day later.
 fn made(at_us: i64, simulated: bool, nominal_v: f64) -> CalibrationRecord {
     let known = Factor::new(1.0, 0.001);
     let body = serde_json::to_string(&Calibration {
@@ -67,9 +67,9 @@ fn golden(seq: u64, at_us: i64, uncertainty: Option<f64>) -> PartRecord {
     }
 }
 
-fn bench(rows: &[Row], calibrations: &[CalibrationRecord]) -> Bench {
-    let bench = Bench::new();
-    let mut store = Store::open(&bench.db, &Identity::of_this_program()).unwrap();
+fn fixture(rows: &[Row], calibrations: &[CalibrationRecord]) -> Fixture {
+    let fixture = Fixture::new();
+    let mut store = Store::open(&fixture.db, &Identity::of_this_program()).unwrap();
     for calibration in calibrations {
         store.save_calibration(calibration).unwrap();
     }
@@ -81,17 +81,17 @@ fn bench(rows: &[Row], calibrations: &[CalibrationRecord]) -> Bench {
     };
     store.begin_lot(&lot).unwrap();
     store.record(rows).unwrap();
-    bench
+    fixture
 }
 
 #[tokio::test]
-async fn the_latest_calibration_of_each_coil_is_told_and_one_that_ran_out_is_overdue() {
+async fn each_coil_has_its_latest_calibration_overdue_when_expired() {
     let now_us = jiff::Timestamp::now().as_microsecond();
     let foreign = CalibrationRecord {
         body: r#"{"simulated":true,"nominal_v":24.0,"written":"otherwise"}"#.into(),
         ..made(now_us, true, 24.0)
     };
-    let bench = bench(
+    let fixture = fixture(
         &[],
         &[
             made(now_us - 2 * HOUR_US, true, 12.0),
@@ -101,7 +101,7 @@ async fn the_latest_calibration_of_each_coil_is_told_and_one_that_ran_out_is_ove
             foreign,
         ],
     );
-    let told = bench.get("/api/calibration").await.json();
+    let told = fixture.get("/api/calibration").await.json();
     let held = told["calibrations"].as_array().unwrap();
     let facts: Vec<_> = held
         .iter()
@@ -132,7 +132,7 @@ async fn the_latest_calibration_of_each_coil_is_told_and_one_that_ran_out_is_ove
 }
 
 #[tokio::test]
-async fn a_golden_part_is_told_with_its_certificate_and_what_was_read_last() {
+async fn a_reference_part_has_certificate_and_last_reading() {
     let check = Row::ReferenceCheck(ReferenceCheckRecord {
         lot: "A".into(),
         at_us: 7_000_000,
@@ -144,7 +144,7 @@ async fn a_golden_part_is_told_with_its_certificate_and_what_was_read_last() {
         Row::Part(golden(2, 4_000_000, Some(0.5))),
         check,
     ];
-    let told = bench(&rows, &[]).get("/api/calibration").await.json();
+    let told = fixture(&rows, &[]).get("/api/calibration").await.json();
     let first = &told["golden"][0];
     assert_eq!(
         (&first["serial"], &first["run"]),
@@ -164,9 +164,9 @@ async fn a_golden_part_is_told_with_its_certificate_and_what_was_read_last() {
 }
 
 #[tokio::test]
-async fn a_reading_that_only_taught_a_lag_says_nothing_against_a_certificate() {
+async fn readings_for_the_overshoot_are_not_compared_with_certificates() {
     let rows = [Row::Part(golden(1, 5_000_000, None))];
-    let told = bench(&rows, &[]).get("/api/calibration").await.json();
+    let told = fixture(&rows, &[]).get("/api/calibration").await.json();
     let first = &told["golden"][0];
     assert_eq!(
         (&first["values"][0]["value"], &told["check"]),

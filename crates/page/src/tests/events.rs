@@ -1,4 +1,4 @@
-//! The stream of events, under a clock that stands still unless waited for.
+//! The event stream under tokio's paused clock.
 
 use super::*;
 use axum::body::BodyDataStream;
@@ -6,9 +6,9 @@ use futures_util::StreamExt;
 use std::time::Duration;
 use tokio::time::Instant;
 
-async fn stream(bench: &Bench) -> BodyDataStream {
+async fn stream(fixture: &Fixture) -> BodyDataStream {
     let request = Request::get("/api/events").body(Body::empty()).unwrap();
-    let response = bench.router.clone().oneshot(request).await.unwrap();
+    let response = fixture.router.clone().oneshot(request).await.unwrap();
     assert_eq!(response.headers()["content-type"], "text/event-stream");
     response.into_body().into_data_stream()
 }
@@ -24,9 +24,9 @@ fn judged(event: &str) -> Option<u64> {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_screen_gets_the_view_at_once_and_then_a_beat_each_second() {
-    let bench = Bench::new();
-    let (began, mut stream) = (Instant::now(), stream(&bench).await);
+async fn a_stream_starts_with_the_view_then_beats_each_second() {
+    let fixture = Fixture::new();
+    let (began, mut stream) = (Instant::now(), stream(&fixture).await);
     let first = next(&mut stream).await.unwrap();
     assert!(first.contains("event: view\n") && first.contains("retry: 1000\n"));
     assert_eq!((judged(&first), began.elapsed()), (Some(3), Duration::ZERO));
@@ -38,13 +38,13 @@ async fn a_screen_gets_the_view_at_once_and_then_a_beat_each_second() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn changes_come_at_most_20_times_a_second_and_the_last_one_always_comes() {
-    let bench = Bench::new();
-    let mut stream = stream(&bench).await;
+async fn at_most_20_views_a_second_with_the_last_change() {
+    let fixture = Fixture::new();
+    let mut stream = stream(&fixture).await;
     next(&mut stream).await.unwrap();
     let began = Instant::now();
     for judged in 0..1000 {
-        bench.view.send_modify(|view| view.judged = judged);
+        fixture.view.send_modify(|view| view.judged = judged);
         tokio::task::yield_now().await;
     }
     assert_eq!(judged(&next(&mut stream).await.unwrap()), Some(999));
@@ -53,9 +53,35 @@ async fn changes_come_at_most_20_times_a_second_and_the_last_one_always_comes() 
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_busy_rig_does_not_silence_the_beat() {
-    let bench = Bench::new();
-    let mut stream = stream(&bench).await;
+async fn an_idle_rig_sends_one_view_a_second() {
+    let fixture = Fixture::new();
+    let mut stream = stream(&fixture).await;
+    next(&mut stream).await.unwrap();
+    let (began, mut views) = (Instant::now(), 0);
+    let turns = async {
+        loop {
+            tokio::time::sleep(Duration::from_millis(50)).await;
+            fixture.view.send_modify(|view| {
+                view.at_us += 50_000;
+                view.machine
+                    .phases_s
+                    .insert("scan".into(), view.at_us as f64);
+            });
+        }
+    };
+    let events = async {
+        while began.elapsed() < Duration::from_secs(10) {
+            views += u32::from(next(&mut stream).await.unwrap().contains("event: view"));
+        }
+    };
+    tokio::select! { () = turns => {}, () = events => {} }
+    assert!((9..=10).contains(&views), "{views}");
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_busy_rig_does_not_suppress_the_beat() {
+    let fixture = Fixture::new();
+    let mut stream = stream(&fixture).await;
     let (mut views, mut beats) = (0, 0);
     let end = Instant::now() + Duration::from_secs(10);
     while Instant::now() < end {
@@ -64,45 +90,45 @@ async fn a_busy_rig_does_not_silence_the_beat() {
             true => beats += 1,
             false => views += 1,
         }
-        bench.view.send_modify(|view| view.judged += 1);
+        fixture.view.send_modify(|view| view.judged += 1);
     }
     assert!((9..=11).contains(&beats), "{beats}");
     assert!((190..=202).contains(&views), "{views}");
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_controller_that_is_gone_is_not_called_alive() {
-    let mut bench = Bench::new();
-    let mut stream = stream(&bench).await;
+async fn without_a_controller_the_beat_is_not_alive() {
+    let mut fixture = Fixture::new();
+    let mut stream = stream(&fixture).await;
     next(&mut stream).await.unwrap();
-    bench.end_of_the_controller().await;
+    fixture.end_of_the_controller().await;
     for _ in 0..3 {
         assert!(next(&mut stream).await.unwrap().contains("\"alive\":false"));
     }
 }
 
 #[tokio::test(start_paused = true)]
-async fn every_stream_ends_with_the_program_and_is_no_longer_counted() {
-    let bench = Bench::new();
+async fn streams_end_with_the_program_and_its_count() {
+    let fixture = Fixture::new();
     let mut streams = Vec::new();
     for _ in 0..50 {
-        let mut stream = stream(&bench).await;
+        let mut stream = stream(&fixture).await;
         next(&mut stream).await.unwrap();
         streams.push(stream);
     }
     assert!(
-        bench
+        fixture
             .get("/metrics")
             .await
             .text()
             .contains("relayrig_screens 50\n")
     );
-    bench.ended.send_replace(true);
+    fixture.ended.send_replace(true);
     for mut stream in streams {
         assert_eq!(next(&mut stream).await, None);
     }
     assert!(
-        bench
+        fixture
             .get("/metrics")
             .await
             .text()

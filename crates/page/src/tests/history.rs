@@ -8,13 +8,13 @@ use ::history::{
 const KEY: &str = "operate_voltage_v";
 
 /// A lot `A` of `parts` parts with 7.00 V, 7.01 V and so on; each fifth one fails.
-fn with_parts(parts: u64) -> Bench {
-    let bench = Bench::new();
+fn with_parts(parts: u64) -> Fixture {
+    let fixture = Fixture::new();
     let identity = Identity {
         program: "test".into(),
         version: "1".into(),
     };
-    let mut store = Store::open(&bench.db, &identity).unwrap();
+    let mut store = Store::open(&fixture.db, &identity).unwrap();
     let lot = LotRecord {
         lot: "A".into(),
         recipe: "r".into(),
@@ -23,7 +23,7 @@ fn with_parts(parts: u64) -> Bench {
     store.begin_lot(&lot).unwrap();
     let rows: Vec<Row> = (1..=parts).map(|seq| Row::Part(part(seq))).collect();
     store.record(&rows).unwrap();
-    bench
+    fixture
 }
 
 fn part(seq: u64) -> PartRecord {
@@ -53,13 +53,13 @@ fn part(seq: u64) -> PartRecord {
 }
 
 #[tokio::test]
-async fn query_gives_the_parts_that_the_filter_leaves() {
-    let bench = with_parts(20);
-    let all = bench.get("/api/history/query").await.json();
+async fn query_returns_the_parts_that_match_the_filter() {
+    let fixture = with_parts(20);
+    let all = fixture.get("/api/history/query").await.json();
     assert_eq!(all.as_array().unwrap().len(), 20);
     assert_eq!(all[0]["values"][KEY], 7.01);
     let path = "/api/history/query?lot=A&verdict=fail&param=operate_voltage_v&min=7.1&limit=2";
-    let some = bench.get(path).await.json();
+    let some = fixture.get(path).await.json();
     let seqs: Vec<_> = some
         .as_array()
         .unwrap()
@@ -68,18 +68,18 @@ async fn query_gives_the_parts_that_the_filter_leaves() {
         .collect();
     assert_eq!(seqs, [Some(10), Some(15)]);
     let since = "/api/history/query?since=1970-01-01T08:00:19%2B08:00";
-    assert_eq!(bench.get(since).await.json().as_array().unwrap().len(), 2);
+    assert_eq!(fixture.get(since).await.json().as_array().unwrap().len(), 2);
     assert_eq!(
-        bench.get("/api/history/query?lot=B").await.json(),
+        fixture.get("/api/history/query?lot=B").await.json(),
         serde_json::json!([])
     );
 }
 
 #[tokio::test]
-async fn pages_follow_each_other_and_their_number_is_told() {
-    let bench = with_parts(20);
+async fn pages_follow_each_other_and_count_gives_their_sum() {
+    let fixture = with_parts(20);
     let page = "/api/history/query?verdict=pass&limit=5&offset=10";
-    let seqs: Vec<_> = bench
+    let seqs: Vec<_> = fixture
         .get(page)
         .await
         .json()
@@ -89,27 +89,27 @@ async fn pages_follow_each_other_and_their_number_is_told() {
         .map(|it| it["seq"].as_u64().unwrap())
         .collect();
     assert_eq!(seqs, [13, 14, 16, 17, 18]);
-    let count = bench.get("/api/history/count?verdict=pass").await.json();
+    let count = fixture.get("/api/history/count?verdict=pass").await.json();
     assert_eq!(count, serde_json::json!({"parts": 16}));
     let beyond = "/api/history/query?offset=20";
-    assert_eq!(bench.get(beyond).await.json(), serde_json::json!([]));
+    assert_eq!(fixture.get(beyond).await.json(), serde_json::json!([]));
 }
 
 #[tokio::test]
 async fn the_yield_of_a_span_is_counted() {
-    let bench = with_parts(20);
+    let fixture = with_parts(20);
     let day = "/api/history/yield?since=1970-01-01T00:00:05Z&until=1970-01-01T00:00:11Z";
-    let counts = bench.get(day).await.json();
+    let counts = fixture.get(day).await.json();
     assert_eq!((&counts["parts"], &counts["fail"]), (&6.into(), &2.into()));
-    let ever = bench.get("/api/history/yield").await.json();
+    let ever = fixture.get("/api/history/yield").await.json();
     assert_eq!(ever["parts"], 20);
 }
 
 #[tokio::test]
-async fn a_histogram_has_every_value_in_one_class_and_the_limits_beside_it() {
-    let bench = with_parts(20);
+async fn a_histogram_counts_every_value_once_and_has_the_limits() {
+    let fixture = with_parts(20);
     let path = "/api/history/histogram?param=operate_voltage_v&lot=A";
-    let classes = bench.get(path).await.json();
+    let classes = fixture.get(path).await.json();
     let all: u64 = classes["counts"]
         .as_array()
         .unwrap()
@@ -121,24 +121,24 @@ async fn a_histogram_has_every_value_in_one_class_and_the_limits_beside_it() {
 }
 
 #[tokio::test]
-async fn a_control_chart_tells_its_last_points_with_limits_from_all() {
-    let bench = with_parts(20);
+async fn a_control_chart_has_last_points_and_limits_from_all() {
+    let fixture = with_parts(20);
     let path = "/api/history/spc?param=operate_voltage_v";
-    let whole = bench.get(path).await.json();
+    let whole = fixture.get(path).await.json();
     assert_eq!(whole[0]["kind"], "individuals");
     let points = whole[0]["points"].as_array().unwrap();
     assert_eq!((points.len(), &whole[0]["first"]), (20, &0.into()));
-    let last = bench.get(&format!("{path}&last=3")).await.json();
+    let last = fixture.get(&format!("{path}&last=3")).await.json();
     assert_eq!(last[0]["first"], 17);
     assert_eq!(last[0]["points"].as_array().unwrap(), &points[17..]);
     assert_eq!(last[0]["centre"], whole[0]["centre"]);
     let ranges = "/api/history/spc?param=operate_voltage_v&subgroup=5&rules=western-electric";
-    assert_eq!(bench.get(ranges).await.json()[1]["kind"], "ranges");
+    assert_eq!(fixture.get(ranges).await.json()[1]["kind"], "ranges");
 }
 
 #[tokio::test]
-async fn every_page_is_paper_in_both_languages_that_runs_nothing() {
-    let bench = with_parts(20);
+async fn every_report_prints_in_both_languages_without_scripts() {
+    let fixture = with_parts(20);
     for (route, en, zh) in [
         ("report/lot?lot=A", "Lot report", "批次检验报告"),
         (
@@ -154,9 +154,9 @@ async fn every_page_is_paper_in_both_languages_that_runs_nothing() {
         ("report/alarms?lot=A", "Alarm list", "报警清单"),
     ] {
         let and = if route.contains('?') { '&' } else { '?' };
-        let chinese = bench.get(&format!("/api/history/{route}")).await;
+        let chinese = fixture.get(&format!("/api/history/{route}")).await;
         let english = format!("/api/history/{route}{and}lang=en");
-        let english = bench.get(&english).await;
+        let english = fixture.get(&english).await;
         for (answer, word) in [(&chinese, zh), (&english, en)] {
             assert_eq!(answer.status, 200, "{route}");
             assert_eq!(answer.headers["content-type"], "text/html; charset=utf-8");
@@ -169,8 +169,8 @@ async fn every_page_is_paper_in_both_languages_that_runs_nothing() {
 
 #[tokio::test]
 async fn an_export_is_a_file_with_the_rows_of_the_filter() {
-    let bench = with_parts(1000);
-    let csv = bench.get("/api/history/export.csv?verdict=fail").await;
+    let fixture = with_parts(1000);
+    let csv = fixture.get("/api/history/export.csv?verdict=fail").await;
     assert_eq!(csv.headers["content-type"], "text/csv; charset=utf-8");
     assert!(
         csv.headers["content-disposition"]
@@ -181,15 +181,17 @@ async fn an_export_is_a_file_with_the_rows_of_the_filter() {
     let text = csv.text();
     assert!(text.starts_with("\u{feff}time,lot,run,kind,seq,"));
     assert_eq!(text.lines().count(), 201);
-    let sheet = bench.get("/api/history/export.xlsx?limit=3&lang=en").await;
+    let sheet = fixture
+        .get("/api/history/export.xlsx?limit=3&lang=en")
+        .await;
     assert!(sheet.body.starts_with(b"PK") && sheet.status == 200);
 }
 
 #[tokio::test]
-async fn alarms_come_in_order_of_time_page_by_page() {
-    let bench = with_parts(1);
+async fn alarms_come_in_order_of_time_by_pages() {
+    let fixture = with_parts(1);
     let identity = Identity::of_this_program();
-    let mut store = Store::open(&bench.db, &identity).unwrap();
+    let mut store = Store::open(&fixture.db, &identity).unwrap();
     for at in [3, 1, 2] {
         let alarm = AlarmRecord {
             code: format!("alarm {at}"),
@@ -198,7 +200,7 @@ async fn alarms_come_in_order_of_time_page_by_page() {
         };
         store.alarm(&alarm).unwrap();
     }
-    let alarms = bench.get("/api/history/alarms?limit=2&offset=1").await;
+    let alarms = fixture.get("/api/history/alarms?limit=2&offset=1").await;
     let codes: Vec<_> = alarms
         .json()
         .as_array()
@@ -210,9 +212,9 @@ async fn alarms_come_in_order_of_time_page_by_page() {
 }
 
 #[tokio::test]
-async fn an_answer_of_many_pieces_is_whole() {
-    let bench = with_parts(1000);
-    let answer = bench.get("/api/history/query").await;
+async fn an_answer_of_many_pieces_is_complete() {
+    let fixture = with_parts(1000);
+    let answer = fixture.get("/api/history/query").await;
     assert!(answer.body.len() > 200_000);
     let parts = answer.json();
     assert_eq!(parts.as_array().unwrap().len(), 1000);
@@ -221,15 +223,15 @@ async fn an_answer_of_many_pieces_is_whole() {
 
 #[tokio::test]
 async fn list_show_and_stats_agree_with_the_rows() {
-    let bench = with_parts(20);
-    let lots = bench.get("/api/history/list?lot=A").await.json();
+    let fixture = with_parts(20);
+    let lots = fixture.get("/api/history/list?lot=A").await.json();
     assert_eq!(
         (&lots[0]["parts"], &lots[0]["fail"]),
         (&20.into(), &4.into())
     );
-    let shown = bench.get("/api/history/show?lot=A&seq=7").await.json();
+    let shown = fixture.get("/api/history/show?lot=A&seq=7").await.json();
     assert_eq!(shown[0]["measurements"][0]["high"], 9.0);
-    let stats = bench
+    let stats = fixture
         .get("/api/history/stats?param=operate_voltage_v&lot=A")
         .await
         .json();
@@ -238,8 +240,8 @@ async fn list_show_and_stats_agree_with_the_rows() {
 }
 
 #[tokio::test]
-async fn a_filter_that_cannot_be_meant_is_refused_by_name() {
-    let bench = with_parts(1);
+async fn a_malformed_filter_is_refused_with_the_member() {
+    let fixture = with_parts(1);
     for (query, said) in [
         ("query?lto=A", "lto"),
         ("query?limit=-1", "limit"),
@@ -287,7 +289,7 @@ async fn a_filter_that_cannot_be_meant_is_refused_by_name() {
         ("show?lot=A&seq=1&kind=all", "lot, golden"),
         ("show?lot=A&seq=1&run=x", "run"),
     ] {
-        let reason = bench
+        let reason = fixture
             .get(&format!("/api/history/{query}"))
             .await
             .refused(400);
@@ -296,12 +298,18 @@ async fn a_filter_that_cannot_be_meant_is_refused_by_name() {
 }
 
 #[tokio::test]
-async fn what_never_was_is_not_found() {
-    let bench = with_parts(1);
+async fn an_unknown_lot_run_or_part_is_404() {
+    let fixture = with_parts(1);
     let path = "/api/history/stats?param=operate_voltage_v&lot=B";
-    assert!(bench.get(path).await.refused(404).contains("no run"));
+    assert!(fixture.get(path).await.refused(404).contains("no run"));
     let path = "/api/history/show?lot=A&seq=2";
-    assert!(bench.get(path).await.refused(404).contains("no lot part 2"));
+    assert!(
+        fixture
+            .get(path)
+            .await
+            .refused(404)
+            .contains("no lot part 2")
+    );
     for path in [
         "show?lot=A&seq=1&run=2",
         "spc?param=operate_voltage_v&lot=B",
@@ -316,18 +324,18 @@ async fn what_never_was_is_not_found() {
         "export.csv?lot=B",
         "export.xlsx?lot=B",
     ] {
-        bench
+        fixture
             .get(&format!("/api/history/{path}"))
             .await
             .refused(404);
     }
     let path = "/api/history/show?lot=A'--&seq=18446744073709551615";
-    bench.get(path).await.refused(404);
+    fixture.get(path).await.refused(404);
 }
 
 #[tokio::test]
-async fn without_a_history_file_there_is_none_and_none_is_made() {
-    let bench = Bench::new();
+async fn without_a_history_file_reading_creates_none() {
+    let fixture = Fixture::new();
     for route in [
         "query",
         "list",
@@ -345,33 +353,33 @@ async fn without_a_history_file_there_is_none_and_none_is_made() {
         "export.csv",
         "export.xlsx",
     ] {
-        let reason = bench
+        let reason = fixture
             .get(&format!("/api/history/{route}"))
             .await
             .refused(404);
         assert!(reason.contains("run a lot"), "{reason}");
     }
-    assert!(!bench.db.exists());
+    assert!(!fixture.db.exists());
 }
 
 #[tokio::test]
-async fn a_file_of_another_program_is_an_error_and_stays_as_it_is() {
-    let bench = Bench::new();
-    std::fs::write(&bench.db, "no database").unwrap();
+async fn a_file_of_another_program_is_refused_unchanged() {
+    let fixture = Fixture::new();
+    std::fs::write(&fixture.db, "no database").unwrap();
     assert!(
-        bench
+        fixture
             .get("/api/history/list")
             .await
             .refused(500)
             .contains("not a relayrig history")
     );
-    assert_eq!(std::fs::read(&bench.db).unwrap(), b"no database");
+    assert_eq!(std::fs::read(&fixture.db).unwrap(), b"no database");
 }
 
 #[tokio::test]
-async fn the_audit_says_who_ordered_what() {
-    let bench = with_parts(1);
-    let mut store = Store::open(&bench.db, &Identity::of_this_program()).unwrap();
+async fn the_audit_lists_orders_with_their_persons() {
+    let fixture = with_parts(1);
+    let mut store = Store::open(&fixture.db, &Identity::of_this_program()).unwrap();
     for (at_us, who, refused) in [(1, "li", None), (2, "wang", Some("not now".to_owned()))] {
         let row = OrderRecord {
             at_us,
@@ -382,16 +390,16 @@ async fn the_audit_says_who_ordered_what() {
         };
         store.record(&[Row::Order(row)]).unwrap();
     }
-    let all = bench.get("/api/history/orders").await.json();
+    let all = fixture.get("/api/history/orders").await.json();
     assert_eq!(all.as_array().unwrap().len(), 2, "{all}");
     assert_eq!(all[0]["what"]["lot"], "A");
-    let one = bench
+    let one = fixture
         .get("/api/history/orders?who=wang&limit=5")
         .await
         .json();
     assert_eq!(one.as_array().unwrap().len(), 1);
     assert_eq!(one[0]["refused"], "not now");
-    let why = bench
+    let why = fixture
         .get("/api/history/orders?verdict=pass")
         .await
         .refused(400);

@@ -1,4 +1,4 @@
-//! Who may do what, and how a session begins and ends.
+//! Login, logout and sessions.
 
 use super::*;
 use axum::http::header::{COOKIE, RETRY_AFTER, SET_COOKIE};
@@ -22,8 +22,8 @@ fn with_cookie(mut request: Request<Body>, cookie: &str) -> Request<Body> {
 
 #[tokio::test]
 async fn a_login_opens_a_session_for_the_page_and_for_scripts() {
-    let bench = Bench::new();
-    let answer = bench.ask(login("li", PASSWORD)).await;
+    let fixture = Fixture::new();
+    let answer = fixture.ask(login("li", PASSWORD)).await;
     assert_eq!(answer.status, 200, "{}", answer.text());
     assert_eq!(answer.json()["name"], "li");
     assert_eq!(answer.json()["role"], "operator");
@@ -33,34 +33,40 @@ async fn a_login_opens_a_session_for_the_page_and_for_scripts() {
     }
     let pair = cookie.split(';').next().unwrap();
     let me = Request::get("/api/me").body(Body::empty()).unwrap();
-    let me = bench
+    let me = fixture
         .ask(with_cookie(me, &format!("theme=dark; {pair}")))
         .await;
     assert_eq!(me.json()["name"], "li");
     let token = answer.json()["token"].as_str().unwrap().to_owned();
     let me = Request::get("/api/me").header("authorization", format!("Bearer {token}"));
-    let me = bench.ask(me.body(Body::empty()).unwrap()).await;
+    let me = fixture.ask(me.body(Body::empty()).unwrap()).await;
     assert_eq!(me.json()["role"], "operator");
 }
 
 #[tokio::test]
-async fn a_stranger_may_look_and_may_not_order() {
-    let bench = Bench::new();
-    assert!(bench.get("/api/me").await.json().is_null());
-    assert_eq!(bench.get("/api/view").await.status, 200);
+async fn without_login_reading_works_and_orders_do_not() {
+    let fixture = Fixture::new();
+    assert!(fixture.get("/api/me").await.json().is_null());
+    assert_eq!(fixture.get("/api/view").await.status, 200);
     let order = post("/api/orders", r#"{"order":"stop"}"#.to_owned());
-    assert!(bench.ask(order).await.refused(401).contains("log in first"));
+    assert!(
+        fixture
+            .ask(order)
+            .await
+            .refused(401)
+            .contains("log in first")
+    );
     let stolen = post("/api/orders", r#"{"order":"stop"}"#.to_owned());
     let stolen = with_cookie(stolen, &format!("relayrig_session={}", "0".repeat(64)));
-    bench.ask(stolen).await.refused(401);
-    assert!(!bench.stopped());
+    fixture.ask(stolen).await.refused(401);
+    assert!(!fixture.stopped());
 }
 
 #[tokio::test]
-async fn after_log_out_the_session_is_nobodys() {
-    let bench = Bench::new();
-    let cookie = format!("relayrig_session={}", bench.token);
-    let out = bench
+async fn logout_ends_the_session() {
+    let fixture = Fixture::new();
+    let cookie = format!("relayrig_session={}", fixture.token);
+    let out = fixture
         .ask(with_cookie(post("/api/logout", String::new()), &cookie))
         .await;
     assert_eq!(out.status, 200);
@@ -70,18 +76,18 @@ async fn after_log_out_the_session_is_nobodys() {
             .unwrap()
             .contains("Max-Age=0")
     );
-    bench.order(r#"{"order":"stop"}"#).await.refused(401);
-    assert!(!bench.stopped());
+    fixture.order(r#"{"order":"stop"}"#).await.refused(401);
+    assert!(!fixture.stopped());
 }
 
 #[tokio::test]
-async fn the_sixth_wrong_password_waits_even_if_it_were_right() {
-    let bench = Bench::new();
+async fn the_sixth_try_waits_even_with_the_right_password() {
+    let fixture = Fixture::new();
     for _ in 0..5 {
-        let refused = bench.ask(login("wang", "guess no. 1")).await.refused(401);
+        let refused = fixture.ask(login("wang", "guess no. 1")).await.refused(401);
         assert_eq!(refused, "user name or password is wrong");
     }
-    let answer = bench.ask(login("wang", PASSWORD)).await;
+    let answer = fixture.ask(login("wang", PASSWORD)).await;
     answer.refused(429);
     let seconds: u64 = answer.headers[RETRY_AFTER]
         .to_str()
@@ -89,19 +95,19 @@ async fn the_sixth_wrong_password_waits_even_if_it_were_right() {
         .parse()
         .unwrap();
     assert!((1..=300).contains(&seconds), "{seconds}");
-    assert_eq!(bench.ask(login("li", PASSWORD)).await.status, 200);
+    assert_eq!(fixture.ask(login("li", PASSWORD)).await.status, 200);
 }
 
 #[tokio::test]
-async fn a_login_from_a_foreign_page_or_without_a_password_is_refused() {
-    let bench = Bench::new();
+async fn login_from_another_site_or_without_password_is_refused() {
+    let fixture = Fixture::new();
     let mut foreign = login("li", PASSWORD);
     foreign
         .headers_mut()
         .insert("sec-fetch-site", "cross-site".parse().unwrap());
-    bench.ask(foreign).await.refused(403);
+    fixture.ask(foreign).await.refused(403);
     for body in ["", "{}", r#"{"user":"li"}"#, r#"{"user":1,"password":"x"}"#] {
-        bench
+        fixture
             .ask(post("/api/login", body.to_owned()))
             .await
             .refused(400);

@@ -1,11 +1,11 @@
-//! The book of lots and the counters of what wears, over HTTP.
+//! The list of lots and the wear counters over HTTP.
 
 use super::*;
 use ::history::{Decision, Identity, LotRecord, LotState, LotStateRecord, Row, Store, WearRecord};
 
-fn with_lots(states: &[(&str, LotState)]) -> Bench {
-    let bench = Bench::new();
-    let mut store = Store::open(&bench.db, &Identity::of_this_program()).unwrap();
+fn with_lots(states: &[(&str, LotState)]) -> Fixture {
+    let fixture = Fixture::new();
+    let mut store = Store::open(&fixture.db, &Identity::of_this_program()).unwrap();
     for (n, (lot, state)) in states.iter().enumerate() {
         let at_us = i64::try_from(n).unwrap() * 1_000_000;
         store
@@ -26,17 +26,17 @@ fn with_lots(states: &[(&str, LotState)]) -> Bench {
         };
         store.record(&[Row::LotState(row)]).unwrap();
     }
-    bench
+    fixture
 }
 
 #[tokio::test]
-async fn every_lot_says_what_may_be_ordered_of_it_and_why_not() {
-    let bench = with_lots(&[
+async fn every_lot_has_its_allowed_orders_and_reasons() {
+    let fixture = with_lots(&[
         ("A", LotState::Complete),
         ("B", LotState::Held),
         ("C", LotState::Open),
     ]);
-    let lots = bench.get("/api/lots").await.json();
+    let lots = fixture.get("/api/lots").await.json();
     let told: Vec<_> = lots.as_array().unwrap().iter().collect();
     let names: Vec<_> = told.iter().map(|it| it["lot"].as_str().unwrap()).collect();
     assert_eq!(names, ["C", "B", "A"], "the last one first");
@@ -56,24 +56,24 @@ async fn every_lot_says_what_may_be_ordered_of_it_and_why_not() {
 }
 
 #[tokio::test]
-async fn the_book_of_lots_is_turned_page_by_page() {
+async fn lots_come_by_pages() {
     let all = ["A", "B", "C", "D", "E"].map(|lot| (lot, LotState::Open));
-    let bench = with_lots(&all);
-    let page = bench.get("/api/lots?limit=2&offset=1").await.json();
+    let fixture = with_lots(&all);
+    let page = fixture.get("/api/lots?limit=2&offset=1").await.json();
     assert_eq!(
         (&page[0]["lot"], &page[1]["lot"]),
         (&"D".into(), &"C".into())
     );
     for limit in ["0", "201", "-1", "many"] {
         let path = format!("/api/lots?limit={limit}");
-        assert!(!bench.get(&path).await.refused(400).is_empty());
+        assert!(!fixture.get(&path).await.refused(400).is_empty());
     }
 }
 
 #[tokio::test]
-async fn counters_of_the_rig_that_is_shown_are_told() {
-    let bench = with_lots(&[("A", LotState::Open)]);
-    let mut store = Store::open(&bench.db, &Identity::of_this_program()).unwrap();
+async fn wear_counters_are_those_of_the_rig_in_view() {
+    let fixture = with_lots(&[("A", LotState::Open)]);
+    let mut store = Store::open(&fixture.db, &Identity::of_this_program()).unwrap();
     for (simulated, more) in [(true, 7), (false, 9)] {
         let row = WearRecord {
             simulated,
@@ -82,6 +82,6 @@ async fn counters_of_the_rig_that_is_shown_are_told() {
         };
         store.record(&[Row::Wear(row)]).unwrap();
     }
-    let wear = bench.get("/api/wear").await.json();
+    let wear = fixture.get("/api/wear").await.json();
     assert_eq!(wear[0]["count"], 7, "{wear}");
 }

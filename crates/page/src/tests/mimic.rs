@@ -4,8 +4,8 @@ use super::*;
 
 #[tokio::test]
 async fn every_body_is_drawn_from_the_front_and_from_above() {
-    let bench = Bench::new();
-    let answer = bench.get("/mimic.svg").await;
+    let fixture = Fixture::new();
+    let answer = fixture.get("/mimic.svg").await;
     assert_eq!(answer.headers["content-type"], "image/svg+xml");
     let svg = answer.text();
     for body in ["base&lt;plate&gt;", "finger", "part_nest"] {
@@ -16,8 +16,8 @@ async fn every_body_is_drawn_from_the_front_and_from_above() {
 }
 
 #[tokio::test]
-async fn what_rides_says_how_far_right_and_down_it_goes_in_each_view() {
-    let svg = Bench::new()
+async fn a_riding_body_has_its_way_in_each_view() {
+    let svg = Fixture::new()
         .get("/mimic.svg")
         .await
         .text()

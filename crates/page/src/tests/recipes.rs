@@ -1,15 +1,15 @@
-//! Recipes: everybody reads, an engineer revises, and nobody gets past what loading refuses.
+//! Recipes over HTTP: reading, revising, and the refusals of both.
 
 use super::*;
 use ::history::{Archive, Filter, OrderEntry};
 use serde_json::{Value, json};
 
-impl Bench {
-    /// Session of somebody with this role.
+impl Fixture {
+    /// Opens a session with this role.
     fn session(&self, role: Role) -> String {
         let mut register = Register::open(&self.db.with_file_name("people.db")).unwrap();
         let now_us = jiff::Timestamp::now().as_microsecond();
-        // Whoever was added before stays.
+        // Fails when an earlier call added the person.
         let _ = register.add(role.word(), role, PASSWORD, 0);
         let session = register.log_in(role.word(), PASSWORD, now_us).unwrap();
         session.unwrap().1
@@ -30,7 +30,7 @@ impl Bench {
         answer.json()
     }
 
-    /// A change of the newest revision, as a page sends it.
+    /// Returns a change of the newest revision as a page sends it.
     async fn change(&self, values: Value) -> String {
         json!({"name": "jzc-22f-012", "from": self.newest().await["hash"], "values": values})
             .to_string()
@@ -52,14 +52,14 @@ impl Bench {
 }
 
 #[tokio::test]
-async fn every_recipe_is_listed_and_one_that_does_not_load_says_why() {
-    let bench = Bench::new();
-    let broken = bench
+async fn every_recipe_is_listed_a_faulty_one_with_its_error() {
+    let fixture = Fixture::new();
+    let broken = fixture
         .db
         .with_file_name("config")
         .join("recipes/broken.toml");
     std::fs::write(broken, "name = \"broken\"\n").unwrap();
-    let listed = bench.get("/api/recipes").await.json();
+    let listed = fixture.get("/api/recipes").await.json();
     let names: Vec<&str> = listed
         .as_array()
         .unwrap()
@@ -82,8 +82,8 @@ async fn every_recipe_is_listed_and_one_that_does_not_load_says_why() {
 }
 
 #[tokio::test]
-async fn a_revision_is_shown_with_form_unit_range_and_value_of_every_key() {
-    let shown = Bench::new().newest().await;
+async fn a_revision_has_form_unit_range_and_value_of_keys() {
+    let shown = Fixture::new().newest().await;
     let fields = shown["fields"].as_array().unwrap();
     let field = fields
         .iter()
@@ -97,19 +97,19 @@ async fn a_revision_is_shown_with_form_unit_range_and_value_of_every_key() {
 }
 
 #[tokio::test]
-async fn an_engineer_revises_and_earlier_revisions_stay_to_be_read() {
-    let bench = Bench::new();
-    let engineer = bench.session(Role::Engineer);
-    let old = bench.newest().await;
-    let change = bench
+async fn an_engineer_revises_and_earlier_revisions_remain() {
+    let fixture = Fixture::new();
+    let engineer = fixture.session(Role::Engineer);
+    let old = fixture.newest().await;
+    let change = fixture
         .change(json!({"limits.operate_voltage_v.high": 8.75}))
         .await;
-    let saved = bench.revise(Some(&engineer), change).await;
+    let saved = fixture.revise(Some(&engineer), change).await;
     assert_eq!(saved.status, 200, "{}", saved.text());
     assert_eq!(saved.json()["number"], 2);
-    assert_eq!(bench.newest().await, saved.json());
-    assert!(bench.recipe_text().contains("high = 8.75"));
-    let first = bench
+    assert_eq!(fixture.newest().await, saved.json());
+    assert!(fixture.recipe_text().contains("high = 8.75"));
+    let first = fixture
         .get("/api/recipes/show?name=jzc-22f-012&revision=1")
         .await
         .json();
@@ -117,7 +117,7 @@ async fn an_engineer_revises_and_earlier_revisions_stay_to_be_read() {
         (&first["hash"], &first["newest"]),
         (&old["hash"], &json!(2))
     );
-    let [noted] = bench.audit().try_into().unwrap();
+    let [noted] = fixture.audit().try_into().unwrap();
     assert_eq!(
         (noted.who.as_str(), noted.role.as_str(), noted.refused),
         ("engineer", "engineer", None)
@@ -134,21 +134,21 @@ async fn an_engineer_revises_and_earlier_revisions_stay_to_be_read() {
 }
 
 #[tokio::test]
-async fn a_weaker_role_revises_nothing_and_is_noted_and_a_stranger_leaves_nothing() {
-    let bench = Bench::new();
-    let before = bench.recipe_text();
-    let change = bench.change(json!({"decision.slow_repeats": 4})).await;
+async fn the_audit_has_refused_revisions_of_known_persons_only() {
+    let fixture = Fixture::new();
+    let before = fixture.recipe_text();
+    let change = fixture.change(json!({"decision.slow_repeats": 4})).await;
     assert!(
-        bench
+        fixture
             .revise(None, change.clone())
             .await
             .refused(401)
             .contains("log in")
     );
-    assert!(!bench.db.exists());
+    assert!(!fixture.db.exists());
     for role in [Role::Operator, Role::Maintainer] {
-        let token = bench.session(role);
-        let refused = bench
+        let token = fixture.session(role);
+        let refused = fixture
             .revise(Some(&token), change.clone())
             .await
             .refused(403);
@@ -156,16 +156,16 @@ async fn a_weaker_role_revises_nothing_and_is_noted_and_a_stranger_leaves_nothin
             refused,
             format!("this takes the role engineer; you are {role}")
         );
-        assert_eq!(bench.audit().last().unwrap().refused, Some(refused));
+        assert_eq!(fixture.audit().last().unwrap().refused, Some(refused));
     }
-    assert_eq!(bench.recipe_text(), before);
+    assert_eq!(fixture.recipe_text(), before);
 }
 
 #[tokio::test]
-async fn a_value_that_loading_refuses_is_told_with_its_key_and_nothing_is_written() {
-    let bench = Bench::new();
-    let engineer = bench.session(Role::Engineer);
-    let before = bench.recipe_text();
+async fn a_refused_value_names_its_key_and_changes_nothing() {
+    let fixture = Fixture::new();
+    let engineer = fixture.session(Role::Engineer);
+    let before = fixture.recipe_text();
     for (values, key) in [
         (
             json!({"limits.operate_voltage_v.high": 99}),
@@ -177,25 +177,25 @@ async fn a_value_that_loading_refuses_is_told_with_its_key_and_nothing_is_writte
         (json!({"passwd": 1}), "passwd"),
         (json!({"title_en": {"a": 1}}), "title_en"),
     ] {
-        let change = bench.change(values).await;
-        let answer = bench.revise(Some(&engineer), change).await;
+        let change = fixture.change(values).await;
+        let answer = fixture.revise(Some(&engineer), change).await;
         let reason = answer.refused(400);
         assert_eq!(answer.json()["key"], key, "{reason}");
         assert!(answer.json()["found"].is_string() && answer.json()["expected"].is_string());
-        assert_eq!(bench.audit().last().unwrap().refused, Some(reason));
+        assert_eq!(fixture.audit().last().unwrap().refused, Some(reason));
     }
-    assert_eq!(bench.recipe_text(), before);
+    assert_eq!(fixture.recipe_text(), before);
 }
 
 #[tokio::test]
-async fn the_second_of_two_engineers_is_told_in_both_languages() {
-    let bench = Bench::new();
-    let engineer = bench.session(Role::Engineer);
-    let first = bench.change(json!({"decision.slow_repeats": 4})).await;
-    let second = bench.change(json!({"decision.slow_repeats": 5})).await;
-    assert_eq!(bench.revise(Some(&engineer), first).await.status, 200);
-    let before = bench.recipe_text();
-    let answer = bench.revise(Some(&engineer), second).await;
+async fn a_second_revision_is_refused_in_both_languages() {
+    let fixture = Fixture::new();
+    let engineer = fixture.session(Role::Engineer);
+    let first = fixture.change(json!({"decision.slow_repeats": 4})).await;
+    let second = fixture.change(json!({"decision.slow_repeats": 5})).await;
+    assert_eq!(fixture.revise(Some(&engineer), first).await.status, 200);
+    let before = fixture.recipe_text();
+    let answer = fixture.revise(Some(&engineer), second).await;
     assert!(
         answer
             .refused(409)
@@ -207,16 +207,16 @@ async fn the_second_of_two_engineers_is_told_in_both_languages() {
             .unwrap()
             .contains("第 2 版")
     );
-    assert_eq!(bench.recipe_text(), before);
+    assert_eq!(fixture.recipe_text(), before);
 }
 
 #[tokio::test]
-async fn what_is_no_change_is_refused_before_any_file_is_looked_at() {
-    let bench = Bench::new();
-    let engineer = bench.session(Role::Engineer);
-    let before = bench.recipe_text();
+async fn an_empty_change_is_refused_before_reading_files() {
+    let fixture = Fixture::new();
+    let engineer = fixture.session(Role::Engineer);
+    let before = fixture.recipe_text();
     let large = format!("{{\"name\":\"{}\"}}", "x".repeat(router::BODY_LIMIT));
-    let hash = bench.newest().await["hash"].clone();
+    let hash = fixture.newest().await["hash"].clone();
     for (body, status) in [
         (large, 413),
         ("{".into(), 400),
@@ -256,56 +256,60 @@ async fn what_is_no_change_is_refused_before_any_file_is_looked_at() {
         ),
     ] {
         let said = body.chars().take(90).collect::<String>();
-        let answer = bench.revise(Some(&engineer), body).await;
+        let answer = fixture.revise(Some(&engineer), body).await;
         assert!(!answer.refused(status).is_empty(), "{said}");
     }
-    assert_eq!(bench.recipe_text(), before);
+    assert_eq!(fixture.recipe_text(), before);
 }
 
 #[tokio::test]
-async fn where_nothing_can_be_noted_nothing_is_changed() {
-    let bench = Bench::new();
-    let engineer = bench.session(Role::Engineer);
-    let before = bench.recipe_text();
-    let change = bench.change(json!({"decision.slow_repeats": 4})).await;
-    std::fs::write(&bench.db, "this is a letter, not a database\n".repeat(100)).unwrap();
-    let reason = bench.revise(Some(&engineer), change).await.refused(500);
+async fn without_an_audit_nothing_is_changed() {
+    let fixture = Fixture::new();
+    let engineer = fixture.session(Role::Engineer);
+    let before = fixture.recipe_text();
+    let change = fixture.change(json!({"decision.slow_repeats": 4})).await;
+    std::fs::write(
+        &fixture.db,
+        "this is a letter, not a database\n".repeat(100),
+    )
+    .unwrap();
+    let reason = fixture.revise(Some(&engineer), change).await.refused(500);
     assert!(reason.contains("is not a relayrig history"), "{reason}");
-    assert_eq!(bench.recipe_text(), before);
+    assert_eq!(fixture.recipe_text(), before);
 }
 
 #[tokio::test]
-async fn the_process_card_of_a_recipe_is_paper() {
-    let bench = Bench::new();
+async fn the_process_card_of_a_recipe_prints() {
+    let fixture = Fixture::new();
     for (lang, word) in [("zh", "继电器"), ("en", "changeover")] {
-        let answer = bench
+        let answer = fixture
             .get(&format!("/api/recipes/card?name=jzc-22f-012&lang={lang}"))
             .await;
         assert_eq!(answer.status, 200, "{}", answer.text());
         assert!(answer.text().contains(word) && !answer.text().contains("<script"));
     }
-    bench
+    fixture
         .get("/api/recipes/card?name=..%2Frig")
         .await
         .refused(404);
 }
 
 #[tokio::test]
-async fn a_revision_or_recipe_that_never_was_is_not_there() {
-    let bench = Bench::new();
+async fn an_unknown_recipe_or_revision_is_404() {
+    let fixture = Fixture::new();
     for query in [
         "name=..%2Frig",
         "name=",
         "name=jzc-22f-012&revision=7",
         "name=jzc-22f-012&revision=0",
     ] {
-        bench
+        fixture
             .get(&format!("/api/recipes/show?{query}"))
             .await
             .refused(404);
     }
     for query in ["", "name=jzc-22f-012&revision=-1", "name=jzc-22f-012&rev=1"] {
-        bench
+        fixture
             .get(&format!("/api/recipes/show?{query}"))
             .await
             .refused(400);

@@ -1,10 +1,10 @@
-//! Judging again over HTTP.
+//! Rejudging over HTTP.
 
 use super::*;
 use ::history::{Archive, Filter, Identity, LotRecord, MeasurementRecord, PartRecord, Row, Store};
 use serde_json::{Value, json};
 
-/// Values of a good part; the operate voltage is asked for.
+/// Values of a good part without its operate voltage.
 const OTHERS: [(&str, f64); 8] = [
     ("coil_resistance_ohm", 400.0),
     ("release_voltage_v", 2.3),
@@ -38,10 +38,10 @@ fn part(seq: u64, operate_v: f64) -> PartRecord {
 }
 
 /// Four parts that passed, one of them above 9 V.
-fn bench() -> Bench {
-    let bench = Bench::new();
+fn fixture() -> Fixture {
+    let fixture = Fixture::new();
     let recipe = std::fs::read_to_string("../../config/recipes/jzc-22f-012.toml").unwrap();
-    let mut store = Store::open(&bench.db, &Identity::of_this_program()).unwrap();
+    let mut store = Store::open(&fixture.db, &Identity::of_this_program()).unwrap();
     let lot = LotRecord {
         lot: "A".into(),
         recipe: "jzc-22f-012".into(),
@@ -55,15 +55,15 @@ fn bench() -> Bench {
         .map(|(seq, volts)| Row::Part(part(seq, volts)))
         .collect();
     store.record(&rows).unwrap();
-    bench
+    fixture
 }
 
 const ASKED: &str = "/api/history/rejudge?lot=A&recipe=jzc-22f-012";
 
 #[tokio::test]
-async fn every_part_is_judged_by_the_recipe_and_the_summary_comes_last_and_nothing_is_written() {
-    let bench = bench();
-    let all = bench.get(ASKED).await;
+async fn rejudging_lists_parts_then_a_summary_and_writes_nothing() {
+    let fixture = fixture();
+    let all = fixture.get(ASKED).await;
     assert_eq!(all.headers["content-type"], "application/json");
     let all = all.json();
     let verdicts: Vec<&Value> = all
@@ -86,7 +86,7 @@ async fn every_part_is_judged_by_the_recipe_and_the_summary_comes_last_and_nothi
         (&all[4]["type"], &all[4]["changes"]),
         (&json!("summary"), &changes)
     );
-    let stored = Archive::open(&bench.db)
+    let stored = Archive::open(&fixture.db)
         .unwrap()
         .query(&Filter::default())
         .unwrap();
@@ -94,8 +94,8 @@ async fn every_part_is_judged_by_the_recipe_and_the_summary_comes_last_and_nothi
 }
 
 #[tokio::test]
-async fn only_what_changes_is_given_when_asked_so() {
-    let some = bench().get(&format!("{ASKED}&changed=true")).await.json();
+async fn changed_limits_the_answer_to_changed_verdicts() {
+    let some = fixture().get(&format!("{ASKED}&changed=true")).await.json();
     let seqs: Vec<&Value> = some
         .as_array()
         .unwrap()
@@ -106,8 +106,8 @@ async fn only_what_changes_is_given_when_asked_so() {
 }
 
 #[tokio::test]
-async fn a_question_that_cannot_be_meant_is_refused_and_what_never_was_is_not_there() {
-    let bench = bench();
+async fn malformed_questions_get_400_and_unknown_things_404() {
+    let fixture = fixture();
     for (query, status, reason) in [
         ("lot=B&recipe=jzc-22f-012", 404, "no run has this lot"),
         ("lot=A&recipe=jzc-22f-012&run=2", 404, "no run has this lot"),
@@ -122,7 +122,7 @@ async fn a_question_that_cannot_be_meant_is_refused_and_what_never_was_is_not_th
         ),
         ("lot=A&recipe=jzc-22f-012&verdict=pass", 400, "verdict"),
     ] {
-        let said = bench
+        let said = fixture
             .get(&format!("/api/history/rejudge?{query}"))
             .await
             .refused(status);

@@ -6,20 +6,20 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpListener, TcpStream};
 
 #[tokio::test]
-async fn neither_an_open_stream_nor_half_a_request_holds_up_the_end() {
-    let bench = Bench::new();
+async fn open_streams_and_half_requests_do_not_delay_the_end() {
+    let fixture = Fixture::new();
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let address = listener.local_addr().unwrap();
     let shared = Shared {
         mimic: Arc::new(Mimic::default()),
-        gate: bench.gate.clone(),
-        view: bench.view.subscribe(),
+        sessions: fixture.sessions.clone(),
+        view: fixture.view.subscribe(),
         traffic: some_traffic(),
-        db: bench.db.clone(),
+        db: fixture.db.clone(),
         config: PathBuf::from("config"),
-        orders: bench.orders.clone(),
+        orders: fixture.orders.clone(),
     };
-    let served = tokio::spawn(serve(listener, shared, bench.ended.subscribe()));
+    let served = tokio::spawn(serve(listener, shared, fixture.ended.subscribe()));
 
     let mut stream = TcpStream::connect(address).await.unwrap();
     stream
@@ -36,7 +36,7 @@ async fn neither_an_open_stream_nor_half_a_request_holds_up_the_end() {
     let mut half = TcpStream::connect(address).await.unwrap();
     half.write_all(b"GET / HTTP/1.1\r\nHos").await.unwrap();
 
-    bench.ended.send_replace(true);
+    fixture.ended.send_replace(true);
     let mut rest = Vec::new();
     stream.read_to_end(&mut rest).await.unwrap();
     served.await.unwrap().unwrap();

@@ -4,7 +4,7 @@ use super::*;
 
 const HOUR_US: i64 = 3_600_000_000;
 
-/// A register in a folder that goes with it.
+/// A new register, and its folder, which goes with the guard.
 fn fresh() -> (Register, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
     let register = Register::open(&folder.path().join("people.db")).unwrap();
@@ -21,7 +21,7 @@ fn nobody_else_may_read_the_file() {
 }
 
 #[test]
-fn the_first_start_makes_one_engineer_whose_password_is_told_once() {
+fn the_first_start_adds_one_engineer_once() {
     let (mut register, folder) = fresh();
     let (name, password) = register.first_engineer(0).unwrap().unwrap();
     assert!(register.first_engineer(0).unwrap().is_none());
@@ -44,7 +44,7 @@ fn wrong_name_and_wrong_password_get_the_same_answer() {
 }
 
 #[test]
-fn a_session_ends_after_its_shift_at_log_out_and_with_a_new_password() {
+fn a_session_ends_by_time_logout_and_new_password() {
     let (mut register, _folder) = fresh();
     register.add("li", Role::Operator, "secret-12", 0).unwrap();
     let enter = |register: &mut Register| register.log_in("li", "secret-12", 0).unwrap().unwrap().1;
@@ -63,7 +63,7 @@ fn a_session_ends_after_its_shift_at_log_out_and_with_a_new_password() {
 }
 
 #[test]
-fn a_removed_person_has_no_session_left_and_the_last_engineer_stays() {
+fn removal_ends_sessions_and_spares_the_last_engineer() {
     let (mut register, _folder) = fresh();
     register.first_engineer(0).unwrap();
     register
@@ -83,7 +83,7 @@ fn a_removed_person_has_no_session_left_and_the_last_engineer_stays() {
 }
 
 #[test]
-fn names_that_cannot_be_typed_or_are_taken_are_refused() {
+fn malformed_and_taken_names_are_refused() {
     let (mut register, _folder) = fresh();
     for name in ["", "a b", "a\"", "a\n", &"x".repeat(41)] {
         let refused = register.add(name, Role::Operator, "secret-12", 0);
@@ -97,7 +97,7 @@ fn names_that_cannot_be_typed_or_are_taken_are_refused() {
 }
 
 #[test]
-fn a_file_of_another_program_is_refused_and_left_as_it_is() {
+fn a_foreign_file_is_refused_unchanged() {
     let (register, folder) = fresh();
     let path = folder.path().join("people.db");
     drop(register);

@@ -1,49 +1,35 @@
-// Alarms: the bar on every page, the page with those that stand and those that were, and the sound.
+// The page of alarms: the active ones with their help, and the past ones.
 
-function showAlarmBar(alarms) {
-  const shown = alarms.filter((it) => !it.shelved);
-  const lines = shown.slice(0, 2).map((alarm, place) => {
-    const line = make("p");
-    line.append(make("b", "▲ " + alarm.code));
-    line.append(make("span", language === "zh" ? alarm.text_zh : alarm.text_en));
-    if (place === 0 && shown.length > 1) line.append(make("b", "(" + word("first_out") + ")"));
-    return line;
-  });
-  if (shown.length > 2) lines.push(make("p", "+ " + (shown.length - 2) + " " + word("more_alarms")));
-  at("alarms").className = shown.length ? "bad" : "";
-  at("alarms").replaceChildren(...(lines.length ? lines : [make("p", word("no_alarm"))]));
-}
-
-const said = (alarm, what) => alarm[what + (language === "zh" ? "_zh" : "_en")];
+const inLanguage = (alarm, what) => alarm[what + (language === "zh" ? "_zh" : "_en")];
 const matches = (alarm) => {
   const text = at("alarm_search").value.trim().toLowerCase();
   return [alarm.code, alarm.text, alarm.text_en, alarm.text_zh, alarm.cause_zh].some((it) => it && it.toLowerCase().includes(text));
 };
 
-// One that stands, with why, what follows and what to do; the buttons stay while the text changes.
+// Makes the entry of an active alarm with cause, consequence, action and buttons.
 function standing(alarm) {
   const item = make("li", undefined, alarm.state);
   item.dataset.code = alarm.code;
   const head = make("div", undefined, "head"), help = make("dl");
-  head.append(make("b", (alarm.first_out ? "▲ " : "△ ") + alarm.code), make("span", said(alarm, "text")));
-  said(alarm, "help").forEach((text, place) => {
+  head.append(make("b", (alarm.first_out ? "▲ " : "△ ") + alarm.code), make("span", inLanguage(alarm, "text")));
+  inLanguage(alarm, "help").forEach((text, place) => {
     const pair = make("div");
     pair.append(make("dt", word(["alarms-cause", "alarms-consequence", "alarms-action"][place])), make("dd", text || NONE));
     help.append(pair);
   });
-  const state = [known("alarms-state-" + alarm.state, alarm.state), known("alarms-stops-" + alarm.stops, alarm.stops),
+  const state = [wordOr("alarms-state-" + alarm.state, alarm.state), wordOr("alarms-stops-" + alarm.stops, alarm.stops),
     alarm.count + " ×", clock(alarm.raised_at_us)];
   if (alarm.shelved) state.push(word("alarms-shelved"));
   if (alarm.first_out) state.push(word("first_out"));
   const buttons = make("div", undefined, "row");
-  buttons.append(button(word("order-acknowledge"), () => tell({order: "acknowledge", alarm: alarm.code}), "acknowledge"),
+  buttons.append(button(word("order-acknowledge"), () => giveAlarmOrder({order: "acknowledge", alarm: alarm.code}), "acknowledge"),
     button(word("order-shelve"), () => askShelve(alarm.code), "shelve"));
   item.append(head, make("p", state.join(" · "), "about"), help, buttons);
   return item;
 }
 
-async function tell(order) {
-  const why = me === null ? word("stop-login") : await give(order);
+async function giveAlarmOrder(order) {
+  const why = me === null ? word("stop-login") : await sendOrder(order);
   at("alarm_answer").textContent = why || word("order-" + order.order) + ": " + word("order-taken");
 }
 
@@ -58,12 +44,12 @@ at("shelve").addEventListener("submit", (event) => {
   event.preventDefault();
   at("shelve").close();
   const minutes = Number(at("shelve_minutes").value);
-  tell({order: "shelve", alarm: at("shelve").dataset.code, minutes, reason: at("shelve_reason").value});
+  giveAlarmOrder({order: "shelve", alarm: at("shelve").dataset.code, minutes, reason: at("shelve_reason").value});
 });
-at("acknowledge_all").addEventListener("click", () => tell({order: "acknowledge"}));
+at("acknowledge_all").addEventListener("click", () => giveAlarmOrder({order: "acknowledge"}));
 at("alarm_search").addEventListener("input", () => { drawnAlarms = ""; showView(); showPast(); });
 
-// --- those that stand ---
+// --- active alarms ---
 
 let drawnAlarms = "";
 
@@ -75,12 +61,12 @@ function showStanding() {
   at("standing").replaceChildren(...(shown.length ? shown.map(standing) : [make("li", word("no_alarm"))]));
 }
 
-// --- those that were ---
+// --- past alarms ---
 
 let past = [];
 
 async function readPast() {
-  const members = {since: moment(at("alarm_since").value), limit: 500};
+  const members = {since: rfc3339(at("alarm_since").value), limit: 500};
   at("alarm_print").href = "/api/history/report/alarms" + query({since: members.since, lang: language});
   try {
     past = (await (await ask("/api/history/alarms" + query(members))).json()).reverse();
@@ -91,7 +77,7 @@ async function readPast() {
   showPast();
 }
 
-// Rows of before have their text in English only: beside it the cause that the catalogue has for the code.
+// Rows of older versions have an English text only; Chinese then shows the cause from the catalogue.
 function pastText(it) {
   const text = make("span", (language === "zh" && (it.text_zh || it.cause_zh)) || it.text);
   text.title = it.text;
@@ -106,36 +92,3 @@ function showPast() {
 at("alarm_since").addEventListener("change", readPast);
 
 PAGES.alarms = {show: showStanding, enter() { drawnAlarms = ""; readPast(); }};
-
-// --- sound ---
-
-let muted = kept.get("muted") === "yes";
-let speaker = null;
-let soundedAt = 0;
-const SOUND_EVERY_MS = 2000;
-
-// Two tones as long as somebody has to look: an alarm that is neither acknowledged nor shelved.
-function sound(alarms) {
-  const wanted = alarms.some((it) => it.state === "unacknowledged" && !it.shelved);
-  at("mute").textContent = word(muted ? "sound-off" : "sound-on");
-  at("mute").setAttribute("aria-pressed", muted);
-  at("mute").dataset.sounding = wanted && !muted;
-  const now = performance.now();
-  if (!wanted || muted || now - soundedAt < SOUND_EVERY_MS) return;
-  soundedAt = now;
-  speaker = speaker || new AudioContext();
-  speaker.resume().then(() => [[880, 0], [660, .25]].forEach(([hertz, after]) => {
-    const tone = speaker.createOscillator(), volume = speaker.createGain();
-    tone.frequency.value = hertz;
-    volume.gain.value = .15;
-    tone.connect(volume).connect(speaker.destination);
-    tone.start(speaker.currentTime + after);
-    tone.stop(speaker.currentTime + after + .2);
-  }), () => { /* no speaker here: the colour must do */ });
-}
-
-at("mute").addEventListener("click", () => {
-  muted = !muted;
-  kept.set("muted", muted ? "yes" : "no");
-  showView();
-});

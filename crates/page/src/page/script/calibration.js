@@ -1,4 +1,4 @@
-// Calibration: factors with their uncertainty, until when they hold, and what golden parts read last.
+// Calibration: factors with uncertainty and due date, and the last readings of reference parts.
 
 const FACTOR_UNITS = {1: "", ohm: "Ω", "mohm/V": "mΩ/V", us: "µs"};
 let instruments = null;
@@ -30,7 +30,7 @@ function calibrationTables(it) {
     return cell;
   }));
   head.append(names);
-  body.append(...it.factors.map((one) => row(known("factor-" + one.name, one.name), ...measured(one.value, one.uncertainty),
+  body.append(...it.factors.map((one) => row(wordOr("factor-" + one.name, one.name), ...measured(one.value, one.uncertainty),
     FACTOR_UNITS[one.unit] ?? one.unit)));
   table.append(head, body);
   return [title, due, table];

@@ -1,11 +1,11 @@
-// The history: the filter of the command `history query`, pages of parts, and one part down to its replies.
+// The history: the filter of `history query`, pages of parts, and one part down to its raw replies.
 
 const PAGE = 100;
 const FIELDS = ["lot", "recipe", "verdict", "bin", "param", "min", "max"];
 let offset = 0;
 
 function filter() {
-  const members = {since: moment(at("h_since").value), until: moment(at("h_until").value)};
+  const members = {since: rfc3339(at("h_since").value), until: rfc3339(at("h_until").value)};
   for (const field of FIELDS) members[field] = at("h_" + field).value.trim();
   return members;
 }
@@ -17,14 +17,12 @@ function makeFilter() {
   fillSelect(at("h_param"), [all, ...keyOptions()]);
 }
 
-async function readLots() {
-  const lots = await (await ask("/api/history/list")).json();
-  at("lots").replaceChildren(...[...new Set(lots.map((it) => it.lot))].map((lot) => {
+async function fillLots() {
+  at("lots").replaceChildren(...[...new Set((await readLots()).map((it) => it.lot))].map((lot) => {
     const option = make("option");
     option.value = lot;
     return option;
   }));
-  return lots;
 }
 
 async function readParts() {
@@ -37,7 +35,7 @@ async function readParts() {
   try {
     const [{parts: count}, parts] = await Promise.all([
       ask("/api/history/count" + query(members)).then((it) => it.json()),
-      ask("/api/history/query" + query({...members, limit: PAGE, offset})).then((it) => it.json()), readLots()]);
+      ask("/api/history/query" + query({...members, limit: PAGE, offset})).then((it) => it.json()), fillLots()]);
     showParts(parts, count);
     at("h_trouble").textContent = "";
   } catch (error) {
@@ -46,27 +44,15 @@ async function readParts() {
   }
 }
 
-const verdictCell = (verdict) => {
-  const cell = make("td", undefined, verdict);
-  cell.append(make("span", known("verdict-" + verdict, verdict), "verdict"));
-  return cell;
-};
-
-function partLink(part) {
-  const link = make("a", part.lot + " / " + part.run + " / " + part.seq);
-  link.href = "#part" + query({lot: part.lot, run: part.run, seq: part.seq, kind: part.kind});
-  return link;
-}
-
 function showParts(parts, count) {
   const key = at("h_param").value;
   at("h_value").textContent = key ? nameOf(key) + " / " + unitOf(key) : "";
   at("h_count").textContent = count === 0 ? word("h-none")
-    : (offset + 1) + " – " + (offset + parts.length) + " " + word("judged_of") + " " + whole(count);
+    : (offset + 1) + " – " + (offset + parts.length) + " " + word("judged_of") + " " + integerText(count);
   at("h_back").disabled = offset === 0;
   at("h_next").disabled = offset + parts.length >= count;
   at("parts").replaceChildren(...parts.map((part) => row(partLink(part), clock(part.time), part.recipe,
-    verdictCell(part.verdict), known("bin-" + (part.landed_bin || part.bin), NONE),
+    verdictCell(part.verdict), wordOr("bin-" + (part.landed_bin || part.bin), NONE),
     reasonTexts(part).join("; "), key ? measured(part.values[key], part.uncertainty[key]).join(" ± ") : "")));
 }
 
@@ -98,10 +84,30 @@ async function readPart() {
   }
 }
 
+// Groups times less than 50 ms apart into bars: one characteristic may have readings far apart in a test, such as NC.
+function groupTimes(times, name) {
+  const bars = [];
+  for (const at of times.sort((a, b) => a - b)) {
+    const last = bars.at(-1);
+    if (last && at - last.to < .05) last.to = at;
+    else bars.push({from: at, to: at, name});
+  }
+  return bars;
+}
+
+function showTestBars(part) {
+  const rows = part.measurements.filter((it) => it.samples.length).map((it) => {
+    const name = nameOf(it.parameter);
+    return [name + (it.attempt > 1 ? " " + it.attempt : ""), groupTimes(it.samples.map((sample) => seconds(sample.at)), name)];
+  }).sort((a, b) => a[1][0].from - b[1][0].from);
+  const test = partBars(part).slice(0, 1);
+  at("part_bars").replaceChildren(...(rows.length ? [timeBars(test.length ? [[word("h-test_s"), test], ...rows] : rows, word("g-test"))] : []));
+}
+
 function showPart(part) {
   const facts = [["h-time", clock(part.time)], ["recipe", part.recipe],
-    ["verdict", known("verdict-" + part.verdict, part.verdict)],
-    ["h-bin", known("bin-" + (part.landed_bin || part.bin), NONE)],
+    ["verdict", wordOr("verdict-" + part.verdict, part.verdict)],
+    ["h-bin", wordOr("bin-" + (part.landed_bin || part.bin), NONE)],
     ["h-test_s", part.test_s === null ? NONE : part.test_s.toFixed(2) + " s"],
     ["h-cycle_s", part.cycle_s === null ? NONE : part.cycle_s.toFixed(2) + " s"],
     ["h-reasons", reasonTexts(part).join("; ") || NONE]];

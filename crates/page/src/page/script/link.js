@@ -1,6 +1,6 @@
-// The link to the rig: views and beats down, and what the page says when they stay away.
+// The link to the rig: receives views and beats, and marks the page as stale without them.
 
-// A beat comes each second: one may be missing, and what is older than 3 s is grey for certain.
+// A beat comes each second. One may be missing; values older than 3 s are grey in any case.
 const STALE_MS = 2200;
 const AGAIN_MS = 1000;
 let heard = -Infinity;
@@ -9,7 +9,7 @@ let source = null;
 
 const linkNow = () => (performance.now() - heard > STALE_MS ? "lost" : alive ? "live" : "ended");
 
-// Live, lost or ended; a page that is not live says so and is grey.
+// Shows the state of the link; the page is grey unless the link is live.
 function showLink() {
   const link = linkNow();
   document.body.classList.toggle("stale", link !== "live");

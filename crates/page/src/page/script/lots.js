@@ -1,11 +1,11 @@
-// Lots: begun, held, released and closed here; counters of what wears, and who ordered what.
+// Lots: starts, holds, releases and closes them; wear counters; audit of orders.
 
 const DECISIONS = ["hold_lot", "release_lot", "close_lot"];
 const BOOK = 20;
 const AUDIT = 50;
 let book = [];
 let skipped = 0;
-// What the page was read for; read again when another lot or state is on.
+// Lot and state at the last reading; a change causes the next one.
 let readFor = "";
 
 const underWay = (lot) => view && view.under_way && view.lot === lot;
@@ -15,12 +15,12 @@ function lotAnswer(text) {
 }
 
 async function orderLot(order) {
-  const why = me === null ? word("stop-login") : await give(order);
+  const why = me === null ? word("stop-login") : await sendOrder(order);
   lotAnswer(why || word("order-" + order.order) + ": " + word("order-taken"));
   if (!why) readBook();
 }
 
-// Why an order about a lot would not be taken now: the machine's reason, or the lot's own.
+// Returns the reason against an order about a lot: of the machine or of the lot; empty without one.
 function whyNotLot(order, line) {
   if (order === "release_lot" && underWay(line.lot)) return word("lots-clear_alarm");
   if (underWay(line.lot)) return order === "close_lot" ? whyNot("close_lot") : whyNot("start", "lot");
@@ -41,7 +41,7 @@ async function readRecipes() {
   }
 }
 
-// A lot that was begun goes on with its own recipe.
+// Fills the form with a lot and its recipe.
 function choose(line) {
   at("l_lot").value = line.lot;
   at("l_recipe").value = line.recipe;
@@ -70,8 +70,8 @@ function lotRow(line) {
     ...DECISIONS.map((order) => lotButton(order, line, () => askDecision(order, line.lot))));
   const final = line.first_pass + line.retest_pass;
   const passed = share(line.first_pass, line.parts) + (line.retest_pass ? " (" + share(final, line.parts) + ")" : "");
-  return row(make("b", line.lot), state, line.recipe, clock(line.opened), whole(line.runs), whole(line.parts), passed,
-    whole(line.suspect), orders);
+  return row(make("b", line.lot), state, line.recipe, clock(line.opened), integerText(line.runs), integerText(line.parts), passed,
+    integerText(line.suspect), orders);
 }
 
 function lotButton(order, line, press) {
@@ -106,7 +106,7 @@ async function readBook() {
     book = await (await ask("/api/lots" + query({limit: BOOK, offset: skipped}))).json();
     showBook();
     showWear(await (await ask("/api/wear")).json());
-    showAudit(await (await ask("/api/history/orders" + query({since: lately()}))).json());
+    showAudit(await (await ask("/api/history/orders" + query({since: dayAgo()}))).json());
   } catch (error) {
     lotAnswer(error.message);
   }
@@ -137,32 +137,32 @@ at("decide").addEventListener("submit", (event) => {
   orderLot({order, lot, reason: at("decide_reason").value.trim()});
 });
 
-// --- what wears, and the audit ---
+// --- wear counters and audit ---
 
 function showWear(counters) {
   at("l_wear").replaceChildren(...counters.map((it) => {
     const item = make("li"), replaced = it.replaced ? clock(it.replaced) + " · " + it.replaced_by : NONE;
-    item.append(make("span", known("counter-" + it.name, it.name)), make("b", whole(it.count)),
+    item.append(make("span", wordOr("counter-" + it.name, it.name)), make("b", integerText(it.count)),
       make("span", word("lots-replaced_at") + ": " + replaced),
       button(word("order-replaced"), () => orderLot({order: "replaced", counter: it.name})));
     return item;
   }));
 }
 
-// The audit of a day: what was ordered in this shift and the one before.
-const lately = () => new Date(Date.now() - 24 * 3600 * 1000).toISOString();
+// Start of the audit shown: 24 hours cover this shift and the one before.
+const dayAgo = () => new Date(Date.now() - 24 * 3600 * 1000).toISOString();
 
-// What is known of an order first, whatever else it has after that.
+// Writes an order with lot, recipe and count first, then its other members.
 function orderedText(what) {
   const {order, lot, recipe, count, ...others} = what;
   const members = [lot, recipe, count, ...Object.values(others)].filter((it) => ["string", "number"].includes(typeof it));
-  return [known("order-" + order, order), ...members.filter((it) => it !== "")].join(" · ");
+  return [wordOr("order-" + order, order), ...members.filter((it) => it !== "")].join(" · ");
 }
 
 function showAudit(orders) {
   const last = orders.slice(-AUDIT).reverse();
   at("l_audit").replaceChildren(...last.map((it) => row(clock(it.at), it.lot || NONE,
-    it.who + (it.role ? " (" + known("role-" + it.role, it.role) + ")" : ""), orderedText(it.what), it.refused || word("order-taken"))));
+    it.who + (it.role ? " (" + wordOr("role-" + it.role, it.role) + ")" : ""), orderedText(it.what), it.refused || word("order-taken"))));
 }
 
 function showLots() {

@@ -1,9 +1,9 @@
-// The machine to scale: the picture comes once, its groups follow the view.
+// The machine to scale: fetches the picture once and moves its groups with every view.
 
-// What is drawn, with what carries it.
+// Moving bodies with the actuators that carry them.
 let bodies = [];
-// Where each actuator stood last, mm.
-const was = {};
+// Last known position of each actuator, mm.
+const lastPositions = {};
 const PLACES = {pocket: "part_pusher", nest: "part_nest", gripper: "part_gripper"};
 
 async function fetchMimic() {
@@ -19,15 +19,15 @@ async function fetchMimic() {
   } catch { /* the page works without its picture */ }
 }
 
-// A moving actuator is drawn on its way to the end that it left the other one for.
+// Draws a moving actuator at its target: CSS makes the transition.
 function showMimic() {
   if (!view || !view.machine) return;
-  const stands = {};
+  const positions = {};
   for (const it of view.machine.actuators) {
-    const from = was[it.name] ?? it.from_mm;
-    if (it.from_mm === it.to_mm) was[it.name] = it.from_mm;
+    const from = lastPositions[it.name] ?? it.from_mm;
+    if (it.from_mm === it.to_mm) lastPositions[it.name] = it.from_mm;
     const far = Math.abs(it.from_mm - from) > Math.abs(it.to_mm - from) ? it.from_mm : it.to_mm;
-    stands[it.name] = it.from_mm === it.to_mm ? it.from_mm : it.moving ? far : (it.from_mm + it.to_mm) / 2;
+    positions[it.name] = it.from_mm === it.to_mm ? it.from_mm : it.moving ? far : (it.from_mm + it.to_mm) / 2;
   }
   showRefused(view.machine.refused);
   const held = {};
@@ -35,8 +35,8 @@ function showMimic() {
   for (const {body, rides} of bodies) {
     let right = 0, down = 0;
     for (const [name, x, y] of rides) {
-      right += x * (stands[name] || 0);
-      down += y * (stands[name] || 0);
+      right += x * (positions[name] || 0);
+      down += y * (positions[name] || 0);
     }
     body.style.transform = "translate(" + right + "px," + down + "px)";
     if (!body.classList.contains("part")) continue;
@@ -47,17 +47,19 @@ function showMimic() {
   }
 }
 
-// --- a motion that the guard refused: mover, blocker, the room it would sweep ---
+// --- a motion that the guard refused: mover, blocker and swept volume ---
 
-// A plant with a scene of its own has bodies without a word here.
-const bodyText = (id) => known("body-" + id, id.replaceAll("_", " "));
+// The id stands for the name of a body that only the plant's own scene has.
+const bodyText = (id) => wordOr("body-" + id, id.replaceAll("_", " "));
+
+const bodiesText = ({mover, blocker, text}) => (mover === "" ? text : bodyText(mover) + " → " + bodyText(blocker));
 
 const refusedText = ({mover, blocker, distance_mm: distance, margin_mm: margin, at: place, last_clear_mm: clear, text}) => (mover === "" ? text
-  : bodyText(mover) + " → " + bodyText(blocker) + " (" + place.map((it) => it.toFixed(1)).join(", ") + " mm), " +
+  : bodiesText({mover, blocker}) + " (" + place.map((it) => it.toFixed(1)).join(", ") + " mm), " +
     word("collision-distance") + " " + distance.toFixed(2) + " mm, " + word("collision-needed") + " > " + margin.toFixed(2) + " mm" +
     (clear === null ? "" : ", " + word("collision-clear") + " " + clear.toFixed(2) + " mm"));
 
-// Corners around `points`, each [x, y]; Andrew's monotone chain.
+// Returns the corners of the convex hull of `points`, each [x, y] (Andrew's monotone chain).
 function hull(points) {
   const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
   const half = (all) => all.reduce((chain, point) => {
@@ -68,12 +70,12 @@ function hull(points) {
   return [...half(sorted), ...half(sorted.reverse())];
 }
 
-// The room of one body between the ends of its ways: its silhouettes are convex, so is what they sweep.
+// Returns the area that a body sweeps between the ends of its strokes: the hull of its silhouettes, which are convex.
 function swept(body, rides, strokes) {
   const shifts = [0, 1, 2].map((which) => rides.reduce(([right, down], [name, x, y]) => {
     const stroke = strokes.find((it) => it.actuator === name);
-    const stands = view.machine.actuators.find((it) => it.name === name);
-    const mm = !stroke ? (stands ? stands.from_mm : 0) : which === 2 ? stroke.to_mm : stroke.from_mm[which];
+    const positions = view.machine.actuators.find((it) => it.name === name);
+    const mm = !stroke ? (positions ? positions.from_mm : 0) : which === 2 ? stroke.to_mm : stroke.from_mm[which];
     return [right + x * mm, down + y * mm];
   }, [0, 0]));
   return Array.from(body.querySelectorAll("polygon"), (polygon) => {
@@ -98,5 +100,5 @@ function showRefused(refused) {
   }
   at("refused").hidden = !refused;
   at("refused").replaceChildren(...(refused ? [make("b", "◆ " + word("collision") + ": " +
-    known("motion-" + refused.motion, refused.motion)), make("span", refusedText(refused.refused))] : []));
+    wordOr("motion-" + refused.motion, refused.motion)), make("span", refusedText(refused.refused))] : []));
 }

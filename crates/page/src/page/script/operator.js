@@ -3,26 +3,26 @@
 function showProgress() {
   const {judged, count} = view;
   const percent = count > 0 ? Math.min(100, 100 * judged / count) : 0;
-  at("judged").textContent = count === null ? whole(judged) + " " + word("judged")
-    : whole(judged) + " " + word("judged_of") + " " + whole(count) + " " + word("judged");
+  at("judged").textContent = count === null ? integerText(judged) + " " + word("judged")
+    : integerText(judged) + " " + word("judged_of") + " " + integerText(count) + " " + word("judged");
   at("percent").textContent = count === null ? word("endless") : percent.toFixed(0) + "\u202f%";
   at("bar").setAttribute("aria-valuenow", percent.toFixed(0));
   at("bar").firstElementChild.style.width = percent + "%";
 }
 
 function showLast(last) {
-  at("seq").textContent = last ? whole(last.seq) : "";
+  at("seq").textContent = last ? integerText(last.seq) : "";
   const [, verdict, bin] = at("verdict").children;
   at("verdict").className = last ? last.verdict : "";
-  verdict.textContent = last ? known("verdict-" + last.verdict, last.verdict) : NONE;
-  bin.textContent = last ? word("to_bin") + " " + known("bin-" + last.bin, last.bin) : word("no_part");
+  verdict.textContent = last ? wordOr("verdict-" + last.verdict, last.verdict) : NONE;
+  bin.textContent = last ? word("to_bin") + " " + wordOr("bin-" + last.bin, last.bin) : word("no_part");
   showRecent(view.recent);
   const reasons = last ? reasonTexts(last) : [];
   at("reasons").replaceChildren(...reasons.slice(0, 3).map((text) => make("li", text)));
   at("values").replaceChildren(...measuredKeys().map((key) => valueRow(key, last)));
 }
 
-// Those of the recipe; before the first lot all there are.
+// Returns the characteristics with limits in the recipe, all before the first lot.
 function measuredKeys() {
   const keys = keysOf((key) => Object.hasOwn(view.limits, key));
   return keys.length ? keys : keysOf(() => true);
@@ -37,7 +37,7 @@ function valueRow(key, last) {
   return row;
 }
 
-// Where a value lies between its limits; one without a limit on that side ends where the band does.
+// Draws a value between its limits. Without a limit the band ends at 0 or at 1.5 times the greatest number.
 function bandCell(key, last) {
   const cell = make("td"), limits = view.limits[key], value = last ? last.values[key] : undefined;
   if (!limits || !Number.isFinite(value)) return cell;
@@ -64,12 +64,12 @@ const SHORT = {pass: "✓", fail: "✗", void: "?"};
 function showRecent(recent) {
   at("recent").replaceChildren(...recent.map((part) => {
     const item = make("li", SHORT[part.verdict], part.verdict);
-    item.title = part.seq + " · " + known("verdict-" + part.verdict, part.verdict) + " · " + known("bin-" + part.bin, part.bin);
+    item.title = part.seq + " · " + wordOr("verdict-" + part.verdict, part.verdict) + " · " + wordOr("bin-" + part.bin, part.bin);
     return item;
   }));
 }
 
-// The usual names first, then whatever else there is.
+// Returns the usual names first, then the other names of `counts`.
 const ordered = (names, counts) => [...names, ...Object.keys(counts).filter((it) => !names.includes(it))];
 
 function showBins(bins) {
@@ -78,7 +78,7 @@ function showBins(bins) {
     const item = make("li"), bar = make("div", undefined, "bar"), fill = make("i");
     fill.style.width = 100 * (bins[name] || 0) / most + "%";
     bar.append(fill);
-    item.append(make("span", known("bin-" + name, name)), make("b", whole(bins[name] || 0)), bar);
+    item.append(make("span", wordOr("bin-" + name, name)), make("b", integerText(bins[name] || 0)), bar);
     return item;
   }));
 }
@@ -86,15 +86,15 @@ function showBins(bins) {
 function showVerdicts(verdicts) {
   at("verdicts").replaceChildren(...ordered(VERDICTS, verdicts).map((name) => {
     const pair = make("div");
-    pair.append(make("dt", known("verdict-" + name, name)), make("dd", whole(verdicts[name] || 0)));
+    pair.append(make("dt", wordOr("verdict-" + name, name)), make("dd", integerText(verdicts[name] || 0)));
     return pair;
   }));
 }
 
 function showOperator() {
-  at("state").textContent = stateText(view);
-  for (const id of ["came_in", "inside", "went_out"]) at(id).textContent = whole(view[id]);
-  at("rate").textContent = view.parts_per_hour === null ? NONE : whole(Math.round(view.parts_per_hour));
+  at("state").replaceChildren(...stateTexts(view).map((text, place) => make(place ? "small" : "span", text)));
+  for (const id of ["came_in", "inside", "went_out"]) at(id).textContent = integerText(view[id]);
+  at("rate").textContent = view.parts_per_hour === null ? NONE : integerText(Math.round(view.parts_per_hour));
   const judged = Object.values(view.verdicts).reduce((sum, it) => sum + it, 0);
   at("yield").textContent = share(view.verdicts.pass || 0, judged);
   showMimic();

@@ -1,10 +1,10 @@
-// Orders: to the rig, and the buttons that give them.
+// Orders to the rig, and their buttons.
 
-// Stop comes last, where no other button is hit by mistake.
+// Stop is last and apart, so that a finger does not hit another button.
 const ORDERS = ["reset", "start", "hold", "unhold", "abort", "clear", "stop"];
 
-// The reason why an order was not taken; nothing when it was.
-async function give(order) {
+// Sends an order; returns the reason of a refusal, empty when the rig took it.
+async function sendOrder(order) {
   try {
     const reply = await post("/api/orders", order);
     const body = await reply.json();
@@ -14,7 +14,7 @@ async function give(order) {
   }
 }
 
-// Of a motion that the guard refuses: with the words of the page for both bodies.
+// Returns the text of a jog that the guard refuses, with the page's names of both bodies; empty for other orders.
 function refusedJog({order, motion}) {
   const jog = order === "jog" && view.machine.jogs.find((it) => it.motion === motion);
   return jog && jog.refused && jog.refused.mover ? word("collision") + ": " + refusedText(jog.refused) : "";
@@ -29,11 +29,11 @@ function whyNot(order, withWhat = "") {
   return language === "zh" ? found.why_zh : found.why_en;
 }
 
-// A button that would not be taken looks dead, and says why when it is pressed.
+// Makes a button of an order. While the rig would refuse the order it looks disabled, and a press shows the reason.
 function orderButton(order, withWhat, body, name, answer) {
   const element = button("", async () => {
     const why = element.title;
-    answer(why || await give(body) || element.textContent + ": " + word("order-taken"));
+    answer(why || await sendOrder(body) || element.textContent + ": " + word("order-taken"));
   }, name);
   element.dataset.order = order;
   element.dataset.with = withWhat;
@@ -50,7 +50,7 @@ function showButtons(within, label) {
   }
 }
 
-// Made once: a button that changed under the finger would lose the press.
+// Makes the buttons once: replacing a button between press and release would lose the click.
 function makeOrders() {
   const answer = (text) => { at("order_answer").textContent = text; };
   at("orders").replaceChildren(...ORDERS.map((order) =>

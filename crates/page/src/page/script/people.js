@@ -1,7 +1,7 @@
-// Who is here.
+// Login and logout.
 
 async function askWho() {
-  try { me = await (await fetch("/api/me")).json(); } catch { /* asked again when the link is back */ }
+  try { me = await (await fetch("/api/me")).json(); } catch { /* without the rig the last answer stays */ }
   showWho();
 }
 
@@ -31,7 +31,7 @@ at("login").addEventListener("submit", async (event) => {
       at("password").value = "";
       at("login").close();
     } else {
-      at("login_answer").textContent = known("login-" + answer.status, whyRefused(body));
+      at("login_answer").textContent = wordOr("login-" + answer.status, whyRefused(body));
     }
   } catch {
     at("login_answer").textContent = word("stop-lost");

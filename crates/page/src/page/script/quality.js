@@ -1,4 +1,4 @@
-// Quality: control charts and histograms as the paper has them, capability in figures, and the cycle as bars.
+// Quality: the control charts and histograms of the printed reports, capability, and cycles as bars.
 
 let lotsSeen = [];
 
@@ -13,7 +13,7 @@ async function enterQuality() {
   }
 }
 
-// Figures of a page for paper; the same drawing here and there. The look of the paper stays there.
+// Returns the figures of a printed report without its style.
 async function figures(path, which) {
   const text = (await (await ask(path)).text()).replace(/<style[^]*?<\/style>/g, "").replace(/ style="[^"]*"/g, "");
   const page = new DOMParser().parseFromString(text, "text/html");
@@ -53,17 +53,17 @@ function showCapability(stats, unit) {
 at("q_lot").addEventListener("change", readQuality);
 at("q_param").addEventListener("change", readQuality);
 
-// --- the cycle as bars: what moved and tested when, over the last seconds ---
+const LAST_PARTS = 12;
 
-const SPAN_MS = 10000;
-let seen = [];
-
-function notice() {
-  const now = performance.now();
-  const busy = view.machine.actuators.filter((it) => it.moving).map((it) => it.name);
-  if (view.stage) busy.push("test");
-  seen = [...seen.filter((it) => now - it.at < SPAN_MS), {at: now, busy}];
+// Draws how the last parts of a lot overlap: one is tested while the one before it travels to its bin.
+async function showStoredCycles(lot) {
+  const {parts: count} = await (await ask("/api/history/count" + query({lot}))).json();
+  const members = {lot, limit: LAST_PARTS, offset: Math.max(0, count - LAST_PARTS)};
+  const parts = (await (await ask("/api/history/query" + query(members))).json()).filter((it) => partBars(it).length);
+  at("q_stored").replaceChildren(...(parts.length ? [timeBars(parts.map((it) => [word("h-part") + " " + it.seq, partBars(it)]), word("g-stored"))] : []));
 }
+
+// --- the cycle as bars: moving actuators and tests of the last seconds ---
 
 function showCycle() {
   const rows = [...view.machine.actuators.map((it) => it.name), "test"];
@@ -72,11 +72,11 @@ function showCycle() {
   const svg = drawn("svg", {viewBox: "0 0 1000 " + (rows.length * high + 4), role: "img", "aria-label": word("q-cycle")});
   rows.forEach((name, place) => {
     const label = drawn("text", {x: 0, y: place * high + 16, class: "label"});
-    label.textContent = known("actuator-" + name, name);
+    label.textContent = wordOr("actuator-" + name, name);
     svg.append(label, drawn("path", {d: "M" + left + " " + ((place + 1) * high) + "H1000", class: "rule"}));
-    seen.forEach((it, index) => {
+    activity.forEach((it, index) => {
       if (!it.busy.includes(name)) return;
-      const from = Math.max(left, x(it.at)), to = index + 1 < seen.length ? x(seen[index + 1].at) : x(now);
+      const from = Math.max(left, x(it.at)), to = index + 1 < activity.length ? x(activity[index + 1].at) : x(now);
       svg.append(drawn("rect", {x: from, y: place * high + 4, width: Math.max(1, to - from), height: high - 8, class: "busy"}));
     });
   });

@@ -1,20 +1,20 @@
-// A revision of a recipe as a sheet: every key in words with unit and range, and inputs for whoever may change it.
+// A revision of a recipe as a sheet: every key in words with its unit; for an engineer with range and input.
 
 // Three columns.
 const RECIPE_SECTIONS = [["about", "part", "decision"], ["limits"], ["test", "strategy"]];
 let recipe = null, drawnRecipe = "";
-// What was typed into the newest revision, by path; the answer that refused a value; and what was said last, in either language.
+// Texts typed into the newest revision, by path; the refusal of a value; the last message, as a function of the language.
 const typed = new Map();
-let refusedField = null, saidOfRecipe = () => ["", false];
+let refusedField = null, recipeMessage = () => ["", false];
 
 const mayRevise = () => me !== null && me.role === "engineer" && recipe !== null && recipe.number === recipe.newest;
 const recipeSection = (path) => (path.startsWith("test.strategy.") ? "strategy" : path.includes(".") ? path.split(".")[0] : "about");
 const rangeText = (it) => (it.low === undefined ? "" : (it.low_allowed ? it.low + " … " : "> " + it.low + " … ") + it.high);
 
-// What a field shows of a value; a list one text for each number.
+// Returns the text of a value for its input; for a list one text per number.
 const asTyped = (value) => (Array.isArray(value) ? value.map(String) : value === null ? "" : String(value));
 
-// What was typed as the rig takes it; what is no number goes as text, to be refused with its name.
+// Converts typed text to the value for the rig. Text that is no number goes as it is; the rig refuses it with the key.
 function asValue(field, text) {
   if (Array.isArray(text)) return text.map((it) => asValue({form: "number"}, it));
   if (text === "" && field.optional) return null;
@@ -36,7 +36,7 @@ function changedValues() {
 // --- fields ---
 
 const choiceText = (value) => (value === true || value === "true" ? word("r-yes") : value === false || value === "false" ? word("r-no")
-  : known("choice-" + value, value));
+  : wordOr("choice-" + value, value));
 
 function shownText(field) {
   const {value} = field;
@@ -74,26 +74,26 @@ function fieldInputs(field) {
 
 const fieldName = (path) => {
   const [section, key, side] = path.split(".");
-  return section === "limits" ? nameOf(key) + " " + word("r-" + side) : known("field-" + path.replaceAll(".", "-"), nameOf(path.split(".").at(-1)));
+  return section === "limits" ? nameOf(key) + " " + word("r-" + side) : wordOr("field-" + path.replaceAll(".", "-"), nameOf(path.split(".").at(-1)));
 };
 
 const isFixed = (field) => field.path === "name" || Boolean(field.words) && field.words.length === 1;
 
-// The value, or its inputs.
+// Makes the cell with the value, or with its inputs.
 function fieldCell(field) {
   const cell = make("td");
   cell.append(...(mayRevise() && !isFixed(field) ? fieldInputs(field) : [make("span", shownText(field))]));
   return cell;
 }
 
-// The unit; for whoever may change the value also where it must lie.
+// Makes the cell with the unit, and with the range where the value may be changed.
 function unitCell(field) {
   const cell = make("td", unitText(field.unit));
   if (mayRevise()) cell.append(make("small", rangeText(field)));
   return cell;
 }
 
-// Below a row why its value was refused.
+// Adds the reason below the row whose value the rig refused.
 function withRefusal(element, path) {
   if (!refusedField || !(refusedField.key + ".").startsWith(path + ".")) return [element];
   const cell = make("td", refusedValue(refusedField), "trouble");
@@ -108,7 +108,7 @@ function fieldRow(field) {
   return withRefusal(row(fieldName(field.path), value), field.path);
 }
 
-// Least and greatest good value side by side.
+// Makes the row of a characteristic with its lower and upper limit.
 function limitRow(key, [low, high]) {
   return withRefusal(row(nameOf(key), fieldCell(low), fieldCell(high), unitCell(low)), "limits." + key);
 }

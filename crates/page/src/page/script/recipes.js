@@ -1,4 +1,4 @@
-// Recipes: what they say, earlier revisions, and the next one.
+// Recipes: shows revisions and saves the next one.
 
 function drawRecipe() {
   at("r_fields").replaceChildren(...(recipe ? RECIPE_SECTIONS : []).map((sections) => {
@@ -13,7 +13,7 @@ function drawRecipe() {
   if (recipe) at("r_revision").value = String(recipe.number);
   at("r_saved").textContent = recipe ? word("r-saved_at") + " " + clock(recipe.saved_at_us) : "";
   at("r_card").href = "/api/recipes/card" + query({name: at("r_name").value, lang: language});
-  const [text, bad] = saidOfRecipe();
+  const [text, bad] = recipeMessage();
   at("r_answer").textContent = text;
   at("r_answer").className = bad ? "trouble" : "";
   const refused = at("r_fields").querySelector(".trouble");
@@ -21,7 +21,7 @@ function drawRecipe() {
 }
 
 function showRecipe() {
-  const now = JSON.stringify([recipe && recipe.hash, recipe && recipe.number, language, mayRevise(), refusedField, saidOfRecipe()]);
+  const now = JSON.stringify([recipe && recipe.hash, recipe && recipe.number, language, mayRevise(), refusedField, recipeMessage()]);
   if (now === drawnRecipe) return;
   drawnRecipe = now;
   drawRecipe();
@@ -31,12 +31,12 @@ function showRecipe() {
 
 async function readRecipe(revision = "") {
   typed.clear();
-  [refusedField, drawnRecipe, saidOfRecipe] = [null, "", () => ["", false]];
+  [refusedField, drawnRecipe, recipeMessage] = [null, "", () => ["", false]];
   try {
     recipe = await (await ask("/api/recipes/show" + query({name: at("r_name").value, revision}))).json();
   } catch (error) {
     recipe = null;
-    saidOfRecipe = () => [error.message, true];
+    recipeMessage = () => [error.message, true];
   }
   showRecipe();
 }
@@ -47,17 +47,17 @@ async function enterRecipes() {
   try {
     all = await (await ask("/api/recipes")).json();
   } catch (error) {
-    saidOfRecipe = () => [error.message, true];
+    recipeMessage = () => [error.message, true];
     return showRecipe();
   }
   fillSelect(at("r_name"), all.map((it) => [it.name, it.name + (it.trouble ? " ▲" : "")]));
   if (first && view && all.some((it) => it.name === view.recipe)) at("r_name").value = view.recipe;
-  // What was typed outlives a change of language or page.
+  // Typed text survives a change of language or page.
   if (recipe === null || typed.size === 0) await readRecipe();
   showRecipe();
 }
 
-// Found and expected in the language of the page, as far as there are words for it.
+// Writes found and expected in the language of the page; expected stays English where the page has no words for it.
 function refusedValue(answer) {
   const field = recipe.fields.find((it) => (answer.key + ".").startsWith(it.path + "."));
   const against = /^at most high, which is (.+)$/.exec(answer.expected), below = /^less than \w+, (.+) V$/.exec(answer.expected);
@@ -90,7 +90,7 @@ async function saveRecipe() {
 at("r_fields").addEventListener("submit", async (event) => {
   event.preventDefault();
   refusedField = null;
-  saidOfRecipe = await saveRecipe();
+  recipeMessage = await saveRecipe();
   showRecipe();
 });
 at("r_discard").addEventListener("click", () => readRecipe());

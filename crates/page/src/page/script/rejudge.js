@@ -1,7 +1,7 @@
-// A lot held against another recipe: what would change.
+// Judges a lot by another recipe and shows the changes.
 
 let judgedAgain = null;
-// Name of the recipe that each lot was judged by last.
+// Name of the last recipe of each lot.
 let judgedBy = new Map();
 
 async function enterRejudge() {
@@ -20,7 +20,7 @@ async function enterRejudge() {
   showRejudged();
 }
 
-// The newest revision of its own recipe comes first to mind.
+// Selects the lot's own recipe, whose newest revision is the likely choice.
 const proposeRecipe = () => {
   const own = judgedBy.get(at("j_lot").value);
   if (Array.from(at("j_recipe").options).some((it) => it.value === own)) at("j_recipe").value = own;
@@ -44,13 +44,13 @@ function showRejudged() {
   const parts = judgedAgain ? judgedAgain.slice(0, -1) : [], {changes} = judgedAgain ? judgedAgain.at(-1) : {changes: []};
   at("j_changes").replaceChildren(...changes.map(({was, now, parts: count}) => {
     const pair = make("div");
-    pair.append(make("dt", known("verdict-" + was, was) + " → " + known("verdict-" + now, now)), make("dd", whole(count)));
+    pair.append(make("dt", wordOr("verdict-" + was, was) + " → " + wordOr("verdict-" + now, now)), make("dd", integerText(count)));
     return pair;
   }));
   at("j_more").textContent = parts.length > MOST_ROWS ? word("j-first") + " " + MOST_ROWS
     : judgedAgain && parts.length === 0 ? word("j-none") : "";
   at("j_parts").replaceChildren(...parts.slice(0, MOST_ROWS).map((it) => row(partLink({...it, kind: "lot"}),
-    verdictCell(it.verdict_was), verdictCell(it.verdict), known("bin-" + it.bin, it.bin), reasonTexts(it).join("; "))));
+    verdictCell(it.verdict_was), verdictCell(it.verdict), wordOr("bin-" + it.bin, it.bin), reasonTexts(it).join("; "))));
 }
 
 at("j_form").addEventListener("submit", (event) => {

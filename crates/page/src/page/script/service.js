@@ -1,13 +1,13 @@
-// For service: how the lines are doing, every signal, motions by hand.
+// For service: health of the lines, every signal, jogging.
 
 const shareText = (bad, all) => (all ? (100 * bad / all).toFixed(3) + "\u202f%" : NONE);
 
 function showBus() {
   at("bus").replaceChildren(...view.lines.flatMap((line) => line.modules.map((it) => {
     const bad = it.time_outs + it.checksum_errors + it.other_errors;
-    const element = row(line.name, it.address, whole(it.transactions), it.p50_ms === null ? NONE : it.p50_ms.toFixed(2),
-      it.p99_ms === null ? NONE : it.p99_ms.toFixed(2), whole(it.time_outs), whole(it.checksum_errors),
-      whole(it.other_errors), whole(it.refusals), whole(it.resets), shareText(bad, it.transactions));
+    const element = row(line.name, it.address, integerText(it.transactions), it.p50_ms === null ? NONE : it.p50_ms.toFixed(2),
+      it.p99_ms === null ? NONE : it.p99_ms.toFixed(2), integerText(it.time_outs), integerText(it.checksum_errors),
+      integerText(it.other_errors), integerText(it.refusals), integerText(it.resets), shareText(bad, it.transactions));
     if (bad * 1000 > it.transactions) element.className = "bad";
     return element;
   })));
@@ -36,18 +36,18 @@ function makeJogs() {
   }));
 }
 
-// What the guard says before the motion is made.
+// Shows the guard's decision on a jog in advance; for a refused one the two bodies, with the details as title.
 function showClearance(item, jog) {
-  const text = !jog ? "" : jog.refused ? refusedText(jog.refused)
+  const text = !jog ? "" : jog.refused ? bodiesText(jog.refused)
     : word("io-clearance") + " " + (jog.clearance_mm === null ? word("io-far") : jog.clearance_mm.toFixed(2) + " mm");
   item.lastElementChild.textContent = text;
-  item.lastElementChild.title = jog && jog.refused ? jog.refused.text : text;
+  item.lastElementChild.title = jog && jog.refused ? refusedText(jog.refused) : text;
   item.classList.toggle("blocked", Boolean(jog && jog.refused));
 }
 
 function signal(name, on) {
   const item = make("li", undefined, on === null ? "unknown" : on ? "on" : "off");
-  item.append(make("i", undefined, "mark"), make("span", known("signal-" + name, name)),
+  item.append(make("i", undefined, "mark"), make("span", wordOr("signal-" + name, name)),
     make("b", on === null ? "?" : on ? "1" : "0"));
   item.title = name;
   return item;
@@ -69,8 +69,9 @@ function showIo() {
   for (const item of at("jogs").children) showClearance(item, view.machine.jogs.find((it) => it.motion === item.dataset.motion));
   for (const element of at("modes").children) element.classList.toggle("now", element.dataset.with === view.machine.mode);
   const {wear, probe_contact_ohm: contact} = view.machine;
-  at("wear").replaceChildren(...Object.entries(wear).map(([name, count]) => row(known("actuator-" + name, known("counter-" + name, name)), whole(count))),
-    row(word("io-probe_contact"), contact === null ? "-" : contact.toFixed(2) + " Ω"));
+  at("wear").replaceChildren(...Object.entries(wear).map(([name, count]) => row(wordOr("actuator-" + name, wordOr("counter-" + name, name)), integerText(count))),
+    row(word("io-probe_contact"), contact === null ? NONE : contact.toFixed(2) + "\u202fΩ"));
 }
 
+makeJogs();
 PAGES.io = {show: showIo};

@@ -1,36 +1,36 @@
 "use strict";
-// What all pages share. Every text comes through textContent, every word from the table.
+// Functions that all pages share. Texts enter the page through textContent only, so that no value can become markup.
 const WORDS = JSON.parse(document.getElementById("words").textContent);
-// What is measured of every kind of device.
+// Characteristics of every kind of device, with unit and names.
 const {characteristics: CHARACTERISTICS} = JSON.parse(document.getElementById("kinds").textContent);
 const UNITS = {ohm: "Ω", mOhm: "mΩ", C: "°C"};
 const BINS = ["pass", "coil", "contact", "voltage", "time", "retest"];
 const VERDICTS = ["pass", "fail", "void"];
 const NONE = "–";
 
-const asked = new URLSearchParams(location.search);
-const kept = {
+const options = new URLSearchParams(location.search);
+const stored = {
   get(name) { try { return localStorage.getItem(name); } catch { return null; } },
-  set(name, value) { try { localStorage.setItem(name, value); } catch { /* private window: not kept */ } },
+  set(name, value) { try { localStorage.setItem(name, value); } catch { /* a private window stores nothing */ } },
 };
-let language = asked.get("lang") || kept.get("lang") || (navigator.language.startsWith("zh") ? "zh" : "en");
-let theme = asked.get("theme") || kept.get("theme") ||
+let language = options.get("lang") || stored.get("lang") || (navigator.language.startsWith("zh") ? "zh" : "en");
+let theme = options.get("theme") || stored.get("theme") ||
   (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
 if (language !== "zh") language = "en";
 let view = null;
 let me = null;
-// Pages by name: `enter` when it opens or the language changes, `show` at every view while it is open.
+// Functions of the pages by name: `enter` runs when the page opens or the language changes, `show` at every view.
 const PAGES = {};
 
 const at = (id) => document.getElementById(id);
 const word = (key) => WORDS[key][language];
-const known = (key, text) => (Object.hasOwn(WORDS, key) ? word(key) : text);
+const wordOr = (key, text) => (Object.hasOwn(WORDS, key) ? word(key) : text);
 const unitText = (unit) => UNITS[unit] || unit || "";
 
 // --- characteristics ---
 
 const characteristic = (key) => CHARACTERISTICS.find((it) => it.key === key);
-// A key that no kind has came with a file of another system, and is its own name.
+// The key stands for the name of a characteristic that no kind has: imported files may hold such keys.
 const nameOf = (key) => characteristic(key)?.[language] ?? key;
 const unitOf = (key) => unitText(characteristic(key)?.unit);
 const keysOf = (has) => CHARACTERISTICS.map((it) => it.key).filter(has);
@@ -75,7 +75,7 @@ function fillSelect(element, options) {
 
 const two = (number) => String(number).padStart(2, "0");
 
-// Local time to the second; of RFC 3339 or of microseconds since 1970.
+// Formats RFC 3339 or microseconds since 1970 UTC as local time to the second.
 function clock(when) {
   if (when === null || when === undefined) return NONE;
   const date = new Date(typeof when === "number" ? when / 1000 : when);
@@ -83,14 +83,14 @@ function clock(when) {
     two(date.getHours()) + ":" + two(date.getMinutes()) + ":" + two(date.getSeconds());
 }
 
-// What a field for local time holds, as RFC 3339; nothing when it is empty.
-const moment = (text) => (text ? new Date(text).toISOString() : "");
+// Converts the text of a field for local time to RFC 3339; empty for an empty field.
+const rfc3339 = (text) => (text ? new Date(text).toISOString() : "");
 
 // --- figures ---
 
-const whole = (value) => (Number.isFinite(value) ? value.toLocaleString("en").replaceAll(",", "\u202f") : NONE);
+const integerText = (value) => (Number.isFinite(value) ? value.toLocaleString("en").replaceAll(",", "\u202f") : NONE);
 
-// A value ends where its uncertainty ends, which has two significant digits.
+// Formats a value and its uncertainty: two significant digits of the uncertainty, the value to the same place.
 function measured(value, uncertainty) {
   if (!Number.isFinite(value)) return [NONE, NONE];
   if (!(uncertainty > 0)) return [String(Number(value.toPrecision(6))), NONE];
@@ -102,21 +102,20 @@ function share(part, all) {
   return all > 0 ? (100 * part / all).toFixed(1) + "\u202f%" : NONE;
 }
 
-
-// A query string of what is not empty.
+// Makes a query string of the members that are not empty.
 function query(members) {
   const named = Object.entries(members).filter(([, value]) => value !== "" && value !== null && value !== undefined);
   return named.length ? "?" + new URLSearchParams(named) : "";
 }
 
-// What the rig says to a question; a refusal is thrown with its reason.
+// Requests `path`; throws the reason of a refusal.
 async function ask(path) {
   const reply = await fetch(path, {signal: AbortSignal.timeout(20000)});
   if (reply.ok) return reply;
   throw new Error(whyRefused(await reply.json()));
 }
 
-// Why a request was refused, in the language of the page where the rig knows it.
+// Returns the reason of a refusal, Chinese only where the rig has it.
 const whyRefused = (answer) => (language === "zh" && answer.reason_zh) || answer.reason;
 
 async function post(path, body) {

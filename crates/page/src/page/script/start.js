@@ -1,17 +1,19 @@
-// Which page is open, and everything begun.
+// Opens pages, shows views, and starts everything.
 
 let current = "operator";
 
 function openPage() {
   const name = location.hash.slice(1).split("?")[0];
-  current = Object.hasOwn(PAGES, name) ? name : "operator";
-  for (const page of document.querySelectorAll("main")) page.hidden = page.dataset.page !== current;
+  current = Object.hasOwn(SCRIPTS, name) ? name : "operator";
+  const shown = Object.hasOwn(PAGES, current) ? current : "fetching";
+  for (const page of document.querySelectorAll("main")) page.hidden = page.dataset.page !== shown;
   for (const tab of document.querySelectorAll("nav a")) {
     const open = tab.hash === "#" + (["part", "rejudge"].includes(current) ? "history" : current);
     tab.toggleAttribute("aria-current", open);
     if (open) tab.setAttribute("aria-current", "page");
   }
-  if (PAGES[current].enter) PAGES[current].enter();
+  showFetching();
+  PAGES[current]?.enter?.();
   showView();
 }
 
@@ -25,35 +27,39 @@ function showView() {
   }
   showAlarmBar(view.alarms);
   sound(view.alarms);
-  notice();
-  if (PAGES[current].show) PAGES[current].show();
+  recordActivity();
+  PAGES[current]?.show?.();
+}
+
+// Writes the words of the markup in the language of the page.
+function translate() {
+  for (const element of document.querySelectorAll("[data-word]")) element.textContent = word(element.dataset.word);
+  for (const element of document.querySelectorAll("[data-label]")) element.setAttribute("aria-label", word(element.dataset.label));
 }
 
 function showAll() {
   document.documentElement.lang = language === "zh" ? "zh-CN" : "en";
   document.documentElement.dataset.theme = theme;
-  for (const element of document.querySelectorAll("[data-word]")) element.textContent = word(element.dataset.word);
-  for (const element of document.querySelectorAll("[data-label]")) element.setAttribute("aria-label", word(element.dataset.label));
+  translate();
   showWho();
   openPage();
 }
 
 at("language").addEventListener("click", () => {
   language = language === "zh" ? "en" : "zh";
-  // What was said in the other language is over.
-  for (const id of ["order_answer", "io_answer", "alarm_answer", "l_answer", "login_answer"]) at(id).textContent = "";
-  kept.set("lang", language);
+  // Answers in the other language go.
+  for (const element of document.querySelectorAll(".answer")) element.textContent = "";
+  stored.set("lang", language);
   showAll();
 });
 at("theme").addEventListener("click", () => {
   theme = theme === "dark" ? "light" : "dark";
-  kept.set("theme", theme);
+  stored.set("theme", theme);
   showAll();
 });
 addEventListener("hashchange", openPage);
 
 makeOrders();
-makeJogs();
 showAll();
 askWho();
 fetchMimic();

@@ -1,4 +1,4 @@
-// Trace: the last traffic of the lines, each message with its meaning.
+// Trace: the last messages of the lines, each with its meaning.
 
 let frozen = false;
 

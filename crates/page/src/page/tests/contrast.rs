@@ -1,8 +1,8 @@
-//! Text can be read on its ground: contrast by the formula of WCAG 2.2, clause 1.4.3.
+//! Contrast of every text with its background, by the formula of WCAG 2.2, clause 1.4.3.
 
 use super::super::LOOK;
 
-/// Text and the grounds it stands on.
+/// Colour of a text, and its backgrounds.
 const PAIRS: [(&str, &[&str]); 4] = [
     ("text", &["ground", "panel"]),
     ("soft", &["ground", "panel"]),
@@ -26,7 +26,7 @@ fn luminance(colour: [f64; 3]) -> f64 {
 }
 
 #[test]
-fn every_text_has_a_contrast_of_at_least_4_5_in_both_themes() {
+fn every_text_has_contrast_4_5_in_both_themes() {
     for theme in [":root {", "[data-theme=\"dark\"] {"] {
         for (text, grounds) in PAIRS {
             for ground in grounds {

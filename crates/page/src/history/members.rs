@@ -1,6 +1,6 @@
-//! A query string in two: the filter of the history, and what only one route knows.
+//! Splits a query string into the filter of the history and the members of one route.
 
-use super::super::error::HmiError;
+use super::super::error::ApiError;
 use axum::extract::Query;
 use axum::http::Uri;
 use history::Filter;
@@ -9,79 +9,79 @@ use quality::rules::Rules;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
-/// Points of a control chart that are told when nobody says how many.
+/// Default of `last`, points of a control chart.
 const SHOWN: usize = 200;
-/// The most that may be asked for.
+/// Greatest `last`.
 const MOST_SHOWN: usize = 10_000;
 
-/// What a route takes beside the filter.
-pub(super) trait Own: DeserializeOwned {
-    /// Its members in the query string.
+/// Members that a route takes besides the filter.
+pub(super) trait RouteMembers: DeserializeOwned {
+    /// Names of the members.
     const MEMBERS: &'static [&'static str];
 }
 
-/// Of a control chart.
+/// Members of a control chart.
 #[derive(Debug, Deserialize)]
-pub(super) struct Charting {
-    /// Parts of a subgroup, 1 to 10; 1 when absent.
+pub(super) struct ChartMembers {
+    /// Parts in a subgroup, 1 to 10; 1 when absent.
     pub subgroup: Option<u8>,
     /// `nelson` (when absent) or `western-electric`.
     pub rules: Option<Rules>,
-    /// Only the last so many points; [`SHOWN`] when absent.
+    /// Number of points, counted from the last; [`SHOWN`] when absent.
     last: Option<usize>,
-    /// Of the page only: `zh` (when absent) or `en`.
+    /// Language of a printed chart: `zh` (when absent) or `en`.
     pub lang: Option<Lang>,
 }
 
-impl Own for Charting {
+impl RouteMembers for ChartMembers {
     const MEMBERS: &'static [&'static str] = &["subgroup", "rules", "last", "lang"];
 }
 
-impl Charting {
-    /// How many points are told.
-    pub fn last(&self) -> Result<usize, HmiError> {
+impl ChartMembers {
+    /// Returns the number of points to send. Fails out of 1 to [`MOST_SHOWN`].
+    pub fn last(&self) -> Result<usize, ApiError> {
         match self.last.unwrap_or(SHOWN) {
             last @ 1..=MOST_SHOWN => Ok(last),
-            last => Err(HmiError::Query {
+            last => Err(ApiError::Query {
                 reason: format!("last: found {last}, expected 1 to {MOST_SHOWN}"),
             }),
         }
     }
 }
 
-/// Of a page.
+/// Members of a printed report.
 #[derive(Debug, Deserialize)]
-pub(super) struct Printed {
+pub(super) struct ReportMembers {
     /// `zh` (when absent) or `en`.
     pub lang: Option<Lang>,
-    /// Of a certificate: the part.
+    /// Number of the part of a certificate.
     pub seq: Option<u64>,
-    /// Of a lot report: the shortest cycle the line can keep, s.
+    /// Shortest possible cycle of the line for a lot report, s.
     pub ideal_cycle_s: Option<f64>,
 }
 
-impl Own for Printed {
+impl RouteMembers for ReportMembers {
     const MEMBERS: &'static [&'static str] = &["lang", "seq", "ideal_cycle_s"];
 }
 
-/// Of the audit of orders.
+/// Members of the audit of orders.
 #[derive(Debug, Deserialize)]
-pub(super) struct Audited {
-    /// Orders of this person only.
+pub(super) struct AuditMembers {
+    /// Name of the person whose orders to list; all when absent.
     pub who: Option<String>,
 }
 
-impl Own for Audited {
+impl RouteMembers for AuditMembers {
     const MEMBERS: &'static [&'static str] = &["who"];
 }
 
-/// Lang of what is printed when nobody names one.
+/// Returns the language of a printed report, Chinese by default.
 pub(super) fn language(asked: Option<Lang>) -> Lang {
     asked.unwrap_or(Lang::Zh)
 }
 
-/// The filter, and what is the route's own.
-pub(super) fn asked<T: Own>(uri: &Uri) -> Result<(Filter, T), HmiError> {
+/// Returns the filter and the members of the route. Fails on an unknown or malformed member.
+pub(super) fn split<T: RouteMembers>(uri: &Uri) -> Result<(Filter, T), ApiError> {
     let own = |pair: &&str| {
         let name = pair.split('=').next().unwrap_or_default();
         T::MEMBERS.contains(&name)
@@ -91,10 +91,10 @@ pub(super) fn asked<T: Own>(uri: &Uri) -> Result<(Filter, T), HmiError> {
     Ok((parsed(&filter)?, parsed(&own)?))
 }
 
-fn parsed<T: DeserializeOwned>(pairs: &[&str]) -> Result<T, HmiError> {
+fn parsed<T: DeserializeOwned>(pairs: &[&str]) -> Result<T, ApiError> {
     let uri = format!("/?{}", pairs.join("&"));
-    let uri: Uri = uri.parse().map_err(|_| HmiError::Query {
-        reason: "found a query string that is none".to_owned(),
+    let uri: Uri = uri.parse().map_err(|_| ApiError::Query {
+        reason: "found a malformed query string".to_owned(),
     })?;
     let Query(parsed) = Query::try_from_uri(&uri)?;
     Ok(parsed)

@@ -1,18 +1,17 @@
-//! Who is asking: sessions at the door of every request that changes something.
+//! Sessions: the person behind a request, which every change needs.
 //!
-//! | who | brings | may |
+//! | client | sends | may |
 //! |---|---|---|
-//! | a stranger | nothing | look |
-//! | the page | cookie `relayrig_session`: `HttpOnly`, `SameSite=Strict` | what the role may |
-//! | a script | `Authorization: Bearer TOKEN` from the answer to `POST /api/login` | what the role may |
+//! | without login | nothing | read |
+//! | page | cookie `relayrig_session`: `HttpOnly`, `SameSite=Strict` | what the role allows |
+//! | script | `Authorization: Bearer TOKEN` from the answer to `POST /api/login` | what the role allows |
 //!
-//! A session that is over counts as none: 401. One whose role is too weak: 403 with the role it takes.
-//! The cookie never travels with a request that another site started, and `origin.rs` refuses those
-//! besides. There is no `Secure`: the screen listens on loopback, and elsewhere behind a proxy of the
-//! plant, which adds it.
+//! An expired session counts as none: 401. A role that is too weak gets 403 with the role needed. Browsers do not send the
+//! cookie with requests of other sites, and `origin.rs` refuses those as well. The cookie has no `Secure`, because the
+//! program serves plain HTTP on loopback; elsewhere the plant's proxy adds it.
 
 use super::access::{AccessError, Limiter, Person, Register, Role, SESSION_S};
-use super::error::HmiError;
+use super::error::ApiError;
 use axum::http::{HeaderMap, header};
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -22,10 +21,9 @@ use tokio::task::spawn_blocking;
 const COOKIE: &str = "relayrig_session";
 const NOT_IN: &str = "nobody is logged in here";
 
-/// The people of this rig, behind one lock: a login takes its turn, so that a crowd of them cannot
-/// take memory and both cores.
+/// The people of this rig, behind one lock: logins run one after another, because each takes 19 MiB and 20 ms of a core.
 #[derive(Debug, Clone)]
-pub struct Gate(Arc<Inner>);
+pub struct Sessions(Arc<Inner>);
 
 #[derive(Debug)]
 struct Inner {
@@ -33,12 +31,11 @@ struct Inner {
     limiter: Mutex<Limiter>,
 }
 
-impl Gate {
-    /// Opens the file of people, made when missing; the second is name and password of the engineer
-    /// that a first start makes.
+impl Sessions {
+    /// Opens or creates the file of people; returns also name and password of the engineer that the first start adds.
     ///
     /// # Errors
-    /// A file that is no list of people of this program.
+    /// Fails when the file belongs to another program or to a later version, or SQLite fails.
     pub fn open(path: &Path) -> Result<(Self, Option<(String, String)>), AccessError> {
         let mut register = Register::open(path)?;
         let first = register.first_engineer(now_us())?;
@@ -49,36 +46,36 @@ impl Gate {
         Ok((Self(Arc::new(inner)), first))
     }
 
-    /// A session, or why not.
+    /// Opens a session; returns the person and the token. Fails for a wrong name or password, and after too many tries.
     pub(super) async fn log_in(
         &self,
         name: String,
         password: String,
-    ) -> Result<(Person, String), HmiError> {
+    ) -> Result<(Person, String), ApiError> {
         let key = name.clone();
         self.check_pace(&key)?;
         let answer = self
             .with(move |register| register.log_in(&name, &password, now_us()))
             .await?;
-        let mut limiter = held(&self.0.limiter);
+        let mut limiter = locked(&self.0.limiter);
         if answer.is_some() {
             limiter.succeeded(&key);
         } else {
             limiter.failed(&key, Instant::now());
         }
-        answer.ok_or(HmiError::WrongPassword)
+        answer.ok_or(ApiError::WrongPassword)
     }
 
-    /// Ends the session that the request brings, if any.
-    pub(super) async fn log_out(&self, headers: &HeaderMap) -> Result<(), HmiError> {
+    /// Ends the session of the request; does nothing without one.
+    pub(super) async fn log_out(&self, headers: &HeaderMap) -> Result<(), ApiError> {
         let Some(token) = token(headers) else {
             return Ok(());
         };
         self.with(move |register| register.log_out(&token)).await
     }
 
-    /// Who is asking; `None` for a stranger.
-    pub(super) async fn who(&self, headers: &HeaderMap) -> Result<Option<Person>, HmiError> {
+    /// Returns the person of the session; `None` without a valid one.
+    pub(super) async fn who(&self, headers: &HeaderMap) -> Result<Option<Person>, ApiError> {
         let Some(token) = token(headers) else {
             return Ok(None);
         };
@@ -86,21 +83,21 @@ impl Gate {
             .await
     }
 
-    /// Who is asking, at least with this role.
+    /// Returns the person of the session. Fails without a valid one or with a weaker role than `role`.
     pub(super) async fn at_least(
         &self,
         role: Role,
         headers: &HeaderMap,
-    ) -> Result<Person, HmiError> {
+    ) -> Result<Person, ApiError> {
         let person = self.who(headers).await?;
-        let person = person.ok_or(HmiError::NotLoggedIn { reason: NOT_IN })?;
-        trusted(&person, role)?;
+        let person = person.ok_or(ApiError::NotLoggedIn { reason: NOT_IN })?;
+        require_role(&person, role)?;
         Ok(person)
     }
 
-    fn check_pace(&self, name: &str) -> Result<(), HmiError> {
-        match held(&self.0.limiter).wait(name, Instant::now()) {
-            Some(wait) => Err(HmiError::TooManyTries { wait }),
+    fn check_pace(&self, name: &str) -> Result<(), ApiError> {
+        match locked(&self.0.limiter).wait(name, Instant::now()) {
+            Some(wait) => Err(ApiError::TooManyTries { wait }),
             None => Ok(()),
         }
     }
@@ -108,30 +105,30 @@ impl Gate {
     async fn with<T: Send + 'static>(
         &self,
         work: impl FnOnce(&mut Register) -> Result<T, AccessError> + Send + 'static,
-    ) -> Result<T, HmiError> {
+    ) -> Result<T, ApiError> {
         let inner = Arc::clone(&self.0);
-        let done = spawn_blocking(move || work(&mut held(&inner.register))).await;
-        Ok(done.map_err(|_| HmiError::ReaderLost)??)
+        let done = spawn_blocking(move || work(&mut locked(&inner.register))).await;
+        Ok(done.map_err(|_| ApiError::ReaderLost)??)
     }
 }
 
-/// Refuses a person whose role is weaker than `needed`.
-pub(super) fn trusted(person: &Person, needed: Role) -> Result<(), HmiError> {
+/// Fails when the role of `person` is weaker than `needed`.
+pub(super) fn require_role(person: &Person, needed: Role) -> Result<(), ApiError> {
     let found = person.role;
     if found < needed {
-        return Err(HmiError::NotAllowed { found, needed });
+        return Err(ApiError::NotAllowed { found, needed });
     }
     Ok(())
 }
 
-/// The value of `Set-Cookie` that opens a session, or ends it without a token.
+/// Returns the value of `Set-Cookie` that sets the token, or deletes the cookie when there is none.
 pub(super) fn cookie(token: Option<&str>) -> String {
     let age = if token.is_some() { SESSION_S } else { 0 };
     let token = token.unwrap_or_default();
     format!("{COOKIE}={token}; Path=/; HttpOnly; SameSite=Strict; Max-Age={age}")
 }
 
-/// A header that says something wins over the cookie.
+/// Returns the token of the request; `Authorization` takes precedence over the cookie.
 fn token(headers: &HeaderMap) -> Option<String> {
     if let Some(value) = headers.get(header::AUTHORIZATION) {
         let token = value.to_str().ok()?.strip_prefix("Bearer ")?;
@@ -145,8 +142,8 @@ fn token(headers: &HeaderMap) -> Option<String> {
     named.next().map(str::to_owned)
 }
 
-/// The data behind a lock is whole at every instant; a panic elsewhere does not spoil it.
-fn held<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
+/// Locks also after a panic of another holder: each change of the data is complete in itself.
+fn locked<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
     lock.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

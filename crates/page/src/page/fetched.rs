@@ -1,0 +1,62 @@
+//! Scripts that a browser fetches when it first opens a page: one adds markup and code of one page or of a few.
+
+use super::packed::Packed;
+use data_encoding::HEXLOWER;
+use serde_json::json;
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+/// Name, markup and code of each script.
+pub(super) const SOURCES: [[&str; 3]; 9] = {
+    macro_rules! source {
+        ($name:literal, $($code:literal),+) => {
+            [
+                $name,
+                include_str!(concat!("pages/", $name, ".html")),
+                concat!($(include_str!(concat!("script/", $code, ".js"))),+),
+            ]
+        };
+    }
+    [
+        source!("alarms", "alarms"),
+        source!("calibration", "calibration"),
+        source!("history", "history"),
+        source!("lots", "lots"),
+        source!("quality", "quality"),
+        source!("recipes", "recipe_sheet", "recipes"),
+        source!("rejudge", "rejudge"),
+        source!("service", "service"),
+        source!("trace", "trace"),
+    ]
+};
+
+/// Scripts by path; the path holds a hash of the script, so that a browser may keep it.
+pub(super) static SCRIPTS: LazyLock<BTreeMap<String, Packed>> = LazyLock::new(|| {
+    let packed = |(path, text)| (path, Packed::new("text/javascript; charset=utf-8", text));
+    SOURCES.map(script).into_iter().map(packed).collect()
+});
+
+/// Returns `{page: path}`.
+pub(super) fn json() -> String {
+    let paths = SOURCES.iter().flat_map(|source| {
+        let (path, _) = script(*source);
+        pages(source[1]).map(move |page| (page.to_owned(), path.clone().into()))
+    });
+    serde_json::Value::Object(paths.collect()).to_string()
+}
+
+/// Returns the names of the pages in `markup`.
+fn pages(markup: &str) -> impl Iterator<Item = &str> {
+    let pieces = markup.split("data-page=\"").skip(1);
+    pieces.filter_map(|it| it.split('"').next())
+}
+
+/// Returns path and text of a script.
+fn script([name, markup, code]: [&str; 3]) -> (String, String) {
+    let hash = HEXLOWER.encode(&Sha256::digest([markup, code].concat())[..8]);
+    let path = format!("/page/{name}-{hash}.js");
+    let (quoted_path, markup) = (json!(path), json!(markup));
+    let text = format!("addPages({quoted_path}, {markup}, () => {{\n\"use strict\";\n{code}}});\n");
+    (path, text)
+}

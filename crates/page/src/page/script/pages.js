@@ -1,0 +1,47 @@
+// Pages besides the operator's: the rig sends the script of each when it is first opened, and it stays here.
+
+// Path of the script by name of the page; a changed script has another path.
+const SCRIPTS = JSON.parse(at("scripts").textContent);
+// Longest wait for a script before the page offers to try again; one that arrives later still counts.
+const SCRIPT_MS = 10000;
+// State by path: "coming", "missing" or "here".
+const scripts = {};
+
+function fetchScript(path) {
+  scripts[path] = "coming";
+  const element = make("script");
+  const miss = () => {
+    if (scripts[path] !== "coming") return;
+    scripts[path] = "missing";
+    showFetching();
+  };
+  element.addEventListener("error", miss);
+  setTimeout(miss, SCRIPT_MS);
+  element.src = path;
+  document.head.append(element);
+}
+
+// Every fetched script is one call of this: adds `markup` to the page and runs `begin`, once.
+function addPages(path, markup, begin) {
+  if (scripts[path] === "here") return;
+  scripts[path] = "here";
+  at("fetching").insertAdjacentHTML("beforebegin", markup);
+  translate();
+  begin();
+  if (!at("fetching").hidden) openPage();
+}
+
+// Fetches the open page unless that is under way or has failed, and shows how far it is.
+function showFetching() {
+  const path = SCRIPTS[current];
+  if (Object.hasOwn(PAGES, current)) return;
+  if (!Object.hasOwn(scripts, path)) fetchScript(path);
+  const missing = scripts[path] === "missing";
+  at("fetch_state").textContent = word(missing ? "fetch-missing" : "fetch-coming");
+  at("fetch_again").hidden = !missing;
+}
+
+at("fetch_again").addEventListener("click", () => {
+  delete scripts[SCRIPTS[current]];
+  showFetching();
+});

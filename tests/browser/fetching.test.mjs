@@ -1,0 +1,133 @@
+// What a browser fetches and when: the operator's page at once, each other page when it is first opened.
+
+import assert from "node:assert/strict";
+import { request } from "node:http";
+import { after, before, test } from "node:test";
+import { leave, looks, open, shown, visit } from "./browser.mjs";
+import { WORDS, start } from "./rig.mjs";
+
+/** Largest first answer as sent, bytes. */
+const FIRST_BYTES = 60_000;
+const PAGES = { lots: "#l_book tr", alarms: "#standing li", history: "#h_go", quality: "#q_stats", recipes: "#r_fields td",
+  calibration: "#c_golden td", bus: "#bus tr", io: "#inputs li", trace: "#trace tr", rejudge: "#j_lot option" };
+
+let rig, browser;
+before(async () => {
+  [rig, browser] = await Promise.all([start("fetching", "--speed", "8"), open()]);
+  await rig.until("a part is judged", (view) => view.judged >= 1);
+});
+after(async () => {
+  await browser?.close();
+  await rig?.kill();
+});
+
+/** Headers and bytes of `GET path` as they come over the wire. */
+const sent = (path, headers) => new Promise((resolve, reject) => {
+  request(rig.url + path, { headers }, async (answer) => {
+    const pieces = [];
+    for await (const piece of answer) pieces.push(piece);
+    resolve([answer.headers, Buffer.concat(pieces)]);
+  }).on("error", reject).end();
+});
+
+/** Paths of the scripts that `page` fetches from now on. */
+function fetched(page) {
+  const paths = [];
+  page.on("request", (asked) => {
+    const { pathname } = new URL(asked.url());
+    if (pathname.startsWith("/page/")) paths.push(pathname);
+  });
+  return paths;
+}
+
+/** Lines that Chromium writes when a request fails, which these tests want. */
+const forgive = (page) => { page.sins = page.sins.filter((it) => !/ERR_(FAILED|CONNECTION_REFUSED|INCOMPLETE_CHUNKED|EMPTY_RESPONSE|CONNECTION_RESET)/.test(it)); };
+
+test("the first answer has at most 60 kB", async () => {
+  const [headers, packed] = await sent("/", { "Accept-Encoding": "gzip, deflate, br" });
+  assert.equal(headers["content-encoding"], "gzip");
+  assert.ok(packed.length <= FIRST_BYTES, `${packed.length} bytes`);
+  const [plain, page] = await sent("/", {});
+  assert.equal(plain["content-encoding"], undefined);
+  assert.match(page.toString(), /^<!doctype html>/);
+});
+
+test("the operator's page fetches no script, each other page one at first use", async () => {
+  const page = await visit(browser, rig);
+  const paths = fetched(page);
+  assert.equal(await page.$$eval("main", (all) => all.length), 2);
+  let before = 0;
+  for (const [name, ready] of Object.entries(PAGES)) {
+    await page.evaluate((name) => { location.hash = name; }, name);
+    await page.waitForSelector(`main[data-page="${name}"]:not([hidden])`);
+    await page.waitForSelector(ready, { state: "attached" });
+    // Bus and I/O share a script.
+    assert.equal(paths.length, before += name === "io" ? 0 : 1, name);
+    assert.equal(await page.isVisible("#fetching"), false);
+  }
+  await page.click("#language");
+  for (const name of Object.keys(PAGES)) await page.evaluate((name) => { location.hash = name; }, name);
+  assert.equal(paths.length, before, "fetched once");
+  await leave(page);
+});
+
+test("each page opens alone, without the scripts of the others", async () => {
+  for (const [name, ready] of Object.entries(PAGES)) {
+    const page = await visit(browser, rig, { path: "/#" + name });
+    await page.waitForSelector(`main[data-page="${name}"]:not([hidden])`);
+    await page.waitForSelector(ready, { state: "attached" });
+    assert.equal(await page.$$eval("script[src]", (all) => all.length), 1, name);
+    await leave(page);
+  }
+});
+
+test("a browser keeps a fetched script for the next visit", async () => {
+  const page = await visit(browser, rig, { path: "/#lots" });
+  await page.waitForSelector(PAGES.lots);
+  await page.reload();
+  await page.waitForSelector(PAGES.lots);
+  const bytes = await page.evaluate(() => performance.getEntriesByType("resource").find((it) => it.name.includes("/page/")).transferSize);
+  assert.equal(bytes, 0, "from the cache");
+  await leave(page);
+});
+
+test("a page that does not come says so, offers another try, and leaves the others usable", async () => {
+  const page = await visit(browser, rig, { role: "operator" });
+  await page.click('nav a[href="#lots"]');
+  await page.waitForSelector(PAGES.lots);
+  await page.route("**/page/*", (route) => route.abort());
+  await page.click('nav a[href="#history"]');
+  await shown(page, "#fetch_state", WORDS["fetch-missing"].en);
+  await looks(page, "fetch-missing");
+  await page.click("#fetch_again");
+  await shown(page, "#fetch_state", WORDS["fetch-missing"].en);
+  await page.click('nav a[href="#lots"]');
+  assert.ok(await page.isVisible("#l_book tr"));
+  await page.click('nav a[href="#history"]');
+  await page.unroute("**/page/*");
+  await page.click("#fetch_again");
+  await page.waitForSelector("#parts tr");
+  assert.equal(await page.isVisible("#fetching"), false);
+  forgive(page);
+  await leave(page);
+});
+
+test("without the rig the fetched pages stay, in both languages", async () => {
+  const page = await visit(browser, rig, { path: "/#recipes" });
+  await page.waitForSelector(PAGES.recipes);
+  await rig.kill();
+  await page.waitForSelector("body.stale");
+  await page.click("#language");
+  await page.click('nav a[href="#operator"]');
+  await shown(page, "#link", WORDS["link-lost"].zh);
+  await page.click('nav a[href="#recipes"]');
+  assert.ok(await page.isVisible("#r_fields td"));
+  await page.click('nav a[href="#trace"]');
+  await shown(page, "#fetch_state", WORDS["fetch-missing"].zh);
+  await rig.again();
+  await page.waitForSelector("body:not(.stale)");
+  await page.click("#fetch_again");
+  await page.waitForSelector(PAGES.trace);
+  forgive(page);
+  await leave(page);
+});
