@@ -10,7 +10,7 @@ use crate::handling::wear::Wearing;
 use crate::rig::axis::AxisStation;
 use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
-use crate::station::catalogue::{AlarmCode, Stops};
+use crate::station::catalogue::{AlarmCode, Reaction};
 use crate::station::trouble::Alarm;
 use std::collections::BTreeSet;
 use texts::{Lang, Message};
@@ -128,7 +128,7 @@ fn every_code_is_read_back_from_its_name() {
 
 #[test]
 fn every_alarm_that_ends_a_test_names_the_interruption() {
-    let ends = |it: &AlarmCode| matches!(it.entry().stops, Stops::Abort | Stops::Hold);
+    let ends = |it: &AlarmCode| matches!(it.entry().reaction, Reaction::Abort | Reaction::Hold);
     for code in AlarmCode::all().filter(ends) {
         let name = code.name();
         for lang in Lang::ALL {
