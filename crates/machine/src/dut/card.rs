@@ -52,7 +52,7 @@ pub enum Piece {
 /// What must come out of a step.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Demand {
-    /// What sensors say.
+    /// Confirmation by sensors.
     Sensors(TextId),
     /// The limits of these.
     Within(Vec<Characteristic>),

@@ -1,4 +1,4 @@
-//! What measuring relies on: references, promised accuracies, how long a calibration holds, golden parts.
+//! What measuring relies on: references, promised accuracies, how long a calibration holds, reference parts.
 //! From `config/rig.toml` and `config/golden.toml`.
 
 use super::Parameter;
@@ -68,7 +68,7 @@ impl AccuracySettings {
         self.operation_scatter_mv / 1e3 * nominal_v / SCATTERING_COIL_V
     }
 
-    /// Of an I-7021P that nobody has looked at.
+    /// Refresh interval of an I-7021P without a measured one.
     fn usual_refresh_ms() -> f64 {
         1.0
     }
@@ -79,7 +79,7 @@ impl AccuracySettings {
 pub struct CalibrationSettings {
     /// Age at which a lot is refused, hours.
     pub valid_h: f64,
-    /// File of the golden parts, beside `rig.toml`.
+    /// File of the reference parts, beside `rig.toml`.
     pub golden: String,
 }
 
@@ -118,7 +118,7 @@ impl ReferencePart {
     }
 }
 
-/// All golden parts of the plant.
+/// All reference parts of the plant.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ReferenceSet {
     /// Temperature of the certified values, degrees Celsius.
