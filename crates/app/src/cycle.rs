@@ -159,7 +159,7 @@ impl Cycle {
         self.verify().await;
         if let Some(alarm) = self
             .bus_alarm
-            .take_if(|_| !self.verified && !self.station.stays())
+            .take_if(|_| !self.verified && !self.station.is_attended())
         {
             self.tell(Event::Alarm(alarm, self.pace.now()));
             return (Ending::Alarm, self.profile);

@@ -57,7 +57,7 @@ pub(super) fn cycle(
     };
     let device = Device::new(Arc::clone(&recipe), &rig, calibration)?;
     let plan = Plan {
-        stays: attended,
+        attended,
         between_lots: context.purpose.rests_in(),
         count: context.order.count,
         golden: match context.purpose.rests_in() {

@@ -42,7 +42,7 @@ pub fn reference_inputs(wiring: &Wiring) -> Vec<AnalogInput> {
     em_relay::reference::inputs(wiring)
 }
 
-/// What the bits of a stored signal mean, highest first; none for a signal of another form.
+/// Returns the meaning of the bits of a stored signal, highest first; none for any other signal.
 pub fn bits_of(signal: &str) -> Option<&'static str> {
     (signal == em_relay::points::BOARD).then_some(em_relay::points::BOARD_BITS)
 }
@@ -75,7 +75,7 @@ impl Kind {
         Self::ALL.into_iter().find(|it| it.name() == name)
     }
 
-    /// What a recipe may say of it.
+    /// Returns the keys that a recipe of this kind may have.
     pub const fn sections(self) -> keys::Sections {
         match self {
             Self::EmRelay => em_relay::keys::recipe::SECTIONS,
@@ -83,7 +83,7 @@ impl Kind {
         }
     }
 
-    /// What is measured on it, in the order of reports.
+    /// Returns its characteristics, in the order of reports.
     pub fn characteristics(self) -> Vec<Characteristic> {
         match self {
             Self::EmRelay => em_relay::Parameter::ALL.map(Characteristic::from).to_vec(),
@@ -99,7 +99,7 @@ impl Kind {
         }
     }
 
-    /// What only a test of this kind finds.
+    /// Returns the findings that only a test of this kind has.
     pub fn findings(self) -> Vec<reason::Code> {
         match self {
             Self::EmRelay => em_relay::Finding::ALL.map(reason::Code::EmRelay).to_vec(),

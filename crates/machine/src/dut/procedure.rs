@@ -20,7 +20,7 @@ pub enum Progress {
     Judged,
 }
 
-/// Longest time of the stages that measure; the slow strategy takes below 10 s.
+/// Longest time of the stages that measure; confirmation measurements takes below 10 s.
 const MEASURING: Span = Span::ms(60_000);
 
 /// A test under way, by kind.

@@ -18,7 +18,7 @@ use texts::{Lang, Message};
 pub enum Code {
     /// The value lies outside its limit by more than its uncertainty.
     OutsideLimit(Characteristic),
-    /// The value lies within its uncertainty of the limit, after the slow strategy too.
+    /// The value lies within its uncertainty of the limit, after confirmation measurements too.
     NotProven(Characteristic),
     /// No usable value.
     NotMeasured(Characteristic),
@@ -26,9 +26,9 @@ pub enum Code {
     Interrupted,
     /// A line or module failed in the middle of the test; detail: which, and how.
     RigTrouble,
-    /// What the test of an electromagnetic relay has found.
+    /// Finding of a relay test.
     EmRelay(em_relay::Finding),
-    /// What the test of a resistor has found.
+    /// Finding of a resistor test.
     Resistor(resistor::Finding),
     /// A text that has no code: imported, or older than this program knows; detail: the text.
     Unclassified,

@@ -50,11 +50,11 @@ impl Limits {
 pub struct Decision {
     /// How the uncertainty enters.
     pub rule: Rule,
-    /// Readings of the slow strategy for a result inside the guard band.
+    /// Readings of confirmation measurements for a result inside the guard band.
     pub slow_repeats: u32,
 }
 
-/// What a kind of device adds to a recipe: the part and how it is measured.
+/// Sections of a recipe that belong to the kind: the part, and how to measure it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum DeviceRecipe {

@@ -40,7 +40,7 @@ pub enum Stop {
     Trouble(Reason),
 }
 
-/// What only a test of one kind sees, kept for what the kind learns from parts.
+/// Observations of a test of one kind, from which the kind learns.
 #[derive(Debug, Clone, Default)]
 pub enum Own {
     /// Nothing: the kind learns from results alone, or the part was not tested.
@@ -50,7 +50,7 @@ pub enum Own {
     EmRelay(Observed),
 }
 
-/// What a test has measured so far. `T` is what only its kind sees.
+/// What a test has measured so far. `T` holds the observations of its kind.
 #[derive(Debug, Clone, Default)]
 pub struct TestRecord<T = Own> {
     readings: Vec<(Characteristic, Reading)>,
@@ -62,7 +62,7 @@ pub struct TestRecord<T = Own> {
     pub spent: Spent,
     /// Rig time by what it was spent on.
     pub stages: BTreeMap<&'static str, Span>,
-    /// What only the kind sees.
+    /// Observations of the kind.
     pub own: T,
 }
 

@@ -75,7 +75,7 @@ impl Station {
         for command in commands {
             let answer = self.order(Order::Command(command), now, wants);
             // An unattended machine has no person to start it again.
-            self.machine.stopping |= command == Command::Stop && !self.plan.stays;
+            self.machine.stopping |= command == Command::Stop && !self.plan.attended;
             wants.pressed.push((command, answer));
         }
         stuck

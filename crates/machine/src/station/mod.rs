@@ -1,22 +1,22 @@
 //! The station: the sequence as a specification.
 //!
 //! `Station::step(now, inputs) -> Wants` is a function of its state and arguments: no clock, no I/O, no
-//! `async`. It may be called at any time and as often as one likes; deadlines are kept in the states.
+//! `async`. The caller may call it at any time; the states hold the deadlines.
 //!
-//! The outer machine is [`packml`]; what a state does is in `states`, who may ask for what in `asked`.
+//! The outer machine is [`packml`]; `states` performs each state, `asked` answers orders.
 //! 1. `Resetting`: [`crate::handling::recovery`] brings every actuator to its rest end and discharges what is found inside;
 //! 2. `Starting`: without a valid calibration probes up in the empty nest, measurements of the references;
-//! 3. `Execute`: golden parts when there is no calibration, then the lot behind its [`gates`], through the
+//! 3. `Execute`: reference parts when there is no calibration, then the lot behind its [`gates`], through the
 //!    [`crate::handling::feeder`];
-//! 4. `Completing`, `Stopping`, `Holding`, `Suspending`: the parts inside go as far as they can rest.
+//! 4. `Completing`, `Stopping`, `Holding`, `Suspending`: the parts inside go to where they may wait.
 //!
-//! Trouble: an [`trouble::Alarm`] stops what the [`catalogue`] says and stands in the [`annunciator`] until its
-//! cause is gone and somebody has seen it. After `clear` and `reset` the station goes on from where it is. A
+//! Trouble: the [`catalogue`] gives the reaction to an [`trouble::Alarm`]; the [`annunciator`] lists it until its
+//! cause is gone and a person has acknowledged it. After `clear` and `reset` the station continues with the parts inside. A
 //! part inside is void, "interrupted". A stale sensor is trouble, never a guess.
 //!
 //! A run ends with its lot, or when a person leaves the lot for another one. Without a person at a screen
-//! ([`Plan::stays`] is false) an alarm that would need one ends the run, too. The station resets and starts a lot by
-//! itself; between lots ([`Plan::between_lots`]) it does nothing unless it is asked.
+//! ([`Plan::attended`] is false) an alarm that needs one ends the run, too. The station resets and starts a lot by
+//! itself; between lots ([`Plan::between_lots`]) it acts only on orders.
 
 pub mod annunciator;
 mod asked;
@@ -58,14 +58,14 @@ use timeouts::Timeouts;
 use units::RigTime;
 use wants::{Inputs, Wants};
 
-/// What a run is to do.
+/// Plan of a run.
 #[derive(Debug, Clone)]
 pub struct Plan {
     /// Parts of the lot; `None` goes on until stopped.
     pub count: Option<u64>,
-    /// Serial numbers of the golden parts at the head of the magazine, used when there is no calibration.
+    /// Serial numbers of the reference parts at the head of the magazine, used when there is no calibration.
     pub golden: Vec<String>,
-    /// A calibration is at hand: neither references nor golden parts are run.
+    /// True with a valid calibration: the run measures neither references nor reference parts.
     pub calibrated: bool,
     /// Life of a calibration, microseconds.
     pub valid_us: i64,
@@ -73,23 +73,23 @@ pub struct Plan {
     pub epoch_us: i64,
     /// The rig is simulated.
     pub simulated: bool,
-    /// A person is at a screen: alarms and stops do not end the run.
-    pub stays: bool,
-    /// Between lots nothing begins by itself and no part is wanted; what is found inside is discharged. The machine
-    /// rests in this state, as the lot before has left it. None: there is a lot.
+    /// True when a person is at a screen: alarms and stops do not end the run.
+    pub attended: bool,
+    /// State in which the last lot left the machine, between lots; none while there is a lot. Between lots the machine
+    /// discharges parts found inside and begins nothing by itself.
     pub between_lots: Option<State>,
     /// Gates of the lot.
     pub lot: LotSettings,
-    /// Uses of what wears before this run.
+    /// Uses of wearing parts before this run.
     pub worn: Uses,
-    /// What the run before left inside.
+    /// Parts that the run before left inside.
     pub left: Inside,
 }
 
-/// What `Starting` is doing.
+/// Step of `Starting`.
 #[derive(Debug)]
 enum Start {
-    /// Nothing asked for yet.
+    /// Before the first motion.
     Begin,
     /// Probes rise in the empty nest.
     Up,
@@ -102,7 +102,7 @@ enum Start {
 #[derive(Debug)]
 pub struct Station {
     plan: Plan,
-    /// The kind under test, with what parts have taught.
+    /// The kind under test, with its calibration.
     device: Device,
     start: Start,
     /// References were measured in this run.
@@ -113,29 +113,29 @@ pub struct Station {
     alarms: Alarms,
 }
 
-/// What the lot lets be judged next.
+/// Gates and reference parts of the lot.
 #[derive(Debug)]
 struct LotControl {
     gates: Gates,
     reference_left: VecDeque<String>,
-    /// Golden parts that this run has asked for so far.
+    /// Reference parts that this run has planned so far.
     reference_planned: u64,
-    /// Calibration and golden parts are over.
+    /// True once calibration and reference parts are complete.
     began: bool,
 }
 
 impl LotControl {
-    /// Checks what holds after every turn.
+    /// Panics when an invariant of the lot is broken.
     fn check(&self) {
         let left = self.reference_left.len() as u64;
         assert!(
             self.reference_planned >= left,
-            "golden parts nobody planned"
+            "reference parts without a plan"
         );
     }
 }
 
-/// What watches the machine, and what shows it to a person beside it.
+/// Alarms, timeouts, push buttons and lamps.
 #[derive(Debug, Default)]
 struct Alarms {
     annunciator: Annunciator,
@@ -149,7 +149,7 @@ struct Alarms {
 }
 
 impl Station {
-    /// A station that knows nothing of its sensors yet.
+    /// Returns a station before the first reading of its sensors.
     pub fn new(plan: Plan, device: Device, table: AxisTable, mechanism: Mechanism) -> Self {
         let reference_left = if plan.calibrated {
             VecDeque::new()
@@ -188,22 +188,22 @@ impl Station {
         &self.line.mechanism
     }
 
-    /// Alarms that stand.
+    /// Returns the list of alarms.
     pub fn annunciator(&self) -> &Annunciator {
         &self.alarms.annunciator
     }
 
-    /// The same, to put in what a run before left unseen.
+    /// Returns the list of alarms, to add those of an earlier run.
     pub fn annunciator_mut(&mut self) -> &mut Annunciator {
         &mut self.alarms.annunciator
     }
 
-    /// A person is at a screen.
-    pub fn stays(&self) -> bool {
-        self.plan.stays
+    /// Returns true when a person is at a screen.
+    pub fn is_attended(&self) -> bool {
+        self.plan.attended
     }
 
-    /// There is no lot.
+    /// Returns true when there is no lot.
     pub fn is_between_lots(&self) -> bool {
         self.plan.between_lots.is_some()
     }
@@ -223,7 +223,7 @@ impl Station {
         self.machine.mode
     }
 
-    /// What the station is doing.
+    /// Returns the activity of the station.
     pub fn doing(&self) -> Doing {
         match self.machine.state {
             _ if self.machine.ended => Doing::Ended,
@@ -261,7 +261,7 @@ impl Station {
         self.machine.turn(now);
         let ordered = inputs.orders.len();
         if inputs.verified {
-            // What was read before the modules were asked is stale by now, and no trouble.
+            // Samples from before the verification are stale, which is no trouble.
             (self.alarms.sensed, self.machine.began) = (false, Some(now));
         }
         self.machine.began.get_or_insert(now);
@@ -298,7 +298,7 @@ impl Station {
         wants
     }
 
-    /// A motion was cleared and driven.
+    /// Takes note of a motion that the rig has cleared and driven.
     pub fn driven(&mut self, movement: Move, now: RigTime, image: &Image) {
         self.line.driven(movement, now, image);
     }

@@ -1,6 +1,7 @@
-//! Orders: what a person at a screen or another program may ask of the station, and why not.
+//! Orders of operators and programs to the station, and the reasons of refusals.
 //!
-//! Every order is answered in the turn in which it comes: taken, or refused with the reason as a code and its arguments. The same reasons stand beside the disabled buttons of a screen.
+//! The station answers every order in its turn: performed, or refused with a code and its arguments. A screen shows the
+//! same reasons beside its disabled buttons.
 
 use super::packml::{self, Command, Mode, State};
 use super::trouble::Alarm;
@@ -20,29 +21,29 @@ pub enum Order {
     Step,
     /// All lamps and the buzzer for a moment.
     LampTest,
-    /// The lot is left as it is, so that another one can begin: the run ends.
+    /// Ends the run and leaves the lot as it is, so that another one can begin.
     Leave,
-    /// The lot ends after the parts inside, whatever its count.
+    /// Ends the lot after the parts inside, whatever its count.
     Close,
-    /// A person has seen the alarm of this code; `None`: every alarm.
+    /// Acknowledges the alarm of this code; `None`: every alarm.
     Acknowledge(Option<String>),
-    /// The alarm of this code is not to be shown for so many minutes, see [`shelf_minutes`].
+    /// Hides the alarm of this code for a number of minutes, see [`shelf_minutes`].
     Shelve(String, u32),
 }
 
-/// Minutes on the shelf of an order that names so many: at least one, at most a shift; half an hour when it names none.
+/// Returns the shelving time in minutes: 1 to 480, 30 when the order names none.
 pub fn shelf_minutes(asked: Option<u32>) -> u32 {
     asked.unwrap_or(30).clamp(1, 480)
 }
 
-/// Why an order was not taken.
+/// Reason of a refused order.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Refused {
     /// The run is over.
     RunEnded,
-    /// The command belongs to other states.
+    /// The state does not know the command.
     WrongState(Command, State),
-    /// Only another mode knows this.
+    /// The mode does not allow the order.
     WrongMode {
         /// Word of the order.
         order: &'static str,
@@ -55,7 +56,7 @@ pub enum Refused {
     MovedByHand,
     /// There is no lot to go on with.
     NoLot,
-    /// A part of the lot has to get into its bin first.
+    /// A part of the lot is still in nest or gripper.
     PartInside,
     /// Another lot needs a machine at rest; the command that leads there, if one does.
     NotAtRest(State, Option<Command>),
@@ -71,9 +72,9 @@ pub enum Refused {
     CauseRemains(Box<Alarm>),
     /// No alarm of this code stands.
     NoSuchAlarm,
-    /// The guard says no; its sentence.
+    /// The guard refuses the motion; its sentence.
     Collision(String),
-    /// Somebody before the station has refused it; the sentence.
+    /// The program has refused it before the station; the sentence.
     Denied(String),
     /// A member of the order has none of the known words.
     UnknownWord {

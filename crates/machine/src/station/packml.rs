@@ -1,7 +1,7 @@
 //! The outer machine: states, commands and modes with the names of ISA-TR88.00.02 (PackML).
 //!
-//! [`TRANSITIONS`] is the only place that says which state follows which: the station, the buttons of a
-//! screen and `golden/packml.dot` are read from it. Feed, clamp, measure and sort run inside `Execute`
+//! [`TRANSITIONS`] is the only source of the order of states: station, screen buttons and `golden/packml.dot`
+//! follow from it. Feed, clamp, measure and sort run inside `Execute`
 //! (and are finished inside `Completing`, `Stopping` and `Holding`).
 //!
 //! - *Held*: the cause is inside the machine, a person ends it. *Suspended*: the cause is outside (no

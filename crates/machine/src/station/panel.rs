@@ -1,10 +1,10 @@
-//! The three push buttons at the machine. What they ask for is an order like any other: it may be refused, and goes to the
-//! audit with the origin `panel`.
+//! The three push buttons at the machine. The station may refuse their orders like any other; the audit has them with the
+//! origin `panel`.
 //!
 //! | button | order |
 //! |---|---|
-//! | start | goes on: `unhold` in Held, `unsuspend` in Suspended, else `start` |
-//! | stop | `stop`; nobody at a screen: the run ends when the parts inside are finished |
+//! | start | `unhold` in Held, `unsuspend` in Suspended, else `start` |
+//! | stop | `stop`; an unattended run ends after the parts inside |
 //! | reset | `clear` after an abort, else `reset` |
 //!
 //! A button orders once, when it has been down for [`SETTLED`] after it was up for as long: neither a bounce nor a held

@@ -1,4 +1,4 @@
-//! The sequence in a turn, and what the lot wants of it.
+//! One turn of the sequence.
 
 use super::Station;
 use super::packml::Mode;
@@ -8,7 +8,7 @@ use crate::handling::nest::TestTerms;
 use units::RigTime;
 
 impl Station {
-    /// One turn of the sequence.
+    /// Performs one turn of the sequence.
     pub(super) fn produce(
         &mut self,
         now: RigTime,
@@ -47,7 +47,7 @@ impl Station {
         }
     }
 
-    /// Parts of the lot still to come out of the magazine.
+    /// Returns true while parts of the lot are still to come out of the magazine.
     pub(super) fn wants_more(&self) -> bool {
         self.plan
             .count

@@ -1,4 +1,4 @@
-//! What a turn looks at whatever the state, and what alarms do.
+//! Checks of every turn in any state, and reactions to alarms.
 
 use super::Station;
 use super::annunciator::Standing;
@@ -17,16 +17,16 @@ use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
 use units::{RigTime, Span};
 
-/// Sensors must be there so long after the start at the latest.
+/// Time after the start within which every safety input must have a sample.
 pub(super) const FIRST_SCAN: Span = Span::ms(3000);
-/// A beam that is dark for so long has a part standing in it; a falling one darkens it for 11 ms.
+/// Dark time of a beam from which a bin counts as full; a falling part darkens it for 11 ms.
 const FULL: Span = Span::ms(500);
 
-/// Pressure is back so long after the emergency-stop chain has closed, or something is wrong with the supply.
+/// Longest time from the closing of the emergency-stop chain to full air pressure.
 const PRESSURE_RETURNS: Span = Span::ms(2000);
 
 impl Station {
-    /// Sensors, motions, lines, and the part that is falling.
+    /// Checks sensors, motions, lines and the falling part.
     pub(super) fn look(
         &mut self,
         now: RigTime,
@@ -65,7 +65,7 @@ impl Station {
         wants.notes.trouble.extend(late);
     }
 
-    /// Fingers that lost their part before it was handed over have left it in the nest.
+    /// Reports a part as stuck in the nest when the gripper lost it before the handover.
     fn still_in_nest(&self, now: RigTime, image: &Image, found: &mut [Trouble]) {
         let there = !self.line.ledger.holds(Place::Gripper)
             && image.input(DigitalIn::NestPresent, now, SENSOR_AGE) == Some(true);
@@ -75,7 +75,7 @@ impl Station {
         }
     }
 
-    /// Safety inputs: open is an alarm, unknown is one after the first scan.
+    /// Returns the alarms of the safety inputs: an open one, and after the first scan an unread one.
     fn safety(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
         let inputs = [
             (DigitalIn::EmergencyStopOk, AlarmCode::EmergencyStop),
@@ -117,8 +117,7 @@ impl Station {
         alarms
     }
 
-    /// The emergency stop vents the air, and after its release the pressure needs a while: no trouble of its own, as
-    /// long as nothing is to move.
+    /// Returns true while low pressure is the consequence of an emergency stop and no actuator is to move.
     fn is_vented(&self, now: RigTime) -> bool {
         let rests = packml::is_aborted(self.machine.state)
             || matches!(self.machine.state, State::Stopped | State::Complete);
@@ -154,7 +153,7 @@ impl Station {
         (starved && !parts).then(|| AlarmCode::MagazineEmpty.into())
     }
 
-    /// A motion that the guard refused: in homing another one goes first, else it is an alarm.
+    /// Takes note of a refused motion: homing tries another one first, any other state raises an alarm.
     pub fn refused(&mut self, movement: Move, refusal: &str, now: RigTime, wants: &mut Wants) {
         if self.machine.state == State::Resetting && self.line.recovery.refused(movement) {
             return;
@@ -170,7 +169,7 @@ impl Station {
         wants.record.alarms_changed |= self.alarms.annunciator.take_changed();
     }
 
-    /// Alarms of this turn into the list; what is left in the wants is what came anew.
+    /// Lists the alarms of this turn and reacts to them; `wants` keeps the new ones.
     pub(super) fn raise_all(&mut self, now: RigTime, wants: &mut Wants) {
         for alarm in std::mem::take(&mut wants.notes.trouble) {
             if self.alarms.annunciator.raise(&alarm, now) {
@@ -194,7 +193,7 @@ impl Station {
                     self.abort(&name, now, wants);
                 }
             }
-            Reaction::Hold if !self.plan.stays => self.abort(&name, now, wants),
+            Reaction::Hold if !self.plan.attended => self.abort(&name, now, wants),
             Reaction::Hold => self.rest(Command::Hold, now, wants),
             Reaction::Suspend => {
                 if self.machine.state == State::Execute {
@@ -212,19 +211,19 @@ impl Station {
         }
     }
 
-    /// Outputs safe at once, parts inside interrupted. Without a person there the run is over.
+    /// Makes the outputs safe at once and interrupts the parts inside; ends an unattended run.
     pub(super) fn abort(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
         if packml::is_aborted(self.machine.state) || self.machine.ended {
             return;
         }
         self.make_safe(why, now, wants);
         self.enter(Command::Abort, now, wants);
-        if !self.plan.stays {
+        if !self.plan.attended {
             self.end(Ending::Alarm, now, wants);
         }
     }
 
-    /// Nothing is known of any position from here on.
+    /// Makes the outputs safe and forgets every position.
     pub(super) fn make_safe(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
         wants.rig.motions.clear();
         wants.rig.jog = None;
@@ -234,7 +233,7 @@ impl Station {
         self.line.cut_off();
     }
 
-    /// Parts in nest and gripper go to retest; one that was judged gets that into its row.
+    /// Sends parts in nest and gripper to retest; the row of a judged one records it.
     fn interrupt(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
         let parts = &mut wants.record.parts;
         for part in self.line.ledger.held_mut() {
@@ -257,7 +256,7 @@ impl Station {
             }
             assert!(
                 matches!(judged.verdict, Verdict::Void(_)),
-                "judged after all"
+                "an interrupted part has a verdict"
             );
             parts.judged.push(judged);
         }
@@ -266,13 +265,13 @@ impl Station {
         assert!(all, "an interrupted part goes elsewhere");
     }
 
-    /// The alarm whose sensor still shows its cause, for a clear or reset that comes too early.
+    /// Returns the alarm whose sensor still shows its cause, which forbids clear and reset.
     pub(super) fn cause(&self) -> Option<&Standing> {
         self.alarms.annunciator.still_sensed()
     }
 }
 
-/// Every safety input was read after `since`, open or closed.
+/// Returns true when every safety input has a sample after `since`, open or closed.
 pub(super) fn safety_was_read(image: &Image, since: RigTime) -> bool {
     let inputs = [
         DigitalIn::EmergencyStopOk,

@@ -1,4 +1,4 @@
-//! What each state of the outer machine does in a turn, and how it is left.
+//! Actions of each state of the outer machine in a turn, and its end.
 
 use super::catalogue::{AlarmCode, Reaction};
 use super::packml::{self, Command, On, State};
@@ -15,15 +15,15 @@ use crate::rig::bin::Bin;
 use texts::Message;
 use units::{RigTime, Span};
 
-/// Outputs that did not confirm their safe value in this time are told, and the abort goes on without.
+/// Time within which outputs must confirm their safe value; after it the abort continues with an alarm.
 const SAFE_WITHIN: Span = Span::ms(2000);
-/// Why a part is not tested that nothing had interrupted before.
+/// Reason for a part inside at a reset without an earlier interruption.
 const BY_A_RESET: &str = "reset";
-/// Nobody is there to fill a magazine or empty a bin: after so long the run ends.
+/// Time after which an unattended suspension ends the run.
 const ALONE: Span = Span::ms(60_000);
 
 impl Station {
-    /// Orders that nobody has to give when nobody is there, and the end of the program.
+    /// Gives the orders of an unattended machine, and ends the run with the program.
     pub(super) fn by_itself(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
         if self.machine.ended {
             return;
@@ -42,7 +42,11 @@ impl Station {
             self.machine.state,
             State::Stopped | State::Complete | State::Aborted
         );
-        match (self.machine.stopping, self.plan.stays, self.machine.state) {
+        match (
+            self.machine.stopping,
+            self.plan.attended,
+            self.machine.state,
+        ) {
             (true, ..) if rests => {
                 self.make_safe("stopped", now, wants);
                 let aborted = packml::is_aborted(self.machine.state);
@@ -70,7 +74,7 @@ impl Station {
         }
     }
 
-    /// The run is over. Nobody will look for a part that is on its way to its bin: it is told.
+    /// Ends the run; raises an alarm for a part that still falls into its bin.
     pub(super) fn end(&mut self, ending: Ending, now: RigTime, wants: &mut Wants) {
         let over = self.line.ledger.fall().map(|fall| fall.bin);
         if let Some(bin) = over {
@@ -90,21 +94,21 @@ impl Station {
         self.machine.ended = true;
     }
 
-    /// Enters the state that a command leads to; the caller has looked whether it may.
+    /// Enters the state that follows on a command; the caller has checked that it may.
     pub(super) fn enter(&mut self, command: Command, now: RigTime, wants: &mut Wants) {
         if let Some(to) = self.machine.follow(On::Command(command), now) {
             self.entered(to, now, wants);
         }
     }
 
-    /// The state has done what it is for.
+    /// Leaves a state that is complete.
     fn done(&mut self, now: RigTime, wants: &mut Wants) {
         if let Some(to) = self.machine.follow(On::Done, now) {
             self.entered(to, now, wants);
         }
     }
 
-    /// What a state begins with.
+    /// Performs the entry actions of a state.
     fn entered(&mut self, to: State, now: RigTime, wants: &mut Wants) {
         self.alarms.timeouts.forget();
         wants.rig.wake_at = Some(now);
@@ -144,7 +148,7 @@ impl Station {
         }
     }
 
-    /// The outer machine's turn.
+    /// Performs a turn of the present state.
     pub(super) fn act(&mut self, now: RigTime, inputs: Inputs, wants: &mut Wants) {
         match self.machine.state {
             State::Resetting => self.reset(now, inputs, wants),
@@ -206,13 +210,13 @@ impl Station {
         wants.notes.take_over();
         if home {
             let moves = self.line.mechanism.moving().next();
-            assert_eq!(moves, None, "home, and something moves");
+            assert_eq!(moves, None, "home while an actuator moves");
             self.line.homed = true;
             self.take_up(now, wants);
         }
     }
 
-    /// The sequence goes on from the parts that are inside.
+    /// Continues the sequence with the parts inside.
     fn take_up(&mut self, now: RigTime, wants: &mut Wants) {
         self.line.feeder.resume(&self.line.ledger);
         if self.lot.gates.is_checking() {
@@ -224,8 +228,8 @@ impl Station {
         wants.rig.wake_at = Some(now);
     }
 
-    /// A part in the nest is not tested any more. One that has a bin was judged before, lost on its way and laid back: it
-    /// goes to retest, and its row says why.
+    /// Interrupts the part in the nest. One with a bin was judged before and put back: it goes to retest, and its row
+    /// records the reason.
     fn take_up_nested(&mut self, wants: &mut Wants) {
         let Some(part) = self.line.ledger.part_mut(Place::NEST) else {
             return;
@@ -242,7 +246,7 @@ impl Station {
         }
     }
 
-    /// What the fingers hold goes to retest, and its row says why; one that they never let go had a row for its bin.
+    /// Sends the part in the gripper to retest; its row records the reason.
     fn take_up_gripped(&mut self, now: RigTime, wants: &mut Wants) {
         let Some(part) = self.line.ledger.part_mut(Place::Gripper) else {
             return;
@@ -333,7 +337,7 @@ impl Station {
         self.start = Start::References(runner);
     }
 
-    /// The parts inside to the end; `push`: the one in the pocket too.
+    /// Finishes the parts inside; with `push` the one in the pocket too.
     fn finish(&mut self, now: RigTime, inputs: Inputs, wants: &mut Wants, push: bool) {
         let (state, recorded) = (self.machine.state, inputs.recorded);
         let permits = Permits {
@@ -358,8 +362,7 @@ impl Station {
         }
     }
 
-    /// The modules are verified first, which keeps the lines from the scan: whoever resets afterwards finds the safety inputs
-    /// read.
+    /// Verifies the modules, then waits for a fresh sample of every safety input, so that a reset finds them read.
     fn clear(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
         if inputs.verified {
             self.machine.verified = Some(now);

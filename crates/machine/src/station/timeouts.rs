@@ -1,17 +1,17 @@
-//! How long each step may wait: the deadline of every state that has none of its own.
+//! Timeouts of the steps of feed, nests and sorter.
 //!
 //! | step | waits for | at most |
 //! |---|---|---|
 //! | feed on its way | strokes, each with its own time-out and one more try | 6 s |
 //! | clamping, probing, gripping, unclamping | strokes | 6 s |
-//! | testing | the measuring line; the slow strategy takes below 10 s | 60 s and the conditioning |
+//! | testing | the measuring line; confirmation measurements take below 10 s | 60 s and the conditioning |
 //! | judged | the sorter over the nest, fingers open, z down | 15 s |
 //! | lifting | z up and the nest empty | 2.5 s |
 //! | sorter on its way | strokes and the axis | 8 s |
 //! | over the bin | rows of the part durable, beam read, the part before landed | 15 s |
 //!
-//! The others wait for their neighbours, which have a deadline, or for parts, which are nobody's fault.
-//! A bin that is full stops the clock over the bin; in maintenance nothing is late.
+//! The other steps wait for a neighbour with a timeout, or for parts, without one. A full bin stops the clock over the
+//! bin; in maintenance no timeout applies.
 
 use super::catalogue::AlarmCode;
 use super::packml::{Mode, State};
@@ -23,7 +23,7 @@ use crate::handling::place::NestId;
 use crate::handling::sort::Sort;
 use units::{RigTime, Span};
 
-/// What waits.
+/// Owner of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Who {
     Feed,
@@ -39,19 +39,19 @@ struct Step {
     limit: Option<Span>,
 }
 
-/// Since when feed, nests and sorter are in their step.
+/// Start times of the steps of feed, nests and sorter.
 #[derive(Debug, Default)]
 pub struct Timeouts {
     since: Vec<(Who, &'static str, RigTime)>,
 }
 
 impl Timeouts {
-    /// A new state of the outer machine: every clock begins anew.
+    /// Restarts every clock, at a new state of the outer machine.
     pub fn forget(&mut self) {
         self.since.clear();
     }
 
-    /// The last of the steps that wait for too long.
+    /// Returns the alarm of the last step beyond its timeout.
     pub fn look(
         &mut self,
         now: RigTime,
@@ -80,7 +80,7 @@ impl Timeouts {
         late
     }
 
-    /// Since when a step lasts; one that is new begins now.
+    /// Returns the start time of a step; a new one begins now.
     fn began(&mut self, step: Step, now: RigTime) -> RigTime {
         match self.since.iter_mut().find(|(who, ..)| *who == step.who) {
             Some((_, name, began)) => {
@@ -96,13 +96,13 @@ impl Timeouts {
         }
     }
 
-    /// A bin is full: what waits over it is not late.
+    /// Restarts the clock of the sorter while a bin is full.
     pub fn wait_for_bin(&mut self) {
         self.since.retain(|(who, ..)| *who != Who::Sort);
     }
 }
 
-/// The step whose end is a part that stays behind.
+/// The step whose timeout means a stuck part.
 const LIFTING: &str = "lifting";
 
 fn steps(feeder: &Feeder) -> impl Iterator<Item = Step> {
@@ -113,7 +113,7 @@ fn steps(feeder: &Feeder) -> impl Iterator<Item = Step> {
         .chain([step(Who::Sort, of_sort(feeder.sort()))])
 }
 
-/// The sequence turns in these states.
+/// Returns true in the states that perform the sequence.
 fn runs(state: State) -> bool {
     matches!(
         state,

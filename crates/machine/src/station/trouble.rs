@@ -1,5 +1,4 @@
-//! Alarms: trouble of the rig as a code with its arguments. Those about parts and the places where parts are expected
-//! stand in `parts`.
+//! Alarms: trouble of the rig as a code with its arguments. `parts` has those about parts and their places.
 
 mod parts;
 
@@ -16,7 +15,7 @@ use units::Span;
 pub struct Alarm {
     /// What happened.
     pub code: AlarmCode,
-    /// With what: the arguments of its text.
+    /// Arguments of its text.
     pub args: Args,
 }
 
@@ -52,14 +51,14 @@ impl From<Trouble> for Alarm {
 }
 
 impl Alarm {
-    /// What happened and what to do. An alarm that a version before has stored without its arguments says its cause.
+    /// Returns the text. For an alarm stored without arguments by an older version it is the cause.
     pub fn text(&self, lang: Lang) -> String {
         let said = self.code.message(self.args.clone()).try_say(lang);
         let [cause, ..] = self.code.help(lang);
         said.unwrap_or_else(|| cause.to_owned())
     }
 
-    /// The text of a refusal that speaks of this alarm.
+    /// Returns the text of a refusal because of this alarm.
     pub fn inside(&self, refusal: &'static str) -> Message {
         let args = self.args.clone().with("alarm", self.code.text_id());
         Message::of("refusal", refusal, args)
@@ -96,7 +95,7 @@ impl Alarm {
             .with("expects", wanted.collect::<Vec<_>>().join(", "))
     }
 
-    /// A stroke did not arrive and is tried once more.
+    /// A stroke has not arrived; the machine repeats it once.
     pub fn retried(movement: Move, limit: Span) -> Self {
         Self::of_a_move(AlarmCode::Retried(movement.key()), movement)
             .with("limit_ms", limit.0 / 1000)
@@ -108,7 +107,7 @@ impl Alarm {
             .with("place", movement.actuator_key())
     }
 
-    /// Both ends of an actuator are seen at once.
+    /// Both end sensors of an actuator are on.
     pub fn both_ends(movement: Move) -> Self {
         Self::of_a_move(AlarmCode::BothEnds(movement.key()), movement)
             .with("place", movement.actuator_key())
@@ -124,7 +123,7 @@ impl Alarm {
         Self::from(AlarmCode::BusTrouble).with("detail", text)
     }
 
-    /// A safety input is not read any more.
+    /// A safety input has no fresh sample.
     pub fn stale(input: DigitalIn) -> Self {
         Self::from(AlarmCode::SensorStale).with("input", input)
     }
@@ -134,43 +133,43 @@ impl Alarm {
         Self::from(AlarmCode::ButtonStuck).with("input", button)
     }
 
-    /// A step waits for longer than it can need.
+    /// A step has exceeded its timeout.
     pub fn step_too_long(step: &str, waited: Span) -> Self {
         Self::from(AlarmCode::StepTooLong)
             .with("step", step)
             .with("waited_s", format!("{:.0}", waited.as_seconds()))
     }
 
-    /// Modules had made themselves safe because their host was silent.
+    /// The host watchdog of a module has made its outputs safe.
     pub fn watchdog_tripped(module: &str) -> Self {
         Self::from(AlarmCode::WatchdogTripped).with("module", module)
     }
 
-    /// The probes lose more on the way to the coil than they may, mean over the last parts.
+    /// The mean probe contact over the last parts exceeds its limit.
     pub fn probe_contact(mean_ohm: f64, limit_ohm: f64) -> Self {
         Self::from(AlarmCode::ProbeContact)
             .with("mean_ohm", format!("{mean_ohm:.2}"))
             .with("limit_ohm", format!("{limit_ohm:.2}"))
     }
 
-    /// A golden part has to be measured, and nobody can have put it into the magazine.
+    /// A reference check is due by time, so the operator must load the reference part.
     pub fn reference_check_due(serial: &str) -> Self {
         Self::from(AlarmCode::ReferenceCheckDue).with("serial", serial)
     }
 
-    /// A golden part does not read as certified.
+    /// A reference part does not agree with its certificate.
     pub fn reference_check_failed(fault: &Message) -> Self {
         Self::of_a_fault(AlarmCode::ReferenceCheckFailed, fault)
     }
 
-    /// The test of a golden part was cut off and begins anew.
+    /// The test of a reference part was interrupted and begins again.
     pub fn reference_repeated(serial: &str, why: &str) -> Self {
         Self::from(AlarmCode::ReferenceRepeated)
             .with("serial", serial)
             .with("detail", why)
     }
 
-    /// More parts have failed than the lot may have.
+    /// More parts have failed than the reject-rate limit allows.
     pub fn reject_rate_limit(failed: u64, judged: u64, limit_pct: f64) -> Self {
         Self::from(AlarmCode::RejectRateLimit)
             .with("failed", failed)
@@ -178,7 +177,7 @@ impl Alarm {
             .with("limit_pct", limit_pct)
     }
 
-    /// Something was used as often as it lasts.
+    /// A wearing part has reached its limit of uses.
     pub fn worn(what: Wearing, count: u64, limit: u64) -> Self {
         Self::from(AlarmCode::Worn(what))
             .with("wears", what.name())
@@ -186,7 +185,7 @@ impl Alarm {
             .with("limit", limit)
     }
 
-    /// A calibration before this start was cut off and left a channel mask of its own.
+    /// An interrupted calibration has left its channel mask in a module.
     pub fn calibration_cut_off(module: &str) -> Self {
         Self::from(AlarmCode::CalibrationCutOff).with("module", module)
     }

@@ -1,4 +1,4 @@
-//! What one turn of the station asks for, by receiver, and what it is told.
+//! Inputs and outputs of one turn of the station; the outputs by receiver.
 
 use super::orders::{Order, Refused};
 use super::packml::Command;
@@ -9,12 +9,12 @@ use crate::handling::wants::{Commands, NestDone, PartEvents};
 use crate::rig::image::Image;
 use units::RigTime;
 
-/// What the station is told in a turn beside the time.
+/// Inputs of a turn beside the time.
 #[derive(Debug)]
 pub struct Inputs<'a> {
     /// Process image.
     pub image: &'a Image,
-    /// Answer to the job asked for, once.
+    /// Result of the requested job, once.
     pub job: Option<NestDone>,
     /// Ordinal up to which parts are durably recorded.
     pub recorded: u64,
@@ -26,18 +26,18 @@ pub struct Inputs<'a> {
     pub abort: bool,
     /// Orders of screens, in the order in which they came; each is answered in [`Wants::answers`].
     pub orders: Vec<Order>,
-    /// Every output has confirmed what was asked of it.
+    /// True when every output has confirmed its command.
     pub settled: bool,
     /// The modules were verified after [`Commands::verify`].
     pub verified: bool,
 }
 
-/// A golden check that has come out.
+/// Result of a reference check.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Checked {
-    /// The golden part reads as certified.
+    /// True when the reference part agrees with its certificate.
     pub passed: bool,
-    /// Which part, or what was found instead.
+    /// Serial number of the part, or the disagreement.
     pub text: String,
 }
 
@@ -66,44 +66,44 @@ impl Ending {
 /// Events for the record.
 #[derive(Debug, Default)]
 pub struct Record {
-    /// What has happened to parts.
+    /// Events of parts.
     pub parts: PartEvents,
-    /// Alarms that came anew in this turn.
+    /// New alarms of this turn.
     pub alarms: Vec<Alarm>,
-    /// Alarms that stand have changed.
+    /// True when the list of alarms has changed.
     pub alarms_changed: bool,
     /// A calibration that is complete.
     pub calibrated: Option<Calibration>,
-    /// A golden check has come out.
+    /// Result of a reference check.
     pub checked: Option<Checked>,
-    /// The lot itself has begun (after calibration and golden parts).
+    /// True when the lot itself begins, after calibration and reference parts.
     pub lot_began: bool,
     /// The run is over.
     pub ending: Option<Ending>,
 }
 
-/// Notes between the parts of the station; nothing is left of them when a turn is over.
+/// Trouble noted within a turn; empty at its end.
 #[derive(Debug, Default)]
 pub(super) struct Notes {
-    /// Trouble seen in this turn, before it was compared with what stands.
+    /// Alarms of this turn, not yet in the list.
     pub trouble: Vec<Alarm>,
     /// Trouble of the feeder that has not become an alarm yet.
     pub feeder: Vec<Trouble>,
 }
 
 impl Notes {
-    /// Nothing is left to become an alarm.
+    /// Returns true when no note is left.
     fn is_done(&self) -> bool {
         self.trouble.is_empty() && self.feeder.is_empty()
     }
 
-    /// Trouble of the feeder takes its place behind what was noted before.
+    /// Turns trouble of the feeder into alarms behind those noted before.
     pub fn take_over(&mut self) {
         self.trouble.extend(self.feeder.drain(..).map(Alarm::from));
     }
 }
 
-/// What one turn asks for.
+/// Outputs of a turn.
 #[derive(Debug, Default)]
 pub struct Wants {
     /// Commands to the rig.
@@ -118,7 +118,7 @@ pub struct Wants {
 }
 
 impl Wants {
-    /// Checks what the receivers of a turn rely on; it had so many orders.
+    /// Panics when an invariant of the outputs is broken; `orders` is the number of orders in the turn.
     pub(super) fn check(&self, now: RigTime, orders: usize) {
         let rig = &self.rig;
         assert_eq!(self.answers.len(), orders, "orders without their answers");
@@ -144,6 +144,6 @@ impl Wants {
             let ordinal = judged.part.ordinal;
             assert!(judged.part.bin.is_some(), "part {ordinal} has no bin");
         }
-        assert!(self.notes.is_done(), "trouble that became no alarm");
+        assert!(self.notes.is_done(), "trouble without an alarm");
     }
 }

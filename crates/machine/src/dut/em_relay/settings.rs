@@ -1,4 +1,4 @@
-//! What measuring relies on: references, how long a calibration holds, golden parts.
+//! What measuring relies on: references, how long a calibration holds, reference parts.
 //! From `config/rig.toml` and `config/golden.toml`.
 
 use super::Parameter;
@@ -33,7 +33,7 @@ pub struct ReferenceSettings {
 pub struct CalibrationSettings {
     /// Age at which a lot is refused, hours.
     pub valid_h: f64,
-    /// File of the golden parts, beside `rig.toml`; none where no recipe needs them.
+    /// File of the reference parts, beside `rig.toml`; none where no recipe needs them.
     pub golden: Option<String>,
 }
 
@@ -72,7 +72,7 @@ impl ReferencePart {
     }
 }
 
-/// All golden parts of the plant.
+/// All reference parts of the plant.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ReferenceSet {
     /// Temperature of the certified values, degrees Celsius.

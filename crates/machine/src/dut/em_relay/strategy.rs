@@ -5,9 +5,9 @@
 //! | `pulse` | one step to the limit less the guard band | one bit: proven, or measured after all |
 //! | `staircase` | steps of 20 mV with a dwell, until the contact changes | a value, slowly, from levels alone: the method in dispute |
 //! | `bisection` | seven steps into a halved interval, each from rest | a value to a hundredth of the interval |
-//! | `ramp` | the coarse ramp with the gated counter; for operate the lag follows the part's operate time ([`super::overshoot`]) | a value at the scatter of its lag |
-//! | `two_rates` | coarse and fine ramp, the lag eliminated by its law | a value without golden parts |
-//! | `coarse_fine` | a coarse ramp that places a fine one | a value at the scatter of the fine lag |
+//! | `ramp` | the coarse ramp with the gated counter; for operate the overshoot follows the part's operate time ([`super::overshoot`]) | a value at the scatter of its overshoot |
+//! | `two_rates` | coarse and fine ramp, the overshoot eliminated by its law | a value without reference parts |
+//! | `coarse_fine` | a coarse ramp that places a fine one | a value at the scatter of the fine overshoot |
 //! | `adaptive` | the coarse ramp; the fine one within the uncertainty of a limit | the decision of the fine one at the pace of the coarse one |
 //!
 //! A ramp shows `V + r (a - L ln r)`, rising, for a threshold V, a rate r, the growth time L of the unstable
@@ -91,7 +91,7 @@ impl Strategy {
     }
 }
 
-/// Threshold behind two rising ramps (or, with both lags turned round, two falling ones) from the law
+/// Threshold behind two rising ramps (or, with both signs reversed, two falling ones) from the law
 /// `seen = V + r (a - L ln r)`: rates in volts per second, `growth_s` is L.
 ///
 /// Two equations, two unknowns: `a` goes out, and nothing is left of it.
@@ -101,7 +101,7 @@ pub fn from_two_rates(seen_v: [f64; 2], rates: [f64; 2], growth_s: f64) -> f64 {
     (rates[0] * two - rates[1] * one) / (rates[0] - rates[1])
 }
 
-/// Growth time L in seconds from the lags of two rates on parts of known threshold; both lags positive.
+/// Growth time L in seconds from the overshoot of two rates on parts of known threshold; both positive.
 pub fn growth_s(overshoots_v: [f64; 2], rates: [f64; 2]) -> f64 {
     let each = |place: usize| overshoots_v[place] / rates[place];
     (each(1) - each(0)) / (rates[0].ln() - rates[1].ln())

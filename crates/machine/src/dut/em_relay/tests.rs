@@ -1,4 +1,4 @@
-//! Recipe, golden parts and instruments that err by nothing.
+//! Recipe, reference parts and instruments that err by nothing.
 #![allow(clippy::unwrap_used)]
 
 use crate::dut;
@@ -58,7 +58,7 @@ pub fn device_of(context: Context) -> dut::Device {
     dut::Device::EmRelay(Box::new(Device::of(context, 1.6, golden_parts())))
 }
 
-/// The golden parts of 12 V.
+/// The reference parts of 12 V.
 pub fn golden_parts() -> Vec<ReferencePart> {
     let set: ReferenceSet =
         toml::from_str(include_str!("../../../../../config/golden.toml")).unwrap();

@@ -2,8 +2,8 @@
 //!
 //! The window opens when the supply has moved [`WINDOW_V`] from the level it had at ARM, and the
 //! latch closes it at the contact event, so the indicated voltage is
-//! `start +- (WINDOW_V + slope x gate)`. A ramp overshoots the quasi-static threshold by its lag;
-//! golden parts tell the lag of the fine ramp, and the same number absorbs the tolerance of the
+//! `start +- (WINDOW_V + slope x gate)`. A ramp overshoots the quasi-static threshold by its overshoot;
+//! reference parts tell the overshoot of the fine ramp, and the same number absorbs the tolerance of the
 //! 50 mV, the error of the level, the contact of the probes and the mean heating of the coil, all of which were there too.
 //! Pickup current does not depend on temperature, so the voltage scales like the coil (IEC 61810-7).
 
@@ -40,12 +40,12 @@ pub fn indicated(start: Volt, slope_v_per_s: f64, gate: Second, direction: Direc
     start + (WINDOW_V + Volt(slope_v_per_s * gate.0)) * direction.sign()
 }
 
-/// What makes a threshold doubtful besides the golden parts' shift.
+/// What makes a threshold doubtful besides the reference parts' shift.
 #[derive(Debug, Clone, Copy)]
 pub struct RampDoubt {
     /// Slope of the fine ramp, volts per second.
     pub slope_v_per_s: Factor,
-    /// The error of the slope is in the taught lag already.
+    /// The error of the slope is part of the overshoot already.
     pub slope_known: bool,
     /// Scatter of the part's own threshold from operation to operation, volts.
     pub operation_v: f64,
@@ -53,7 +53,7 @@ pub struct RampDoubt {
     pub refresh: Second,
     /// Relative standard uncertainty of the gain of the level at which the ramp starts.
     pub level_share: f64,
-    /// What the force contacts of the coil put in series to it now and not when golden parts ran, a share of its
+    /// What the force contacts of the coil put in series to it now and not when reference parts ran, a share of its
     /// resistance.
     pub contact_share: f64,
     /// Part's temperature against the track's, kelvin (1 sd).
@@ -61,7 +61,7 @@ pub struct RampDoubt {
 }
 
 /// Quasi-static threshold at the reference temperature from one fine ramp, which on this part overshoots by `own`
-/// volts more than on the golden parts.
+/// volts more than on the reference parts.
 pub fn quasi_static(
     (seen, own): (Volt, Factor),
     gate: Second,

@@ -1,4 +1,4 @@
-//! What a test of a resistor finds beside its figure.
+//! Findings of a resistor test beside its result.
 
 use super::parameter::{BIN, Parameter};
 use crate::dut::reason::{Code, Reason};

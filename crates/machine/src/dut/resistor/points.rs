@@ -1,6 +1,6 @@
 //! The points that a resistor needs: the level and the drive of the coil board, and one current channel.
 //!
-//! They are points of the board that `em_relay` declares; here they are looked up by the same names.
+//! `em_relay` declares them as points of its board, under the same names.
 
 use crate::rig::point::{AnalogInput, AnalogOutput, DigitalOutput, MissingPoint};
 use crate::rig::wiring::Wiring;

@@ -20,7 +20,7 @@ use crate::station::wants::Ending;
 
 const BAD: Specimen = Specimen::OpenCoil;
 
-/// What a test finds on a golden part that is so many standard deviations off in one parameter.
+/// What a test finds on a reference part that is so many standard deviations off in one parameter.
 fn read(part: &ReferencePart, off: Parameter, deviations: f64) -> TestRecord {
     let mut record = TestRecord::default();
     for (parameter, certified) in [
@@ -65,12 +65,12 @@ fn a_golden_part_agrees_with_its_certificate_within_three_standard_deviations() 
 }
 
 /// Every part of this magazine has a broken coil, the golden one too: no check can be passed.
-fn checked(settings: CheckSettings, stays: bool) -> Machine {
+fn checked(settings: CheckSettings, attended: bool) -> Machine {
     let lot = LotSettings {
         golden_check: settings,
         ..LotSettings::default()
     };
-    Machine::of_lot(Some(6), vec![BAD; 9], lot, stays)
+    Machine::of_lot(Some(6), vec![BAD; 9], lot, attended)
 }
 
 fn after_parts(parts: u64) -> CheckSettings {
@@ -109,7 +109,7 @@ fn nothing_but_a_golden_part_is_judged_after_a_check_that_failed() {
     assert_eq!(kinds(&mut machine), ["1", "2", "golden"]);
     assert_eq!(machine.station.outer(), State::Held);
     machine.order(Order::Command(Command::Unhold)).unwrap();
-    assert_eq!(kinds(&mut machine), ["golden"], "the gate stays closed");
+    assert_eq!(kinds(&mut machine), ["golden"], "the gate attended closed");
     let failed = machine.station.annunciator().standing();
     assert_eq!(failed[0].alarm.code, AlarmCode::ReferenceCheckFailed);
 }

@@ -109,7 +109,7 @@ pub fn station(count: Option<u64>, shop: &Shop) -> Station {
 
 fn plan(count: Option<u64>) -> Plan {
     Plan {
-        stays: false,
+        attended: false,
         between_lots: None,
         simulated: true,
         count,
@@ -162,7 +162,7 @@ impl Machine {
     pub fn attended(count: Option<u64>, magazine: Vec<Specimen>) -> Self {
         let mut machine = Self::new(count, magazine);
         let plan = Plan {
-            stays: true,
+            attended: true,
             ..plan(count)
         };
         machine.station = of_plan(plan, &machine.shop);
@@ -173,7 +173,7 @@ impl Machine {
     pub fn between_lots() -> Self {
         let mut machine = Self::new(Some(0), Vec::new());
         let plan = Plan {
-            stays: true,
+            attended: true,
             between_lots: Some(crate::station::packml::State::Stopped),
             ..plan(Some(0))
         };
@@ -181,16 +181,16 @@ impl Machine {
         machine
     }
 
-    /// Behind these gates, with the golden parts of the default plant.
+    /// Behind these gates, with the reference parts of the default plant.
     pub fn of_lot(
         count: Option<u64>,
         magazine: Vec<Specimen>,
         lot: LotSettings,
-        stays: bool,
+        attended: bool,
     ) -> Self {
         let mut machine = Self::new(count, magazine);
         let plan = Plan {
-            stays,
+            attended,
             lot,
             golden: device().reference_serials(),
             ..plan(count)

@@ -1,4 +1,4 @@
-//! Alarms about parts: not there, not alone, not known, not where they were let go.
+//! Alarms about missing, double, unknown and stuck parts.
 
 use super::{Alarm, AlarmCode};
 use crate::handling::Place;
@@ -20,34 +20,34 @@ impl Alarm {
         }
     }
 
-    /// The run ended before the beam of a bin had seen the part that was let go over it.
+    /// The run ended before the beam of the bin had counted the released part.
     pub fn beam_unread(bin: Bin) -> Self {
         Self::from(AlarmCode::BinBeam)
             .with("bin", bin)
             .case("unread")
     }
 
-    /// A part that nobody knows lies where the machine looks for one.
+    /// A sensor shows a part that the ledger does not have.
     pub fn part_found(place: Place) -> Self {
         Self::from(AlarmCode::PartFound).with("place", place.name())
     }
 
-    /// A part that was inside is nowhere.
+    /// No sensor shows a part that the ledger has.
     pub fn part_lost(place: Place) -> Self {
         Self::from(AlarmCode::PartLost).with("place", place.name())
     }
 
-    /// A run before left a part inside, and it is nowhere.
+    /// No sensor shows a part that an earlier run left inside.
     pub fn part_gone(place: Place) -> Self {
         Self::part_lost(place).case("gone")
     }
 
-    /// A run before let a part go, and was cut off before a beam had confirmed it.
+    /// An earlier run ended between the release of a part and its beam.
     pub fn fall_unseen(bin: Bin) -> Self {
         Self::from(AlarmCode::FallUnseen).with("bin", bin)
     }
 
-    /// Open fingers that still hold a part.
+    /// A part sticks in the open gripper.
     pub fn part_sticks() -> Self {
         Self::from(AlarmCode::PartStuck).case("between_fingers")
     }

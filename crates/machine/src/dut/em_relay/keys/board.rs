@@ -1,4 +1,4 @@
-//! Keys of the interface board in `config/rig.toml`: its references, and what is promised of a relay on it.
+//! Keys of the interface board in `config/rig.toml`: references, and accuracies for relays.
 
 use crate::dut::keys::table;
 use crate::form::{Key, above_zero, from_to, key};

@@ -1,7 +1,7 @@
-//! What interface board, coil supply and armature are doing between two stages of a test.
+//! State of interface board, coil supply and armature between two stages of a test.
 //!
-//! The acts of a stage begin from the state that the stage before has left, and come with the state that they leave.
-//! The conclusion corrects it where the part has not done what the acts were for. A mark outlives its stage:
+//! The acts of a stage begin from the state that the stage before leaves, and return the state that they leave.
+//! The conclusion corrects it when the part has not moved as planned. A mark outlives its stage:
 //! "the mark" is the last instant that any stage has marked.
 
 use super::{Context, INTERLOCK, set};
@@ -19,31 +19,31 @@ const ROUNDING_V: f64 = 1e-6;
 /// State of board and supply between two stages.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BoardState {
-    /// Voltages that were asked of the supply.
+    /// Commanded voltages of the supply.
     pub supply: Supply,
-    /// What drive and armature are doing.
+    /// State of drive and armature.
     pub armature: Armature,
     /// The ramp that the present stage sends.
     pub ramp: Option<SentRamp>,
-    /// How long after the mark an output still ramps that no stage has waited for.
+    /// Time after the mark until the last ramp without a wait has ended.
     pub still_ramping: Span,
 }
 
-/// What drive and armature are doing.
+/// State of drive and armature.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Armature {
-    /// Nothing that the next stage could build on: it takes the drive off, or seals the armature, first.
+    /// Unknown: the next stage first takes the drive off, or seals the armature.
     Unknown,
-    /// At rest, drive off. The counters were read behind an ARM whose window nothing has opened since, the supply is at
-    /// nominal and the source on: the drive is all that a timed operation needs.
+    /// At rest, drive off, supply at nominal, source on, board armed and counters read: a timed operation needs only the
+    /// drive.
     ReadyForTiming,
     /// At rest on the pre-bias, armed in ramp mode: the coarse operate ramp may begin.
     ReadyForRamp,
     /// Operated since the mark, and driven.
     Operated,
-    /// The drive went off at the mark or before it.
+    /// Drive off since the mark or before it.
     Released,
-    /// Released, and the supply is where the next part begins: the last stage has only to see the current gone.
+    /// Released, and the supply at the start level of the next part: the last stage only checks the coil current.
     Rested,
 }
 
@@ -59,7 +59,7 @@ pub struct SentRamp {
 }
 
 impl Armature {
-    /// True while the coil is free since the mark or before it.
+    /// Returns true when the drive is off since the mark or before it.
     pub fn is_released(self) -> bool {
         match self {
             Self::ReadyForTiming | Self::Released | Self::Rested => true,
@@ -69,7 +69,7 @@ impl Armature {
 }
 
 impl BoardState {
-    /// Before a test: all outputs at zero.
+    /// Returns the state before a test: all outputs at zero.
     pub fn new(context: &Context) -> Self {
         Self {
             supply: Supply::new(&context.calibration),
@@ -79,7 +79,7 @@ impl BoardState {
         }
     }
 
-    /// The ramp of the stage that has just ended. Panics if that has sent none.
+    /// Returns the ramp of the stage that has just ended; panics when it has sent none.
     pub fn sent(&self) -> SentRamp {
         let Some(ramp) = self.ramp else {
             panic!("a stage concludes a ramp that it has not sent");
@@ -87,7 +87,7 @@ impl BoardState {
         ramp
     }
 
-    /// Panics where the supply contradicts what the acts claim to leave.
+    /// Panics when the supply contradicts the state of the armature.
     pub fn check(&self, context: &Context) {
         let test = &context.relay.test;
         let supply_v = match self.armature {
@@ -115,7 +115,7 @@ pub(super) fn select_diode(context: &Context, on: bool) -> Option<Act> {
     }
 }
 
-/// Takes the drive off and marks the instant; no acts if the stage before has done so.
+/// Takes the drive off and marks the instant; returns no acts when it is off.
 pub(super) fn drive_off(armature: Armature) -> Vec<Act> {
     if armature.is_released() {
         return Vec::new();

@@ -25,9 +25,9 @@ const CHANNELS: usize = 2;
 const LEAST_PREBIAS: f64 = 0.5;
 /// Below this terminal voltage of the fine current channel (0.25 mA) no current flows.
 const NO_CURRENT: Volt = Volt(0.15);
-/// Below this coil current the clamp may be switched and the probes may leave, ampere.
+/// Below this coil current the board switches the suppression and the probes may leave, ampere.
 const OFF_CURRENT_A: f64 = 0.001;
-/// From the mark to a free coil: the word that takes the drive off is written by then, and the current gone.
+/// Time from the mark until the drive is off and the coil current gone.
 const FREED: Span = Span::ms(6);
 /// The same where a diode takes over the current of a sealed armature at nominal voltage.
 const FREED_BY_DIODE: Span = Span::ms(60);
@@ -90,8 +90,7 @@ pub(super) fn acts(context: &Context, board: BoardState, repeated: bool) -> (Vec
     (acts, left)
 }
 
-/// Everything off, and the supply where the next part begins. After a release the coil is free since its mark,
-/// or since the word that followed it.
+/// Switches everything off and sets the supply to the start level of the next part.
 pub(super) fn acts_off(
     context: &Context,
     mut board: BoardState,
@@ -105,7 +104,7 @@ pub(super) fn acts_off(
     acts.extend(select_diode(context, false));
     if board.armature != Armature::Rested {
         acts.extend((!board.armature.is_released()).then_some(Act::Mark));
-        // The line sends no value that an output has already: only the next part would show a module that ignores writes.
+        // The line skips an unchanged value; a change of level shows a module that ignores writes on this part.
         acts.extend(stopped.then(|| board.supply.step_to(Volt(0.0))));
         acts.extend(rest(context, &mut board.supply));
     }
@@ -117,8 +116,8 @@ pub(super) fn acts_off(
     (acts, board)
 }
 
-/// The supply goes where the next part begins: pre-bias on the level, both ramps down. Then every module
-/// with outputs answers whether it has restarted under this part.
+/// Sets the supply to the start level of the next part (pre-bias, both ramps down) and checks every module with outputs
+/// for a restart.
 pub(super) fn rest(context: &Context, supply: &mut Supply) -> [Act; 4] {
     let (coarse, _) = supply.ramp_coarse(Volt(0.0));
     let (fine, _) = supply.ramp_fine(Volt(0.0));
@@ -198,7 +197,7 @@ pub(super) fn conclude(
     None
 }
 
-/// What is lost between the supply and the pins of `coil`, by the calibration of the input and of the supply.
+/// Returns the resistance between the supply and the pins of `coil`, from the calibrated input and supply.
 fn probe_contact(context: &Context, scans: &[CoilScan], coil: Ohm) -> Option<Ohm> {
     let at_pins = |scan: &CoilScan| {
         let Sample {

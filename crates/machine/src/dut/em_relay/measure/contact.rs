@@ -21,8 +21,8 @@ const EMF_MOVES_V: f64 = 30e-6 * 50.0;
 /// Current and amplifier have settled.
 pub(super) const SOURCE_SETTLES: Span = Span::ms(1);
 
-/// The source turned round, and a reading.
-fn turned(context: &Context, reverse: bool) -> [Act; 4] {
+/// Sets the direction of the source and reads the drop.
+fn directed(context: &Context, reverse: bool) -> [Act; 4] {
     [
         set(&[(SourceReverse, reverse)]),
         Act::Mark,
@@ -31,9 +31,9 @@ fn turned(context: &Context, reverse: bool) -> [Act; 4] {
     ]
 }
 
-/// The readings after a first forward one; the source stays on, the way it was driven last.
+/// Reads the polarities after the first forward one; the source stays on in its last direction.
 pub(super) fn reversed(context: &Context) -> Vec<Act> {
-    let mut acts = turned(context, true).to_vec();
+    let mut acts = directed(context, true).to_vec();
     match context.relay.test.strategy.contact.polarities {
         Polarities::PlusMinus => {}
         Polarities::PlusMinusMinusPlus => {
@@ -42,14 +42,14 @@ pub(super) fn reversed(context: &Context) -> Vec<Act> {
                 Act::ConvertSinceMark(context.round(1)),
                 Act::Read(Read::Drop),
             ]);
-            acts.extend(turned(context, false));
+            acts.extend(directed(context, false));
         }
     }
     acts
 }
 
-/// Both polarities at rest. While the first one is converted the stage reads the temperature of the part and prepares the
-/// timed operation: counters behind an ARM that nothing can answer, supply at nominal with the drive off.
+/// Reads both polarities at rest. During the first conversion the stage reads the temperature and prepares the timed
+/// operation: ARM, counters, supply at nominal with the drive off.
 pub(super) fn acts_nc(context: &Context, mut board: BoardState) -> (Vec<Act>, BoardState) {
     let mut acts = vec![
         set(&[(KelvinTest, false), (SourceOn, true), (Arm, true)]),
@@ -66,7 +66,7 @@ pub(super) fn acts_nc(context: &Context, mut board: BoardState) -> (Vec<Act>, Bo
     (acts, board)
 }
 
-/// Drop of a reading, or why there is none.
+/// Returns the drop of a reading.
 pub(super) fn drop_of(sample: Option<&Sample>, compliance: bool) -> Result<Volt, Unread> {
     let Some(sample) = sample else {
         return Err(Unread::Missing);
@@ -99,7 +99,7 @@ impl Unread {
     }
 }
 
-/// The closure that a stage has read with the polarities of the recipe.
+/// Evaluates the readings of a closure with the polarities of the recipe.
 pub(super) fn closure(context: &Context, readings: &Readings) -> Result<Closure, Unread> {
     let compliance = readings.boards.iter().any(|board| board.compliance);
     let drops: Result<Vec<Volt>, Unread> = readings
@@ -135,7 +135,7 @@ pub(super) fn conclude_nc(
     None
 }
 
-/// Voids a resistance that no contact has: the source was off, or a reply was not its own.
+/// Ends the test for a resistance below any real contact: the source was off, or the reply belongs to another request.
 pub(super) fn is_implausible(contact: Contact, mohm: f64, record: &mut TestRecord) -> bool {
     let implausible = mohm.is_nan() || mohm < LEAST_MOHM;
     if implausible {
@@ -145,7 +145,7 @@ pub(super) fn is_implausible(contact: Contact, mohm: f64, record: &mut TestRecor
     implausible
 }
 
-/// True when more closures would not change the judgement of this contact.
+/// Returns true when more closures would not change the judgement of this contact.
 pub(super) fn is_clear(context: &Context, state: &TestState, parameter: Parameter) -> bool {
     let (recipe, record) = (&context.recipe, &state.record);
     let per_v = context.calibration.contact_mohm_per_v.value;

@@ -20,51 +20,51 @@ use units::{Celsius, Ohm, Span};
 /// Span of a +-10 V input of 12 bits, volts per step.
 const LSB_V: f64 = 20.0 / 4096.0;
 
-/// Lag of a 96 V/s ramp before any golden part was run, in volts: only places the first fine ramp.
+/// Guessed overshoot of a 96 V/s ramp before the first reference part, volts; it only places the first fine ramp.
 const UNTAUGHT_OPERATE_V: f64 = 0.85;
 const UNTAUGHT_RELEASE_V: f64 = -1.05;
 
-/// The same of a 1.5 V/s ramp, operate and release.
+/// Guessed overshoot of a 1.5 V/s ramp, operate and release, volts.
 pub const UNTAUGHT_FINE_V: (f64, f64) = (0.03, -0.02);
 
 /// Recipe, calibration and instrument data of a test.
 #[derive(Debug, Clone)]
 pub struct Context {
-    /// What the part must do.
+    /// Limits and decision rule.
     pub recipe: Arc<Recipe>,
-    /// The part, and how it is measured: what the recipe says of this kind.
+    /// The relay part of the recipe.
     pub relay: Arc<RelayRecipe>,
-    /// What the instruments do.
+    /// Factors in force.
     pub calibration: Arc<Calibration>,
     /// The points of the rig.
     pub points: Points,
     /// References on the interface board.
     pub reference: ReferenceSettings,
-    /// Promises of the makers.
+    /// Accuracies of the makers.
     pub accuracy: AccuracySettings,
     /// Nominal rates of the coarse and the fine ramp at the coil, volts per second.
     pub nominal_v_per_s: [f64; 2],
-    /// Force contacts of the coil in series, mean over the last parts; `None` before any part of this run has shown it.
+    /// Resistance of the coil's two force contacts, mean over the last parts; `None` before the first part.
     pub probe_contact: Option<Ohm>,
-    /// The slow strategy for every result: a golden check or a first article.
+    /// True for a reference check or a first article: every result gets confirmation measurements.
     pub thorough: bool,
-    /// The golden part in the nest while golden parts teach the lags: its certificate places its fine ramps.
+    /// The reference part in the nest while it teaches the overshoot: its certificate places its fine ramps.
     pub teaching: Option<ReferencePart>,
 }
 
 impl Context {
-    /// How long until a conversion that begins from now on is surely readable on each of `channels`
-    /// enabled channels: one round of all, one more conversion, and 3 % for the converter's clock.
+    /// Returns the time until every one of `channels` enabled channels holds a conversion begun from now on: one round, one
+    /// more conversion, and 3 % for the converter's clock.
     pub fn fresh(&self, channels: usize) -> Span {
         Span::seconds(1.03 * (channels + 1) as f64 / self.accuracy.conversions_per_s)
     }
 
-    /// One round of conversions over `channels`.
+    /// Returns the time of one round of conversions over `channels`.
     pub fn round(&self, channels: usize) -> Span {
         Span::seconds(1.03 * channels as f64 / self.accuracy.conversions_per_s)
     }
 
-    /// Channels of the coil converter that the recipe asks for.
+    /// Returns the channels of the coil converter for the recipe.
     pub fn coil_channels(&self) -> &'static [AnalogIn] {
         match self.relay.test.coil_channels {
             CoilChannels::Fine => &[AnalogIn::CoilVoltageFine, AnalogIn::CoilCurrentFine],
@@ -72,17 +72,17 @@ impl Context {
         }
     }
 
-    /// The acts of a test on this rig.
+    /// Translates the acts of a test for this rig.
     pub(super) fn wired(&self, acts: Vec<Act>) -> Vec<act::Act> {
         self.points.wired(acts, self.coil_channels())
     }
 
-    /// Standard uncertainty of one reading at the terminal: noise and resolution.
+    /// Returns the standard uncertainty of one reading at the terminal: noise and resolution.
     pub fn reading_u_v(&self) -> f64 {
         LSB_V * (self.accuracy.ai_noise_lsb.powi(2) + 1.0 / 12.0).sqrt()
     }
 
-    /// Doubts of a coil scan.
+    /// Returns the uncertainty terms of a coil scan.
     pub fn scan_doubt(&self) -> ScanDoubt {
         ScanDoubt {
             reading_v: self.reading_u_v(),
@@ -91,20 +91,20 @@ impl Context {
         }
     }
 
-    /// Scatter of a threshold of this part from operation to operation, volts (1 sd).
+    /// Returns the scatter of a threshold of this part from operation to operation, volts (1 sd).
     pub fn operation_v(&self) -> f64 {
         self.accuracy.operation_v(self.relay.part.nominal_v)
     }
 
-    /// What the probes may have lifted or lowered a threshold by since the golden parts taught its lag, relative (1 sd):
-    /// all that their trend shows; no correction takes it off.
+    /// Returns the relative uncertainty of a threshold from the change of the probe contact since the reference parts (1 sd);
+    /// no correction removes it.
     pub fn contact_share(&self) -> f64 {
         let then_ohm = self.calibration.probe_contact_ohm;
         let changed = self.probe_contact.map_or(0.0, |Ohm(now)| now - then_ohm);
         changed.abs() / self.relay.part.nominal_coil_ohm
     }
 
-    /// Clock of the gated counters.
+    /// Returns the clock of the gated counters.
     pub fn clock(&self) -> Clock {
         Clock {
             hz: self.reference.counter_clock_hz,
@@ -112,13 +112,13 @@ impl Context {
         }
     }
 
-    /// Reference temperature of the recipe.
+    /// Returns the reference temperature of the recipe.
     pub fn reference_temperature(&self) -> Celsius {
         Celsius(self.relay.part.reference_temperature_c)
     }
 
-    /// How a threshold is found. Golden parts always get both ramps: they teach the lags; and so do the first
-    /// parts of a lot before `adaptive` trusts its coarse ramp.
+    /// Returns the strategy for a threshold. Reference parts, and the first parts of a lot under `adaptive`, get both ramps
+    /// because they teach the overshoot.
     pub fn strategy(&self, parameter: Parameter) -> Strategy {
         let overshoot = self.overshoot(match parameter == Parameter::ReleaseVoltage {
             true => Direction::Falling,
@@ -145,7 +145,7 @@ impl Context {
     }
 }
 
-/// Laws of both coarse ramps before any part was run, operate and release.
+/// Returns the models of both coarse ramps before the first part, operate and release.
 pub fn untaught() -> (OvershootModel, OvershootModel) {
     (
         OvershootModel::guess(UNTAUGHT_OPERATE_V),

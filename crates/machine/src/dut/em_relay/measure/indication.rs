@@ -1,4 +1,4 @@
-//! What the gate of a ramp says: the indicated voltage, and the threshold behind it.
+//! Evaluation of the gate of a ramp: indicated voltage and threshold.
 
 use super::search::parameter;
 use super::{Context, Ramp};
@@ -13,7 +13,7 @@ use crate::dut::em_relay::timing::counts;
 use crate::gauge::budget::Reading;
 use units::{Celsius, Second, Volt};
 
-/// Length of gate 0 between the last two readings.
+/// Returns the length of gate 0 between the last two readings.
 pub(super) fn gate0(context: &Context, readings: &Readings) -> Option<Second> {
     let [.., before, after] = readings.gates.as_slice() else {
         return None;
@@ -24,11 +24,9 @@ pub(super) fn gate0(context: &Context, readings: &Readings) -> Option<Second> {
     ))
 }
 
-/// The threshold behind a coarse ramp whose lag golden parts and lot have taught; `None` for a part unlike those, whose
-/// lag is not known.
+/// Returns the threshold from a coarse ramp by the overshoot model; `None` for a part unlike those that taught it.
 ///
-/// The scatter that was learned holds what a coarse ramp does not know of itself: resolution, repeatability, the
-/// error of its slope; each would otherwise be counted twice.
+/// The learned scatter already contains resolution, repeatability and slope error, so the budget does not add them.
 pub(super) fn coarse_reading(
     context: &Context,
     (seen, overshoot): (Shown, Overshoot),
@@ -36,7 +34,7 @@ pub(super) fn coarse_reading(
     direction: Direction,
 ) -> Option<Reading> {
     let predicted = overshoot.coarse.of(&seen);
-    // What was learned holds the operation of the fine ramp as well, which is none of this value's.
+    // The learned scatter contains that of the fine operation too, which does not belong to this value.
     let operation_v = context.operation_v();
     let own_v = (predicted.u_v.powi(2) - operation_v.powi(2)).max(operation_v.powi(2));
     let doubt = RampDoubt {
@@ -44,7 +42,7 @@ pub(super) fn coarse_reading(
         slope_known: true,
         operation_v: 0.0,
         refresh: Second(0.0),
-        // The law follows the indication, and an error of gain with it.
+        // The model follows the indication, gain error included.
         level_share: 0.0,
         ..doubt(context)
     };
@@ -63,7 +61,7 @@ pub(super) fn coarse_reading(
     predicted.alike.then_some(reading)
 }
 
-/// Threshold from a fine ramp: less the lag of golden parts, or, by two rates, from both ramps.
+/// Returns the threshold from a fine ramp, corrected by the overshoot of reference parts or, by two rates, from both ramps.
 pub(super) fn fine_reading(
     context: &Context,
     (ramps, gate): (Ramp, Second),
@@ -88,7 +86,7 @@ pub(super) fn fine_reading(
             context.calibration.fine_v_per_s.value,
         ];
         let sign = direction.sign();
-        // The growth time from the lags of both rates on golden parts; their common offset stays out of it.
+        // Growth time from the overshoot at both rates on reference parts; their common offset cancels.
         let predicted = overshoot.coarse.of(&ramps.coarse);
         let fine_v = overshoot.fine_v.value + overshoot.own_v(predicted.volts, direction).value;
         let overshoots = [predicted.volts + fine_v, fine_v];
@@ -102,7 +100,7 @@ pub(super) fn fine_reading(
     reading
 }
 
-/// Doubts of a fine ramp beyond the golden parts' shift.
+/// Returns the uncertainty terms of a fine ramp beyond those of the reference parts.
 fn doubt(context: &Context) -> RampDoubt {
     RampDoubt {
         slope_v_per_s: context.calibration.fine_v_per_s,

@@ -3,7 +3,7 @@
 //! | seen | meaning |
 //! |---|---|
 //! | one bit open | missing pin or dirty probe: void |
-//! | COM open, the other four good | a turned part, or a dirty COM probe: void |
+//! | COM open, the other four good | a misoriented part, or a dirty COM probe: void |
 //! | five good, NC open or NO closed | a contact that does not rest: fail, contact |
 
 use super::state::TestState;

@@ -23,7 +23,7 @@
 //! `coarse_fine`, a search (`search/mod.rs`) takes the place of the ramps.
 //!
 //! A stage that finds the part unfit for the rest (open coil, contact that does not move) says why
-//! and the test goes straight to `off`. The slow strategy measures results inside the guard band again: the same stage
+//! and the test goes straight to `off`. Confirmation measurements repeat results inside the guard band: the same stage
 //! `slow_repeats` times, averaged. What is then still conditional fails.
 
 mod board;
@@ -72,7 +72,7 @@ const OFF: Span = Span::ms(12);
 /// A change of drive, selection or direction comes so late while the source is on.
 const INTERLOCK: Span = Span::ms(2);
 
-/// Stages of the slow strategy in the order of the test.
+/// Stages of confirmation measurements in the order of the test.
 const SLOW: [Stage; 5] = [
     Stage::TimedOperate,
     Stage::TimedRelease,
@@ -253,7 +253,7 @@ impl Test {
             .map(|(parameter, _)| parameter.facts().stage)
             .collect();
         // In the order of the test: a fine release ramp right after the timed operation would start from
-        // another flux than the one its lag was learned from.
+        // another flux than the one its overshoot was learned from.
         for _ in 0..self.context.recipe.decision.slow_repeats {
             let round = SLOW.iter().rev().filter(|stage| again.contains(stage));
             round.for_each(|stage| self.stages.push_front(*stage));

@@ -1,4 +1,4 @@
-//! How long a test waits for an armature, counted in its own operate time.
+//! Waiting times of a test for an armature, in multiples of its operate time.
 //!
 //! What makes a relay late on a step (mass, drag, a pull that grows slowly) makes it swing longer after an approach and
 //! leave its rest later at a level, so every wait for a free armature is a multiple of the operate time at nominal voltage
@@ -41,7 +41,7 @@ impl Pace {
         self.times(2.5)
     }
 
-    /// From there to where a fine ramp begins: a smaller step, and what is left of its swing golden parts show as well.
+    /// From there to where a fine ramp begins: a smaller step, and what is left of its swing reference parts show as well.
     pub fn settles(self) -> Span {
         self.times(4.2)
     }

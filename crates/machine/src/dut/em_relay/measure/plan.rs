@@ -1,4 +1,4 @@
-//! What the stages so far have taught those to come; a test record keeps none of it.
+//! Data that earlier stages pass to later ones; the test record does not keep it.
 
 use super::TestRecord;
 use super::ramp::Expected;
@@ -10,7 +10,7 @@ use units::Volt;
 /// Scatter of a repeated fine ramp around the first, volts (1 sd).
 const REPEAT_SD_V: f64 = 0.008;
 
-/// What later stages of a test go by.
+/// Data of earlier stages for later ones.
 #[derive(Debug, Clone, Default)]
 pub struct Plan {
     operate: Option<Expected>,

@@ -21,7 +21,7 @@ pub(super) const JUMP: Volt = Volt(0.045);
 const RUN_DOWN: Volt = Volt(0.085);
 /// After so much of it a millivolt is left of the seal: an event there is that of the ramp.
 pub(super) const SETTLED_DOWN: Volt = Volt(0.068);
-/// Beyond the far end of the estimate, for the lag's own scatter.
+/// Beyond the far end of the estimate, for the overshoot's own scatter.
 const FAR_MARGIN: Volt = Volt(0.015);
 /// Half width of a placed ramp in standard deviations of its estimate. One in four hundred misses and
 /// costs a second ramp of 0.2 s; each further half deviation would cost every part some 7 ms.
@@ -31,9 +31,9 @@ const COVERAGE: f64 = 3.0;
 const WIDEST_SD_V: f64 = 0.02;
 /// Widest half width of a ramp that is placed anew; beyond it a search by halves is quicker.
 const WIDEST: Volt = Volt(0.2);
-/// How far the guessed lag of a fine ramp may be off (1 sd).
+/// Uncertainty of the guessed overshoot of a fine ramp, volts (1 sd).
 const FINE_GUESS_SD_V: f64 = 0.020;
-/// Operations of two golden parts, volts, and a quarter of a kelvin between them, as a share of the threshold (1 sd).
+/// Operations of two reference parts, volts, and a quarter of a kelvin between them, as a share of the threshold (1 sd).
 const TWO_OPERATIONS_V: f64 = 0.004;
 const TWO_TEMPERATURES: f64 = 0.001;
 /// Width of the next interval against that of the one that was missed.
@@ -66,14 +66,14 @@ impl Expected {
         }
     }
 
-    /// Where a coarse ramp and the law of its lag say.
+    /// Where a coarse ramp and the model of its overshoot say.
     pub fn after(coarse: &Shown, overshoot: &Overshoot) -> Self {
         let predicted = overshoot.coarse.of(coarse);
         let sd_v = predicted.u_v.min(WIDEST_SD_V);
         Self::new(coarse.indicated - Volt(predicted.volts), sd_v)
     }
 
-    /// Where the certificate of a golden part that teaches the lags says; the first of them is to tell the fine one.
+    /// Where the certificate of a reference part that teaches the overshoot says; the first of them is to tell the fine one.
     pub fn certified(context: &Context, track: Celsius, direction: Direction) -> Option<Self> {
         let part = context.teaching.as_ref()?;
         let overshoot = context.overshoot(direction);

@@ -1,4 +1,4 @@
-//! What only the test of a relay sees beside its results: ramps, temperature, contact of the probes.
+//! Observations of a relay test beside its results: ramps, temperature, probe contact.
 
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::overshoot::Shown;
@@ -7,22 +7,22 @@ use crate::dut::record;
 use crate::gauge::Judgement;
 use units::{Celsius, Ohm, Volt};
 
-/// A ramp as it was seen.
+/// Indications of the ramps of one direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ramp {
-    /// What the part had shown when the coarse ramp was read, its indication among it.
+    /// Results of the part at the coarse ramp, including its indication.
     pub coarse: Shown,
     /// Indicated voltage of the fine ramp.
     pub fine: Option<Volt>,
 }
 
 impl Ramp {
-    /// A coarse ramp that no fine one has followed.
+    /// Returns the indication of a coarse ramp without a fine one.
     pub fn coarse_only(coarse: Shown) -> Self {
         Self { coarse, fine: None }
     }
 
-    /// A fine ramp that no coarse one has placed.
+    /// Returns the indication of a fine ramp without a coarse one.
     pub fn fine_only(seen: Volt) -> Self {
         Self {
             coarse: Shown::NOTHING,
@@ -31,14 +31,14 @@ impl Ramp {
     }
 }
 
-/// What a test of a relay sees and no other kind has.
+/// Observations that only a relay test makes.
 #[derive(Debug, Clone, Default)]
 pub struct Observed {
-    /// Force contacts of the coil in series, once it was measured.
+    /// Resistance of the coil's two force contacts, once measured.
     pub probe_contact: Option<Ohm>,
     /// Temperature of the magazine track when the test began.
     pub track: Option<Celsius>,
-    /// Limits that were proven without a value.
+    /// Limits proven without a value.
     pub proven: Vec<(Parameter, Judgement)>,
     /// Operate ramps.
     pub operate: Option<Ramp>,
@@ -50,7 +50,7 @@ pub struct Observed {
 pub type TestRecord = record::TestRecord<Observed>;
 
 impl TestRecord {
-    /// The ramps of a direction.
+    /// Returns the ramps of a direction.
     pub fn ramp(&self, direction: Direction) -> Option<Ramp> {
         match direction {
             Direction::Rising => self.own.operate,
@@ -58,7 +58,7 @@ impl TestRecord {
         }
     }
 
-    /// Keeps the ramps of a direction.
+    /// Stores the ramps of a direction.
     pub fn keep_ramp(&mut self, direction: Direction, ramp: Ramp) {
         match direction {
             Direction::Rising => self.own.operate = Some(ramp),
@@ -66,7 +66,7 @@ impl TestRecord {
         }
     }
 
-    /// What the part has shown by the end of a coarse ramp.
+    /// Returns the results of the part at the end of a coarse ramp.
     pub fn shown(&self, indicated: Volt, direction: Direction) -> Shown {
         let value = |parameter| {
             self.result(parameter)

@@ -27,7 +27,7 @@ const LAST_REFRESHES: f64 = 1.5;
 /// Operate, bounce and settling of the flux.
 const SEAL_TIME: Span = Span::ms(25);
 /// The flux of the seal has fallen to a few per cent of its step before a fine ramp begins; what the coarse ramp
-/// has left of it, after [`SETTLES`], its lag has learned.
+/// has left of it, after [`SETTLES`], its overshoot has learned.
 const FINE_SETTLES: Span = Span::ms(35);
 /// Slowest break after the end of a ramp that still counts as its event.
 const LATE: Span = Span::ms(12);

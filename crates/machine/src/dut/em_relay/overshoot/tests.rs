@@ -1,4 +1,4 @@
-//! What the law of the lag knows after so many parts.
+//! What the law of the overshoot knows after so many parts.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! Thresholds by levels alone: steps, halved intervals, one pulse. No ramp, no counter, no lag.
+//! Thresholds by levels alone: steps, halved intervals, one pulse. No ramp, no counter, no overshoot.
 //!
 //! A trial is a list of acts that ends with a look at the contacts, and a conclusion that either has the
 //! threshold or names the next level. Between `untouched` and `changed` lies the threshold.

@@ -42,8 +42,8 @@ pub(in crate::dut::em_relay::measure) fn acts(
     (acts, board)
 }
 
-/// Off until the armature is back and both ramps are down, then two steps towards `at`: a single one from zero picks up
-/// some 30 mV below the threshold.
+/// Takes the drive off until the armature rests and both ramps are down, then steps twice towards `at`: a single step
+/// from zero operates some 30 mV below the threshold.
 fn from_rest(board: BoardState, pace: Pace, at: Volt) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let mut acts = drive_off(board.armature);
