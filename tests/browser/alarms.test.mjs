@@ -1,4 +1,4 @@
-// A part that falls: the alarm, and the way back to work; then motions by hand.
+// A dropped part: its alarm, the way back to production, and jogging.
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
@@ -18,7 +18,7 @@ after(async () => {
 const order = (page, word, path = "#orders") => page.click(`${path} [data-order="${word}"]`);
 const live = (page, selector) => page.waitForSelector(selector + ':not([aria-disabled="true"])');
 
-test("an alarm is told with cause and action, sounds, and is found by a search", async () => {
+test("an alarm has cause and action, sounds, and is found by search", async () => {
   const page = await visit(browser, rig);
   await shown(page, "#alarms", "part_dropped");
   assert.equal(await page.getAttribute("#mute", "data-sounding"), "true");
@@ -45,7 +45,7 @@ for (const size of SIZES) {
   });
 }
 
-test("a list of alarms becomes paper", async () => {
+test("the list of alarms prints", async () => {
   const page = await visit(browser, rig, { path: "/#alarms" });
   await page.waitForSelector("#past tr");
   const [paper] = await Promise.all([page.context().waitForEvent("page"), page.click("#alarm_print")]);
@@ -73,7 +73,7 @@ test("an operator acknowledges and may not shelve; a maintainer shelves with a r
   await leave(other);
 });
 
-test("after clear and reset the machine is moved by hand, and a motion into another body is refused before it is made", async () => {
+test("after clear and reset jogging works, and the guard refuses a collision", async () => {
   const page = await visit(browser, rig, { role: "maintainer" });
   await live(page, '#orders [data-order="clear"]');
   await order(page, "clear");

@@ -1,8 +1,8 @@
-// How fast the page is, over `relayrig demo --speed 1`, each figure beside its bar; exit 1 when one is missed.
+// Speed of the page over `relayrig demo --speed 1`: prints each figure with its bar; exits with 1 when one is missed.
 //
-// - From the turn of the cycle that a view shows to the frame that shows it, in one browser.
-// - What the cycle spends on screens: its wall time in the phase `publish`, with one screen and with 50.
-// - The first page: bytes, and time until it is drawn, from a fresh browser context each time.
+// - Time from the turn of the cycle that publishes a view to the frame that shows it, in one browser.
+// - Share of the cycle's wall time in the phase `publish`, with one open stream and with 50 more.
+// - First answer: compressed bytes, and time until it is drawn, each time in a fresh browser context.
 
 import { request } from "node:http";
 import { open, visit } from "./browser.mjs";
@@ -24,7 +24,7 @@ function told(what, value, unit, bar) {
 
 const pause = (seconds) => new Promise((resolve) => setTimeout(resolve, seconds * 1000));
 
-// The cycle's wall time on screens since the start, s.
+// Wall time of the phase `publish` since the start, s.
 async function publishing(rig) {
   const text = await (await fetch(rig.url + "/metrics")).text();
   return Number(/relayrig_cycle_seconds\{phase="publish"\} (\S+)/.exec(text)[1]);
@@ -52,7 +52,7 @@ const page = await visit(browser, rig);
 await page.evaluate(() => {
   window.lateness = [];
   const show = showView;
-  // A function of the page, at the top of its script.
+  // `showView` is a function of the page's script.
   showView = () => {
     show();
     if (view.at_us === window.shownLast) return;

@@ -1,6 +1,6 @@
-// A page in headless Chromium that remembers what it should not have done.
+// A page in headless Chromium that collects its faults: errors, and requests to other hosts.
 //
-// MODULES is the folder with `node_modules`, CHROMIUM the browser, SCREENSHOTS where pictures go.
+// Environment: MODULES, the folder with `node_modules`; CHROMIUM, the browser; SCREENSHOTS, the folder for pictures.
 
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
@@ -13,14 +13,14 @@ const { chromium } = require("playwright-core");
 const axe = require("axe-core").source;
 
 const PICTURES = process.env.SCREENSHOTS;
-/** A panel PC and an office screen. */
+/** Sizes of a panel PC and of an office screen, pixels. */
 export const SIZES = [{ width: 1280, height: 800 }, { width: 1920, height: 1080 }];
 const QUIET = ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--disable-background-networking",
   "--disable-component-update", "--disable-sync", "--no-first-run", "--autoplay-policy=no-user-gesture-required"];
 
 export const open = () => chromium.launch({ executablePath: process.env.CHROMIUM, args: QUIET });
 
-/** A fresh page of `rig` at `path`, logged in with `role` if there is one. */
+/** Opens a fresh page of `rig` at `path`, logged in with `role` if given. */
 export async function visit(browser, rig, { path = "/", role, language = "en", theme = "light", size = SIZES[0] } = {}) {
   const context = await browser.newContext({ viewport: size, locale: language === "zh" ? "zh-CN" : "en-GB", colorScheme: theme, acceptDownloads: true });
   const page = await context.newPage();
@@ -40,7 +40,7 @@ export async function visit(browser, rig, { path = "/", role, language = "en", t
   return page;
 }
 
-// Chromium writes a line for every answer that is a refusal; the page shows them to the user.
+// Chromium logs every refusal as an error; tests provoke refusals on purpose.
 const refusedOnPurpose = (line) => /the server responded with a status of 4(00|01|03|04|09|22|29)/.test(line.text());
 
 export async function logIn(page, rig, role) {
@@ -51,19 +51,19 @@ export async function logIn(page, rig, role) {
   await page.waitForFunction((name) => document.getElementById("who").textContent.includes(name), rig.who(role));
 }
 
-/** Resolves once the first element of `selector` says `expected`. */
+/** Resolves when the text of the first element of `selector` contains `expected`. */
 export const shown = (page, selector, expected) => page.waitForFunction(
   ([selector, expected]) => document.querySelector(selector)?.textContent.includes(expected), [selector, expected]);
 
-/** No error, nobody else asked; then the page is closed. */
+/** Checks that the page has no fault, and closes it. */
 export async function leave(page) {
   assert.deepEqual(page.sins, []);
   await page.context().close();
 }
 
-/** What axe finds wrong, contrast above all. */
+/** Returns the findings of axe, mainly contrast. */
 async function faults(page) {
-  // A transition under way would be measured half way.
+  // Wait for transitions, whose intermediate colours axe would measure.
   await page.evaluate(() => Promise.all(document.getAnimations().map((it) => it.finished.catch(() => {}))));
   const found = await page.evaluate(async (source) => {
     new Function(source)();
@@ -73,7 +73,7 @@ async function faults(page) {
   return found.map((it) => it.id + ": " + it.nodes.map((node) => node.target.join(" ") + " " + node.failureSummary).join("; "));
 }
 
-/** What does not fit: the window scrolls, or something is cut off or hangs over the edge. */
+/** Returns what does not fit: a scrolling window, cut-off elements, elements beyond the edge. */
 const tooLarge = (page) => page.evaluate(() => {
   const root = document.scrollingElement;
   const found = [];
@@ -88,20 +88,20 @@ const tooLarge = (page) => page.evaluate(() => {
   return found;
 });
 
-/** Kept under the build folder, to be looked at. */
+/** Saves a picture to SCREENSHOTS. */
 export async function picture(page, name) {
   mkdirSync(PICTURES, { recursive: true });
   await page.screenshot({ path: join(PICTURES, name + ".png") });
 }
 
-/** The page as it stands in both languages and both themes: it fits, can be read, and is kept as a picture. */
+/** Checks in both languages and themes that the page fits and is readable, and saves pictures. */
 export async function looks(page, name) {
   for (const button of ["#language", "#theme", "#language", "#theme"]) {
     const [language, theme] = await page.$eval("html", (it) => [it.lang.slice(0, 2), it.dataset.theme]);
     const which = `${name}-${language}-${theme}`;
     await picture(page, which);
     assert.deepEqual(await tooLarge(page), [], which);
-    // What can be read does not depend on the size.
+    // Contrast does not depend on the size.
     if (page.viewportSize().width === SIZES[0].width) assert.deepEqual(await faults(page), [], which);
     await page.click(button);
   }

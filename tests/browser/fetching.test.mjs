@@ -21,7 +21,7 @@ after(async () => {
   await rig?.kill();
 });
 
-/** Headers and bytes of `GET path` as they come over the wire. */
+/** Returns headers and body of `GET path` as sent, not decompressed. */
 const sent = (path, headers) => new Promise((resolve, reject) => {
   request(rig.url + path, { headers }, async (answer) => {
     const pieces = [];
@@ -30,7 +30,7 @@ const sent = (path, headers) => new Promise((resolve, reject) => {
   }).on("error", reject).end();
 });
 
-/** Paths of the scripts that `page` fetches from now on. */
+/** Returns a list that collects the paths of the scripts that `page` fetches. */
 function fetched(page) {
   const paths = [];
   page.on("request", (asked) => {
@@ -40,7 +40,7 @@ function fetched(page) {
   return paths;
 }
 
-/** Lines that Chromium writes when a request fails, which these tests want. */
+/** Drops the faults of failed requests, which these tests provoke. */
 const forgive = (page) => { page.sins = page.sins.filter((it) => !/ERR_(FAILED|CONNECTION_REFUSED|INCOMPLETE_CHUNKED|EMPTY_RESPONSE|CONNECTION_RESET)/.test(it)); };
 
 test("the first answer has at most 60 kB", async () => {

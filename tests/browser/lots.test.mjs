@@ -1,4 +1,4 @@
-// Lots at the page, on a rig that stays under one program: started, held, closed, and the next one.
+// Lots under `serve`: start, hold, close, and the next lot.
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
@@ -30,7 +30,7 @@ async function decide(page, lot, order, reason) {
   await page.click("#decide_go");
 }
 
-test("without a lot nothing runs, and start says where to choose one", async () => {
+test("without a lot start refuses and points to the page of lots", async () => {
   const page = await visit(browser, rig, { role: "operator" });
   await rig.until("stopped", (view) => view.machine.state === "Stopped");
   await page.click('#orders [data-order="reset"]');
@@ -41,7 +41,7 @@ test("without a lot nothing runs, and start says where to choose one", async () 
   await leave(page);
 });
 
-test("a lot is started, watched, held and closed at the page, and the next one begins", async () => {
+test("the page starts, holds and closes a lot and starts another", async () => {
   const page = await visit(browser, rig, { role: "operator", path: "/#lots" });
   await startLot(page, "A", 500);
   await rig.until("a part is judged", (view) => view.lot === "A" && view.judged >= 2);
@@ -68,7 +68,7 @@ test("a lot is started, watched, held and closed at the page, and the next one b
   await leave(page);
 });
 
-test("a lot that is held takes no run until somebody who may releases it", async () => {
+test("a held lot takes no run until a maintainer releases it", async () => {
   const operator = await visit(browser, rig, { role: "operator", path: "/#lots" });
   await lotRow(operator, "A").waitFor();
   await decide(operator, "A", "hold_lot", "wrong label");
@@ -87,7 +87,7 @@ test("a lot that is held takes no run until somebody who may releases it", async
   await leave(maintainer);
 });
 
-test("what was replaced is counted anew", async () => {
+test("a replacement resets its wear counter", async () => {
   const page = await visit(browser, rig, { role: "maintainer", path: "/#lots" });
   const probes = page.locator("#l_wear li", { hasText: WORDS["counter-probe_touches"].en });
   await probes.getByRole("button").click();

@@ -1,6 +1,6 @@
-//! The page in a real browser: `tests/browser` over the built program, with what it needs installed where it is missing.
+//! Runs the tests of `tests/browser` in a real browser over the built program; `prepare` installs what is missing.
 //!
-//! Pictures of every page are left in `target/tmp/browser/screenshots`. One test file alone, over any build:
+//! Pictures of every page are in `target/tmp/browser/screenshots`. To run one test file over any build:
 //! `tests/browser/run PROGRAM config FOLDER tests/browser/operator.test.mjs`.
 //!
 //! A test binary of its own, so that no browser runs beside the tests over pseudo-terminals, which are in real time.

@@ -36,7 +36,7 @@ test("parts move through the picture, and the last verdict stays with its values
   await leave(page);
 });
 
-test("whoever has not logged in is told so by every button, and by the rig", async () => {
+test("without login buttons and rig refuse orders", async () => {
   const page = await visit(browser, rig);
   await page.click('#orders [data-order="stop"]', { force: true });
   await shown(page, "#order_answer", WORDS["stop-login"].en);
@@ -46,7 +46,7 @@ test("whoever has not logged in is told so by every button, and by the rig", asy
   await leave(page);
 });
 
-test("a wrong password opens nothing, the right one does, and logging out closes it", async () => {
+test("login takes the right password and logout ends it", async () => {
   const page = await visit(browser, rig);
   await page.click("#who");
   await page.fill("#user", rig.who("operator"));
@@ -74,7 +74,7 @@ test("a role that is too weak is refused", async () => {
   await leave(page);
 });
 
-test("a lot is held and goes on, and a button that is not live says why", async () => {
+test("a lot is held and continues; a disabled button gives its reason", async () => {
   const page = await visit(browser, rig, { role: "operator" });
   await rig.until("the lot runs", (view) => view.machine.state === "Execute");
   await page.click('#orders [data-order="unhold"]', { force: true });
@@ -133,7 +133,7 @@ test("every state with every stage keeps clear of the figures below it", async (
 
 test("old values turn grey within 3 s, and the page comes back by itself", async () => {
   const page = await visit(browser, rig);
-  // By the page's own clock, from the last word of the rig: how late this test is woken does not matter.
+  // Measured by the page's clock from its last event, because this test may wake up late.
   await page.evaluate(() => {
     window.same = true;
     new MutationObserver(() => { window.took ??= performance.now() - heard; }).observe(document.body, { attributes: true });

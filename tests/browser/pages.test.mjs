@@ -1,4 +1,4 @@
-// History, quality, bus and trace over a lot that has some parts.
+// History, quality, calibration, bus and trace over a lot with parts.
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
@@ -17,7 +17,7 @@ after(async () => {
 
 const rows = (page, body) => page.$$eval(body + " tr", (all) => all.length);
 
-test("the history is asked with the filter of the command line, and a part leads down to its replies", async () => {
+test("the history filters parts and shows the raw replies of one", async () => {
   const page = await visit(browser, rig, { path: "/#history" });
   await page.waitForSelector("#parts tr");
   const all = await rows(page, "#parts");
@@ -44,7 +44,7 @@ test("the history is asked with the filter of the command line, and a part leads
   await leave(page);
 });
 
-test("a lot is held against another recipe: what would change is listed, and nothing has changed", async () => {
+test("rejudging a lot lists what another recipe would change", async () => {
   const { lot } = await rig.view();
   const page = await visit(browser, rig, { path: "/#history" });
   await page.waitForSelector("#parts tr");
@@ -62,7 +62,7 @@ test("a lot is held against another recipe: what would change is listed, and not
   await leave(page);
 });
 
-test("what the filter leaves is exported", async () => {
+test("the filtered parts are exported", async () => {
   const page = await visit(browser, rig, { path: "/#history" });
   await page.waitForSelector("#parts tr");
   const [saved] = await Promise.all([page.waitForEvent("download"), page.click("#export_csv")]);
@@ -70,7 +70,7 @@ test("what the filter leaves is exported", async () => {
   await leave(page);
 });
 
-test("a report becomes paper", async () => {
+test("a report prints", async () => {
   const page = await visit(browser, rig, { path: "/#history" });
   await page.waitForSelector("#parts tr");
   await page.fill("#h_lot", (await rig.view()).lot);
@@ -83,7 +83,7 @@ test("a report becomes paper", async () => {
   await leave(page);
 });
 
-test("charts and histograms are those of the paper, with capability beside them", async () => {
+test("charts and histograms of the reports show with capability", async () => {
   const page = await visit(browser, rig, { path: "/#quality" });
   await page.waitForSelector("#q_charts svg");
   await page.waitForSelector("#q_histograms svg");
@@ -96,7 +96,7 @@ test("charts and histograms are those of the paper, with capability beside them"
   await leave(page);
 });
 
-test("factors are told with uncertainty and due date, and golden parts with what they read last", async () => {
+test("calibration shows factors with due dates and reference parts", async () => {
   const page = await visit(browser, rig, { path: "/#calibration" });
   await page.waitForSelector("#c_factors .due");
   assert.equal(await page.$$eval("#c_factors .due.bad", (all) => all.length), 0);
@@ -106,7 +106,7 @@ test("factors are told with uncertainty and due date, and golden parts with what
   await leave(page);
 });
 
-test("every module of both lines is shown with its health, and its traffic with its meaning", async () => {
+test("bus shows the health of every module, trace its traffic", async () => {
   const page = await visit(browser, rig, { path: "/#bus" });
   await page.waitForSelector("#bus tr");
   assert.equal(await rows(page, "#bus"), 13);

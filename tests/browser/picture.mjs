@@ -1,4 +1,4 @@
-// Draws the operator's page for README.md, 1280 x 800, once thirty parts of a lot are judged and the last one passed.
+// Draws the operator's page for README.md, 1280 x 800, after thirty judged parts of a lot, the last of which passed.
 
 import { open, shown, visit } from "./browser.mjs";
 import { start } from "./rig.mjs";

@@ -1,4 +1,4 @@
-// Recipes: read by everybody, revised by an engineer, one value good and one bad.
+// Recipes: reading by all, revisions by an engineer, refused values.
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
@@ -33,7 +33,7 @@ for (const size of SIZES) {
   });
 }
 
-test("a stranger and an operator read every key in words and change none", async () => {
+test("without the role engineer recipes are read-only texts", async () => {
   for (const role of [undefined, "operator"]) {
     const page = await visit(browser, rig, { role, path: "/#recipes" });
     await choose(page);
@@ -44,7 +44,7 @@ test("a stranger and an operator read every key in words and change none", async
   }
 });
 
-test("a value out of its range is refused at its field, what was typed stays, and a good one becomes the next revision", async () => {
+test("a bad value is refused at its field, a good one saved", async () => {
   const page = await visit(browser, rig, { role: "engineer", path: "/#recipes" });
   await choose(page);
   const { number } = await newest();
@@ -70,7 +70,7 @@ test("a value out of its range is refused at its field, what was typed stays, an
   await leave(page);
 });
 
-test("the second of two engineers is told, and keeps what was typed", async () => {
+test("the second of two revisions is refused and keeps its text", async () => {
   const pages = [];
   for (const value of ["0.61", "0.62"]) {
     const page = await visit(browser, rig, { role: "engineer", path: "/#recipes" });

@@ -1,7 +1,7 @@
-// The program under test: `relayrig demo` or `serve --sim` on a free port, with a history and people of its own.
+// Runs the program under test, `relayrig demo` or `serve --sim`, on a free port with a history and people of its own.
 //
-// It runs in virtual time held to some times the wall clock: a busy machine makes the rig slow, never wrong.
-// RELAYRIG is the program; the working folder holds `config/`.
+// Virtual time follows the wall clock at a given speed: a busy machine makes the rig slow, never wrong.
+// Environment: RELAYRIG, the program. The working folder holds `config/`.
 
 import { spawn, spawnSync } from "node:child_process";
 import { readFileSync, rmSync } from "node:fs";
@@ -10,10 +10,10 @@ export const PASSWORD = "open sesame";
 const PEOPLE = { operator: "li", maintainer: "wang", engineer: "zhao" };
 const PROGRAM = process.env.RELAYRIG;
 
-/** Starts `relayrig demo` with `words`; `name` is used once only. Resolves once the page can be asked for. */
+/** Starts `relayrig demo` with `words` over the files `name`, which must be unique; resolves when the server listens. */
 export const start = (name, ...words) => begin(name, ["demo", ...words]);
 
-/** The same with `relayrig serve --sim`: nothing runs yet. */
+/** Does the same with `relayrig serve --sim`, which starts no lot. */
 export const serve = (name, ...words) => begin(name, ["serve", "--sim", ...words]);
 
 async function begin(name, words) {
@@ -46,7 +46,7 @@ class Rig {
       });
       this.process.on("exit", () => reject(new Error("the program ended: " + this.told)));
     });
-    // Of a program that ends when it is told to, nobody waits for the page.
+    // A killed program rejects `listening` too, which no test awaits then.
     this.listening.catch(() => {});
   }
 
@@ -59,7 +59,7 @@ class Rig {
     return (await fetch(this.url + "/api/view")).json();
   }
 
-  /** The first view of which `test` is true. */
+  /** Returns the first view that satisfies `test`. */
   async until(what, test, seconds = 180) {
     const end = Date.now() + seconds * 1000;
     for (;;) {
@@ -70,13 +70,13 @@ class Rig {
     }
   }
 
-  /** Ends the program at once; its page is then at no address. */
+  /** Kills the program. */
   async kill() {
     this.process.kill("SIGKILL");
     await this.ended;
   }
 
-  /** Starts it again at the same address. */
+  /** Starts the program again at the same address. */
   async again() {
     this.words[this.words.indexOf("--listen") + 1] = new URL(this.url).host;
     this.run();
@@ -84,7 +84,7 @@ class Rig {
   }
 }
 
-/** Texts of a language by id, without attributes. */
+/** Returns the texts of a language by id, without attributes. */
 function texts(tag) {
   const file = readFileSync(new URL(`../../locale/${tag}.ftl`, import.meta.url), "utf8");
   return file.split("\n").map((line) => /^([a-z][\w-]*) = (.*)$/i.exec(line)).filter(Boolean).map(([, id, text]) => [id, text]);

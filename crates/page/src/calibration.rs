@@ -1,16 +1,14 @@
 //! `GET /api/calibration`: calibration factors and reference parts of the rig in the view.
 
-use super::error::ApiError;
-use super::router::AppState;
+use super::error::JsonResult;
+use super::router::App;
 use axum::Json;
 use axum::extract::State;
 use config::Plant;
 use history::inquiry::instruments::{Instruments, instruments};
 
 /// `GET /api/calibration`.
-pub(super) async fn calibration(
-    State(app): State<AppState>,
-) -> Result<Json<Instruments>, ApiError> {
+pub(super) async fn calibration(State(app): App) -> JsonResult<Instruments> {
     let simulated = app.shared.view.borrow().simulated;
     let dir = app.shared.config.clone();
     let read = move |archive: &history::Archive| {

@@ -2,6 +2,7 @@
 
 use super::access::{AccessError, Role};
 use axum::Json;
+use axum::extract::Query;
 use axum::extract::rejection::{JsonRejection, QueryRejection};
 use axum::http::{HeaderValue, Method, StatusCode, header};
 use axum::response::{IntoResponse, Response};
@@ -9,88 +10,50 @@ use config::ConfigError;
 use history::HistoryError;
 use history::inquiry::InquiryError;
 use serde_json::json;
+use std::fmt::Display;
 use std::time::Duration;
 use texts::{Lang, Message};
+use tokio::task::spawn_blocking;
 
 /// Reason for the refusal of a request; each variant names its HTTP status.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum ApiError {
     /// 404: no route has this path.
     #[error("there is nothing at {path}")]
-    NoSuchRoute {
-        /// Path of the request.
-        path: String,
-    },
+    NoSuchRoute { path: String },
     /// 405; the header `Allow` lists the methods of the path.
     #[error("{path} does not take {method}")]
-    WrongMethod {
-        /// Path of the request.
-        path: String,
-        /// Method of the request.
-        method: Method,
-    },
-    /// 403: a page of another site sent an order.
+    WrongMethod { path: String, method: Method },
+    /// 403: a page of another site sent an order; `found` is the header that shows it.
     #[error("orders are taken from this rig's own page only; found {found}")]
-    CrossSite {
-        /// Name and value of the header that shows it.
-        found: String,
-    },
+    CrossSite { found: String },
     /// 401: the request has no valid session.
     #[error("{reason}: log in first")]
-    NotLoggedIn {
-        /// Reason, English.
-        reason: &'static str,
-    },
+    NotLoggedIn { reason: &'static str },
     /// 401: name or password is wrong; the answer does not say which.
     #[error("{}", refusal("wrong_password").say(Lang::En))]
     WrongPassword,
-    /// 403: the role of the person is too weak.
+    /// 403: the role of the person, `found`, is weaker than `needed`.
     #[error("{}", not_allowed(*.found, *.needed).say(Lang::En))]
-    NotAllowed {
-        /// Role of the person.
-        found: Role,
-        /// Weakest role that suffices.
-        needed: Role,
-    },
+    NotAllowed { found: Role, needed: Role },
     /// 429; the header `Retry-After` gives the time in seconds.
     #[error("{}", too_many_tries(*.wait).say(Lang::En))]
-    TooManyTries {
-        /// Time until the next try.
-        wait: Duration,
-    },
+    TooManyTries { wait: Duration },
     /// 500: the file of people failed.
     #[error(transparent)]
     Access(#[from] AccessError),
     /// 400, 413 or 415: axum cannot read the body.
     #[error("{reason}")]
-    Body {
-        /// Message of axum.
-        reason: String,
-        /// The status.
-        status: StatusCode,
-    },
-    /// 400: no order has this name.
+    Body { reason: String, status: StatusCode },
+    /// 400: no order has the name `found`; `known` lists all names.
     #[error("there is no order {found:?}; known are {known}")]
-    UnknownOrder {
-        /// The name, cut at 40 characters.
-        found: String,
-        /// Names of all orders.
-        known: String,
-    },
+    UnknownOrder { found: String, known: String },
     /// 409: the station refuses the order now.
     #[error("{order}: {}", .why.say(Lang::En))]
-    NotNow {
-        /// Name of the order.
-        order: &'static str,
-        /// Reason in both languages.
-        why: Message,
-    },
+    NotNow { order: &'static str, why: Message },
     /// 400: the query string is malformed.
     #[error("{reason}")]
-    Query {
-        /// Message with what was found and expected.
-        reason: String,
-    },
+    Query { reason: String },
     /// 400 for a malformed question, 404 for a lot, run or part that does not exist, otherwise as [`Self::History`].
     #[error(transparent)]
     Inquiry(#[from] InquiryError),
@@ -102,22 +65,49 @@ pub(super) enum ApiError {
     Config(#[from] ConfigError),
     /// 400 with the key of a refused value, 404 for an unknown recipe, 409 when another revision came first.
     #[error("{refused}")]
-    Revision {
-        /// Error of the configuration.
-        refused: ConfigError,
-    },
+    Revision { refused: ConfigError },
     /// 500: the program saved the revision but could not write it to the audit.
     #[error("the revision was saved, but not noted in the audit of orders: {source}")]
-    NotAudited {
-        /// Error of the history.
-        source: HistoryError,
-    },
+    NotAudited { source: HistoryError },
     /// 500: a blocking task panicked or was cancelled.
     #[error("the reader of the history ended without an answer")]
     ReaderLost,
 }
 
+/// JSON, or the reason why not.
+pub(super) type JsonResult<T> = Result<Json<T>, ApiError>;
+
+/// Members of a query string, or the reason why they are malformed.
+pub(super) type Members<T> = Result<Query<T>, QueryRejection>;
+
+/// Runs `work` on a blocking thread.
+pub(super) async fn blocking<T, E>(
+    work: impl FnOnce() -> Result<T, E> + Send + 'static,
+) -> Result<T, ApiError>
+where
+    T: Send + 'static,
+    E: Into<ApiError> + Send + 'static,
+{
+    let done = spawn_blocking(work).await;
+    done.map_err(|_| ApiError::ReaderLost)?.map_err(Into::into)
+}
+
 impl ApiError {
+    /// Returns `value`, or `default` without one. Fails out of 1 to `most`.
+    pub fn ranged<N: PartialOrd + From<u8> + Display>(
+        member: &str,
+        value: Option<N>,
+        default: N,
+        most: N,
+    ) -> Result<N, Self> {
+        let value = value.unwrap_or(default);
+        if value >= N::from(1) && value <= most {
+            return Ok(value);
+        }
+        let reason = format!("{member}: found {value}, expected 1 to {most}");
+        Err(Self::Query { reason })
+    }
+
     fn status(&self) -> StatusCode {
         match self {
             Self::NoSuchRoute { .. } => StatusCode::NOT_FOUND,

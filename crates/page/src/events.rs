@@ -9,7 +9,7 @@
 //! browser skips views and never gets an older one after a newer one. The stream ends with the program.
 
 use super::end_of_program;
-use super::router::AppState;
+use super::router::{App, AppState};
 use axum::extract::State;
 use axum::response::Sse;
 use axum::response::sse::Event;
@@ -31,9 +31,7 @@ const BEAT: Duration = Duration::from_secs(1);
 const RETRY: Duration = Duration::from_secs(1);
 
 /// `GET /api/events`.
-pub(super) async fn events(
-    State(app): State<AppState>,
-) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {
+pub(super) async fn events(State(app): App) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {
     let feed = Feed::new(&app);
     Sse::new(stream::unfold(feed, |mut feed| async move {
         let event = feed.next().await?;

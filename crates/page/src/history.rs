@@ -34,10 +34,9 @@ pub(super) mod paper;
 mod readers;
 pub(super) mod rejudge;
 
-use super::error::ApiError;
-use super::router::AppState;
+use super::error::{ApiError, JsonResult, Members, blocking};
+use super::router::App;
 use axum::Json;
-use axum::extract::rejection::QueryRejection;
 use axum::extract::{Query, State};
 use axum::http::Uri;
 use axum::http::header::CONTENT_TYPE;
@@ -52,25 +51,18 @@ use quality::rules::Rules;
 pub(super) use readers::Readers;
 use serde::Deserialize;
 use serde_json::{Value, json};
-use tokio::task::spawn_blocking;
-
-type Filtered = Result<Query<Filter>, QueryRejection>;
 
 /// Members of the filter that the lists of alarms and orders take.
 const OF_ALARMS: &[&str] = &["lot", "run", "recipe", "since", "until", "limit", "offset"];
 
 /// `GET /api/history/query`.
-pub(super) async fn query(
-    State(app): State<AppState>,
-    filter: Filtered,
-) -> Result<Response, ApiError> {
+pub(super) async fn query(State(app): App, filter: Members<Filter>) -> Result<Response, ApiError> {
     let Query(filter) = filter?;
     checks::validate(&filter)?;
     let (archive, place) = app.readers.open().await?;
     let param = filter.param.clone();
     let known = move || checks::parameters(&archive, param.as_deref()).map(|_| archive);
-    let archive = spawn_blocking(known).await;
-    let archive = archive.map_err(|_| ApiError::ReaderLost)??;
+    let archive = blocking(known).await?;
     let parts = feed::streamed((archive, place), move |archive, out| {
         feed::parts(archive, &filter, out)
     });
@@ -78,10 +70,7 @@ pub(super) async fn query(
 }
 
 /// `GET /api/history/count`.
-pub(super) async fn count(
-    State(app): State<AppState>,
-    filter: Filtered,
-) -> Result<Json<Value>, ApiError> {
+pub(super) async fn count(State(app): App, filter: Members<Filter>) -> JsonResult<Value> {
     let Query(filter) = filter?;
     checks::validate(&filter)?;
     if filter.limit.is_some() || filter.offset.is_some() {
@@ -95,10 +84,7 @@ pub(super) async fn count(
 }
 
 /// `GET /api/history/list`.
-pub(super) async fn list(
-    State(app): State<AppState>,
-    filter: Filtered,
-) -> Result<Json<Vec<LotSummary>>, ApiError> {
+pub(super) async fn list(State(app): App, filter: Members<Filter>) -> JsonResult<Vec<LotSummary>> {
     let Query(filter) = filter?;
     checks::only(&filter, "list", &["lot", "run", "recipe"])?;
     let read = move |archive: &Archive| Ok(archive.lots(&filter)?);
@@ -106,10 +92,7 @@ pub(super) async fn list(
 }
 
 /// `GET /api/history/yield`.
-pub(super) async fn yields(
-    State(app): State<AppState>,
-    filter: Filtered,
-) -> Result<Json<Yield>, ApiError> {
+pub(super) async fn yields(State(app): App, filter: Members<Filter>) -> JsonResult<Yield> {
     let Query(filter) = filter?;
     checks::only(&filter, "yield", &["since", "until"])?;
     let since = filter.since.unwrap_or(Moment(i64::MIN));
@@ -131,10 +114,7 @@ pub(super) struct PartQuery {
 }
 
 /// `GET /api/history/show`.
-pub(super) async fn show(
-    State(app): State<AppState>,
-    which: Result<Query<PartQuery>, QueryRejection>,
-) -> Result<Json<Vec<Part>>, ApiError> {
+pub(super) async fn show(State(app): App, which: Members<PartQuery>) -> JsonResult<Vec<Part>> {
     let Query(PartQuery {
         lot,
         seq,
@@ -156,10 +136,7 @@ pub(super) async fn show(
 }
 
 /// `GET /api/history/stats`.
-pub(super) async fn stats(
-    State(app): State<AppState>,
-    filter: Filtered,
-) -> Result<Json<Summary>, ApiError> {
+pub(super) async fn stats(State(app): App, filter: Members<Filter>) -> JsonResult<Summary> {
     let (param, filter) = of_one_parameter(filter?.0, "stats")?;
     let read =
         move |archive: &Archive| Ok(figures::figures(archive, &param, &filter, None)?.summary);
@@ -167,20 +144,14 @@ pub(super) async fn stats(
 }
 
 /// `GET /api/history/histogram`.
-pub(super) async fn histogram(
-    State(app): State<AppState>,
-    filter: Filtered,
-) -> Result<Json<Classes>, ApiError> {
+pub(super) async fn histogram(State(app): App, filter: Members<Filter>) -> JsonResult<Classes> {
     let (param, filter) = of_one_parameter(filter?.0, "histogram")?;
     let read = move |archive: &Archive| Ok(figures::histogram(archive, &param, &filter)?);
     app.readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/spc`.
-pub(super) async fn spc(
-    State(app): State<AppState>,
-    uri: Uri,
-) -> Result<Json<Vec<Charted>>, ApiError> {
+pub(super) async fn spc(State(app): App, uri: Uri) -> JsonResult<Vec<Charted>> {
     let (filter, how) = split::<ChartMembers>(&uri)?;
     checks::validate(&filter)?;
     if how.lang.is_some() {
@@ -195,10 +166,7 @@ pub(super) async fn spc(
 }
 
 /// `GET /api/history/alarms`.
-pub(super) async fn alarms(
-    State(app): State<AppState>,
-    filter: Filtered,
-) -> Result<Json<Vec<Alarm>>, ApiError> {
+pub(super) async fn alarms(State(app): App, filter: Members<Filter>) -> JsonResult<Vec<Alarm>> {
     let Query(filter) = filter?;
     checks::only(&filter, "alarms", OF_ALARMS)?;
     let read = move |archive: &Archive| Ok(archive.alarms(&filter)?);
@@ -206,10 +174,7 @@ pub(super) async fn alarms(
 }
 
 /// `GET /api/history/orders`.
-pub(super) async fn orders(
-    State(app): State<AppState>,
-    uri: Uri,
-) -> Result<Json<Vec<OrderEntry>>, ApiError> {
+pub(super) async fn orders(State(app): App, uri: Uri) -> JsonResult<Vec<OrderEntry>> {
     let (filter, AuditMembers { who }) = split(&uri)?;
     checks::only(&filter, "orders", OF_ALARMS)?;
     let read = move |archive: &Archive| Ok(archive.orders(&filter, who.as_deref())?);
@@ -239,9 +204,7 @@ fn charted(
         let reason = "a control chart is about all values, not a range of them";
         return Err(InquiryError::member("min, max", reason).into());
     }
-    let by = (
-        how.subgroup.unwrap_or(1),
-        how.rules.unwrap_or(Rules::Nelson),
-    );
+    let rules = how.rules.unwrap_or(Rules::Nelson);
+    let by = (how.subgroup.unwrap_or(1), rules);
     Ok(charts(archive, &filter, param.as_deref(), by)?)
 }

@@ -1,8 +1,8 @@
 //! `POST /api/login`, `POST /api/logout`, `GET /api/me`.
 
 use super::access::Person;
-use super::error::ApiError;
-use super::router::AppState;
+use super::error::{ApiError, JsonResult};
+use super::router::App;
 use super::{origin, sessions};
 use axum::Json;
 use axum::extract::State;
@@ -28,7 +28,7 @@ struct LoggedIn {
 }
 
 pub(super) async fn log_in(
-    State(app): State<AppState>,
+    State(app): App,
     headers: HeaderMap,
     body: Result<Json<Login>, JsonRejection>,
 ) -> Result<impl IntoResponse, ApiError> {
@@ -41,7 +41,7 @@ pub(super) async fn log_in(
 }
 
 pub(super) async fn log_out(
-    State(app): State<AppState>,
+    State(app): App,
     headers: HeaderMap,
 ) -> Result<impl IntoResponse, ApiError> {
     origin::check(&headers)?;
@@ -51,9 +51,6 @@ pub(super) async fn log_out(
 }
 
 /// `GET /api/me`: returns the person, `null` without a valid session.
-pub(super) async fn me(
-    State(app): State<AppState>,
-    headers: HeaderMap,
-) -> Result<Json<Option<Person>>, ApiError> {
+pub(super) async fn me(State(app): App, headers: HeaderMap) -> JsonResult<Option<Person>> {
     Ok(Json(app.shared.sessions.who(&headers).await?))
 }

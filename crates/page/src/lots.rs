@@ -8,10 +8,9 @@
 //! `why_not` maps each order about lots to null, or to the reason (`code`, `args`, `en`, `zh`) why the state of the lot forbids
 //! it. For the lot under way the buttons of the view apply instead.
 
-use super::error::ApiError;
-use super::router::AppState;
+use super::error::{ApiError, JsonResult, Members};
+use super::router::App;
 use axum::Json;
-use axum::extract::rejection::QueryRejection;
 use axum::extract::{Query, State};
 use history::{Archive, Decision, LotEntry, LotState, Wear};
 use serde::{Deserialize, Serialize};
@@ -31,7 +30,6 @@ pub(super) struct ListedLot {
     why_not: BTreeMap<&'static str, Option<Message>>,
 }
 
-/// Members of the query string.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Paging {
@@ -40,16 +38,9 @@ pub(super) struct Paging {
 }
 
 /// `GET /api/lots`.
-pub(super) async fn lots(
-    State(app): State<AppState>,
-    page: Result<Query<Paging>, QueryRejection>,
-) -> Result<Json<Vec<ListedLot>>, ApiError> {
+pub(super) async fn lots(State(app): App, page: Members<Paging>) -> JsonResult<Vec<ListedLot>> {
     let Query(Paging { limit, offset }) = page?;
-    let limit = limit.unwrap_or(SHOWN);
-    if !(1..=MOST).contains(&limit) {
-        let reason = format!("limit: found {limit}, expected 1 to {MOST}");
-        return Err(ApiError::Query { reason });
-    }
+    let limit = ApiError::ranged("limit", limit, SHOWN, MOST)?;
     let read = move |archive: &Archive| Ok(archive.lot_book(limit, offset.unwrap_or(0))?);
     let book = app.readers.read(read).await?;
     let listed = book.into_iter().map(|line| ListedLot {
@@ -68,7 +59,7 @@ fn why_not(state: LotState) -> BTreeMap<&'static str, Option<Message>> {
 }
 
 /// `GET /api/wear`.
-pub(super) async fn wear(State(app): State<AppState>) -> Result<Json<Vec<Wear>>, ApiError> {
+pub(super) async fn wear(State(app): App) -> JsonResult<Vec<Wear>> {
     let simulated = app.shared.view.borrow().simulated;
     let read = move |archive: &Archive| Ok(archive.wear(simulated)?);
     app.readers.read(read).await.map(Json)

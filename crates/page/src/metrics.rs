@@ -2,7 +2,7 @@
 //!
 //! Figures of the lot are gauges, because each lot starts them at zero. An unknown figure is absent rather than zero.
 
-use super::router::AppState;
+use super::router::App;
 use axum::extract::State;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::IntoResponse;
@@ -17,18 +17,17 @@ use std::fmt;
 use std::sync::atomic::Ordering;
 
 /// `GET /metrics`.
-pub(super) async fn metrics(State(app): State<AppState>) -> impl IntoResponse {
+pub(super) async fn metrics(State(app): App) -> impl IntoResponse {
     let alive = app.shared.view.has_changed().is_ok();
     let streams = app.streams.load(Ordering::Relaxed);
+    let view = app.shared.view.borrow().clone();
+    let media_type = [(CONTENT_TYPE, "text/plain; version=0.0.4; charset=utf-8")];
     let text = text(Scrape {
-        view: app.shared.view.borrow().clone(),
+        view,
         alive,
         streams,
     });
-    (
-        [(CONTENT_TYPE, "text/plain; version=0.0.4; charset=utf-8")],
-        text,
-    )
+    (media_type, text)
 }
 
 fn text(scrape: Scrape) -> String {

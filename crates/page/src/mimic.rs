@@ -7,7 +7,7 @@
 //!
 //! Bodies are drawn back to front: the lowest first in the view from above, the farthest first in the front view.
 
-use super::router::AppState;
+use super::router::App;
 use axum::extract::State;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::IntoResponse;
@@ -65,7 +65,7 @@ impl Side {
 }
 
 /// `GET /mimic.svg`.
-pub(super) async fn picture(State(app): State<AppState>) -> impl IntoResponse {
+pub(super) async fn picture(State(app): App) -> impl IntoResponse {
     let svg = drawing(&app.shared.mimic).into_string();
     ([(CONTENT_TYPE, "image/svg+xml")], svg)
 }

@@ -6,8 +6,8 @@
 //! leave no trace.
 
 use super::access::{Person, Role};
-use super::error::ApiError;
-use super::router::AppState;
+use super::error::{ApiError, JsonResult};
+use super::router::{App, AppState};
 use super::{origin, sessions};
 use axum::Json;
 use axum::extract::rejection::{ExtensionRejection, JsonRejection};
@@ -30,11 +30,11 @@ pub(super) struct Accepted {
 
 /// `POST /api/orders`.
 pub(super) async fn order(
-    State(app): State<AppState>,
+    State(app): App,
     from: Result<ConnectInfo<SocketAddr>, ExtensionRejection>,
     headers: HeaderMap,
     body: Result<Json<Order>, JsonRejection>,
-) -> Result<Json<Accepted>, ApiError> {
+) -> JsonResult<Accepted> {
     origin::check(&headers)?;
     let person = app
         .shared

@@ -69,9 +69,8 @@ pub(super) async fn script(
     headers: HeaderMap,
 ) -> Result<impl IntoResponse, ApiError> {
     let path = format!("/page/{file}");
-    let Some(script) = fetched::SCRIPTS.get(&path) else {
-        return Err(ApiError::NoSuchRoute { path });
-    };
+    let script = fetched::SCRIPTS.get(&path);
+    let script = script.ok_or(ApiError::NoSuchRoute { path })?;
     let kept = [(CACHE_CONTROL, "public, max-age=31536000, immutable")];
     Ok((kept, script.answer(&headers)))
 }

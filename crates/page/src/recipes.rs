@@ -11,12 +11,12 @@
 //! outcome. The history is opened before the change, so that a revision without an audit is impossible to begin.
 
 use super::access::{Person, Role};
-use super::error::ApiError;
+use super::error::{ApiError, JsonResult, Members, blocking};
 use super::history::paper::{Page, on_paper};
-use super::router::AppState;
+use super::router::App;
 use super::{origin, sessions};
 use axum::Json;
-use axum::extract::rejection::{ExtensionRejection, JsonRejection, QueryRejection};
+use axum::extract::rejection::{ExtensionRejection, JsonRejection};
 use axum::extract::{ConnectInfo, Query, State};
 use axum::http::HeaderMap;
 use config::{Change, Plant, Revision};
@@ -28,7 +28,6 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::net::SocketAddr;
 use std::path::Path;
-use tokio::task::spawn_blocking;
 
 /// A recipe in the list.
 #[derive(Debug, Serialize)]
@@ -44,11 +43,11 @@ pub(super) struct ListedRecipe {
 }
 
 /// `GET /api/recipes`.
-pub(super) async fn list(State(app): State<AppState>) -> Result<Json<Vec<ListedRecipe>>, ApiError> {
+pub(super) async fn list(State(app): App) -> JsonResult<Vec<ListedRecipe>> {
     let dir = app.shared.config.clone();
     blocking(move || {
         let names = config::recipe_names(&dir).into_iter();
-        Ok(Json(names.map(|name| listed(&dir, name)).collect()))
+        Ok::<_, ApiError>(Json(names.map(|name| listed(&dir, name)).collect()))
     })
     .await
 }
@@ -74,7 +73,6 @@ fn listed(dir: &Path, name: String) -> ListedRecipe {
     }
 }
 
-/// Members of `show`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RevisionQuery {
@@ -83,16 +81,13 @@ pub(super) struct RevisionQuery {
 }
 
 /// `GET /api/recipes/show`.
-pub(super) async fn show(
-    State(app): State<AppState>,
-    which: Result<Query<RevisionQuery>, QueryRejection>,
-) -> Result<Json<Revision>, ApiError> {
+pub(super) async fn show(State(app): App, which: Members<RevisionQuery>) -> JsonResult<Revision> {
     let Query(RevisionQuery { name, revision }) = which?;
     let dir = app.shared.config.clone();
-    blocking(move || Ok(Json(config::revision(&dir, &name, revision)?))).await
+    let read = move || config::revision(&dir, &name, revision);
+    blocking(read).await.map(Json)
 }
 
-/// Members of `card`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CardQuery {
@@ -101,33 +96,26 @@ pub(super) struct CardQuery {
 }
 
 /// `GET /api/recipes/card`.
-pub(super) async fn card(
-    State(app): State<AppState>,
-    printed: Result<Query<CardQuery>, QueryRejection>,
-) -> Result<Page, ApiError> {
+pub(super) async fn card(State(app): App, printed: Members<CardQuery>) -> Result<Page, ApiError> {
     let Query(CardQuery { name, lang }) = printed?;
     let dir = app.shared.config.clone();
     let made = move || {
         let recipe = config::load_recipe(&dir, &name)?;
         let paper = paper(lang.unwrap_or(Lang::Zh));
         let plant = config::load_card(&dir)?;
-        Ok(on_paper(card::card(
-            paper.language,
-            &recipe,
-            &plant,
-            &paper.made,
-        )))
+        let card = card::card(paper.language, &recipe, &plant, &paper.made);
+        Ok::<_, ApiError>(on_paper(card))
     };
     blocking(made).await
 }
 
 /// `POST /api/recipes/revise`.
 pub(super) async fn revise(
-    State(app): State<AppState>,
+    State(app): App,
     from: Result<ConnectInfo<SocketAddr>, ExtensionRejection>,
     headers: HeaderMap,
     body: Result<Json<Change>, JsonRejection>,
-) -> Result<Json<Revision>, ApiError> {
+) -> JsonResult<Revision> {
     origin::check(&headers)?;
     let person = app
         .shared
@@ -166,13 +154,4 @@ fn revised(dir: &Path, person: &Person, change: &Change) -> Result<Revision, Api
 fn noted_as(change: &Change, saved: Option<&Revision>) -> serde_json::Value {
     let number = saved.map(|it| it.number);
     json!({"order": "revise", "recipe": change.name, "revision": number, "from": change.from, "values": change.values})
-}
-
-/// Runs `work` on a blocking thread.
-async fn blocking<T: Send + 'static>(
-    work: impl FnOnce() -> Result<T, ApiError> + Send + 'static,
-) -> Result<T, ApiError> {
-    spawn_blocking(work)
-        .await
-        .map_err(|_| ApiError::ReaderLost)?
 }

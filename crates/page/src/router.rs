@@ -27,6 +27,9 @@ pub(super) struct AppState {
     pub readers: Readers,
 }
 
+/// Extractor of the state.
+pub(super) type App = State<AppState>;
+
 /// Returns the router of all routes.
 pub(super) fn router(shared: Shared, ended: watch::Receiver<bool>) -> Router {
     let app = AppState {
@@ -37,9 +40,7 @@ pub(super) fn router(shared: Shared, ended: watch::Receiver<bool>) -> Router {
     };
     let routes = api::routes().into_iter();
     routes
-        .fold(Router::new(), |router, route| {
-            router.route(route.path, route.handler)
-        })
+        .fold(Router::new(), |all, it| all.route(it.path, it.handler))
         .fallback(no_such_route)
         .method_not_allowed_fallback(wrong_method)
         .layer(DefaultBodyLimit::max(BODY_LIMIT))
@@ -48,7 +49,7 @@ pub(super) fn router(shared: Shared, ended: watch::Receiver<bool>) -> Router {
 }
 
 /// `GET /api/view`.
-pub(super) async fn view(State(app): State<AppState>) -> Json<machine::view::View> {
+pub(super) async fn view(State(app): App) -> Json<machine::view::View> {
     Json(app.shared.view.borrow().clone())
 }
 

@@ -11,12 +11,11 @@
 //! program serves plain HTTP on loopback; elsewhere the plant's proxy adds it.
 
 use super::access::{AccessError, Limiter, Person, Register, Role, SESSION_S};
-use super::error::ApiError;
+use super::error::{ApiError, blocking};
 use axum::http::{HeaderMap, header};
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
-use tokio::task::spawn_blocking;
 
 const COOKIE: &str = "relayrig_session";
 const NOT_IN: &str = "nobody is logged in here";
@@ -107,8 +106,7 @@ impl Sessions {
         work: impl FnOnce(&mut Register) -> Result<T, AccessError> + Send + 'static,
     ) -> Result<T, ApiError> {
         let inner = Arc::clone(&self.0);
-        let done = spawn_blocking(move || work(&mut locked(&inner.register))).await;
-        Ok(done.map_err(|_| ApiError::ReaderLost)??)
+        blocking(move || work(&mut locked(&inner.register))).await
     }
 }
 

@@ -3,10 +3,9 @@
 //! `last` is the number of messages of each line, 1 to [`MOST`]; 100 when absent. The array is empty until a run has opened
 //! its lines.
 
-use super::error::ApiError;
-use super::router::AppState;
+use super::error::{ApiError, JsonResult, Members};
+use super::router::App;
 use axum::Json;
-use axum::extract::rejection::QueryRejection;
 use axum::extract::{Query, State};
 use machine::view::LineTraffic;
 use serde::Deserialize;
@@ -36,7 +35,6 @@ impl fmt::Debug for Traffic {
     }
 }
 
-/// Members of the query string.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TraceQuery {
@@ -44,14 +42,10 @@ pub(super) struct TraceQuery {
 }
 
 pub(super) async fn trace(
-    State(app): State<AppState>,
-    asked: Result<Query<TraceQuery>, QueryRejection>,
-) -> Result<Json<Vec<LineTraffic>>, ApiError> {
+    State(app): App,
+    asked: Members<TraceQuery>,
+) -> JsonResult<Vec<LineTraffic>> {
     let Query(TraceQuery { last }) = asked?;
-    let last = last.unwrap_or(100);
-    if !(1..=MOST).contains(&last) {
-        let reason = format!("last: found {last}, expected 1 to {MOST}");
-        return Err(ApiError::Query { reason });
-    }
+    let last = ApiError::ranged("last", last, 100, MOST)?;
     Ok(Json((app.shared.traffic.0)(last)))
 }

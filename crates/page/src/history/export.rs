@@ -3,8 +3,8 @@
 //!
 //! Retention does not count such an export, because the server cannot know whether it arrived.
 
-use super::super::error::ApiError;
-use super::super::router::AppState;
+use super::super::error::{ApiError, blocking};
+use super::super::router::App;
 use super::feed;
 use super::members::{ReportMembers, language, split};
 use axum::extract::State;
@@ -14,7 +14,6 @@ use axum::response::{IntoResponse, Response};
 use history::csv::BYTE_ORDER_MARK;
 use history::inquiry::{InquiryError, checks, export};
 use std::io::{self, Write};
-use tokio::task::spawn_blocking;
 
 /// Most parts of a spreadsheet, about 15 MB; the command `history export` makes larger ones.
 const SHEET_PARTS: u64 = 100_000;
@@ -40,9 +39,9 @@ const XLSX: Saved = [
 ];
 
 /// `GET /api/history/export.csv`.
-pub(in super::super) async fn csv(
-    State(app): State<AppState>,
-    filter: super::Filtered,
+pub(crate) async fn csv(
+    State(app): App,
+    filter: super::Members<history::Filter>,
 ) -> Result<Response, ApiError> {
     let filter = filter?.0;
     checks::validate(&filter)?;
@@ -52,8 +51,7 @@ pub(in super::super) async fn csv(
         checks::known_runs(&archive, &asked)?;
         checks::parameters(&archive, asked.param.as_deref()).map(|it| (archive, it))
     };
-    let known = spawn_blocking(known).await;
-    let (archive, keys) = known.map_err(|_| ApiError::ReaderLost)??;
+    let (archive, keys) = blocking(known).await?;
     let lines = feed::streamed((archive, place), move |archive, out| {
         out.write_all(BYTE_ORDER_MARK.as_bytes())?;
         export::csv_lines(archive, &filter, &keys, out).map_err(io::Error::other)
@@ -62,10 +60,7 @@ pub(in super::super) async fn csv(
 }
 
 /// `GET /api/history/export.xlsx`.
-pub(in super::super) async fn xlsx(
-    State(app): State<AppState>,
-    uri: Uri,
-) -> Result<(Saved, Vec<u8>), ApiError> {
+pub(crate) async fn xlsx(State(app): App, uri: Uri) -> Result<(Saved, Vec<u8>), ApiError> {
     let (filter, own) = split::<ReportMembers>(&uri)?;
     checks::validate(&filter)?;
     super::paper::refuse("seq", own.seq.is_some())?;

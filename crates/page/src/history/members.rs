@@ -40,12 +40,7 @@ impl RouteMembers for ChartMembers {
 impl ChartMembers {
     /// Returns the number of points to send. Fails out of 1 to [`MOST_SHOWN`].
     pub fn last(&self) -> Result<usize, ApiError> {
-        match self.last.unwrap_or(SHOWN) {
-            last @ 1..=MOST_SHOWN => Ok(last),
-            last => Err(ApiError::Query {
-                reason: format!("last: found {last}, expected 1 to {MOST_SHOWN}"),
-            }),
-        }
+        ApiError::ranged("last", self.last, SHOWN, MOST_SHOWN)
     }
 }
 

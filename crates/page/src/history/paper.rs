@@ -1,7 +1,7 @@
 //! `/api/history/report/...`: the pages of `history report` and `history spc --page`, for printing.
 
 use super::super::error::ApiError;
-use super::super::router::AppState;
+use super::super::router::{App, AppState};
 use super::members::{ChartMembers, ReportMembers, language, split};
 use axum::extract::State;
 use axum::http::header::CONTENT_SECURITY_POLICY;
@@ -15,15 +15,15 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'n
     form-action 'none'; frame-ancestors 'none'";
 
 /// A page for A4.
-pub(in super::super) type Page = ([(HeaderName, &'static str); 1], Html<String>);
+pub(crate) type Page = ([(HeaderName, &'static str); 1], Html<String>);
 
 /// Adds the policy to `page`.
-pub(in super::super) fn on_paper(page: String) -> Page {
+pub(crate) fn on_paper(page: String) -> Page {
     ([(CONTENT_SECURITY_POLICY, POLICY)], Html(page))
 }
 
 /// `GET /api/history/report/lot`.
-pub(in super::super) async fn lot(State(app): State<AppState>, uri: Uri) -> Result<Page, ApiError> {
+pub(crate) async fn lot(State(app): App, uri: Uri) -> Result<Page, ApiError> {
     let (filter, own) = printed(&uri, "report/lot", &["lot", "run", "recipe"])?;
     refuse("seq", own.seq.is_some())?;
     page(app, move |archive| {
@@ -34,10 +34,7 @@ pub(in super::super) async fn lot(State(app): State<AppState>, uri: Uri) -> Resu
 }
 
 /// `GET /api/history/report/certificate`.
-pub(in super::super) async fn certificate(
-    State(app): State<AppState>,
-    uri: Uri,
-) -> Result<Page, ApiError> {
+pub(crate) async fn certificate(State(app): App, uri: Uri) -> Result<Page, ApiError> {
     let (filter, own) = printed(&uri, "report/certificate", &["lot", "run", "recipe"])?;
     refuse("ideal_cycle_s", own.ideal_cycle_s.is_some())?;
     let Some(seq) = own.seq else {
@@ -51,10 +48,7 @@ pub(in super::super) async fn certificate(
 }
 
 /// `GET /api/history/report/alarms`.
-pub(in super::super) async fn alarms(
-    State(app): State<AppState>,
-    uri: Uri,
-) -> Result<Page, ApiError> {
+pub(crate) async fn alarms(State(app): App, uri: Uri) -> Result<Page, ApiError> {
     let (filter, own) = printed(&uri, "report/alarms", super::OF_ALARMS)?;
     refuse("seq", own.seq.is_some())?;
     refuse("ideal_cycle_s", own.ideal_cycle_s.is_some())?;
@@ -66,10 +60,7 @@ pub(in super::super) async fn alarms(
 }
 
 /// `GET /api/history/report/chart`.
-pub(in super::super) async fn chart(
-    State(app): State<AppState>,
-    uri: Uri,
-) -> Result<Page, ApiError> {
+pub(crate) async fn chart(State(app): App, uri: Uri) -> Result<Page, ApiError> {
     let (filter, how) = split::<ChartMembers>(&uri)?;
     checks::validate(&filter)?;
     let last = how.last()?;

@@ -1,18 +1,17 @@
 //! Readers of the history for HTTP clients, limited in number.
 
-use super::super::error::ApiError;
+use super::super::error::{ApiError, blocking};
 use history::Archive;
 use std::path::PathBuf;
 use std::sync::Arc;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
-use tokio::task::spawn_blocking;
 
 /// Most readers at the same time; further ones wait.
 const AT_ONCE: usize = 4;
 
 /// The history file and the permits to read it.
 #[derive(Debug, Clone)]
-pub(in super::super) struct Readers {
+pub(crate) struct Readers {
     db: PathBuf,
     places: Arc<Semaphore>,
 }
@@ -28,8 +27,7 @@ impl Readers {
         let place = Arc::clone(&self.places).acquire_owned().await;
         let place = place.map_err(|_| ApiError::ReaderLost)?;
         let db = self.db.clone();
-        let archive = spawn_blocking(move || Archive::open(&db)).await;
-        Ok((archive.map_err(|_| ApiError::ReaderLost)??, place))
+        Ok((blocking(move || Archive::open(&db)).await?, place))
     }
 
     /// Runs `read` over the archive on a blocking thread.
@@ -38,13 +36,11 @@ impl Readers {
         read: impl FnOnce(&Archive) -> Result<T, ApiError> + Send + 'static,
     ) -> Result<T, ApiError> {
         let (archive, place) = self.open().await?;
-        let work = move || {
+        blocking(move || {
             let found = read(&archive);
             drop(place);
             found
-        };
-        spawn_blocking(work)
-            .await
-            .map_err(|_| ApiError::ReaderLost)?
+        })
+        .await
     }
 }

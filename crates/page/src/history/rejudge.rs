@@ -1,9 +1,8 @@
 //! `/api/history/rejudge`: judges the stored values of a lot by a recipe, as `history rejudge --json`; writes nothing.
 
-use super::super::error::ApiError;
-use super::super::router::AppState;
+use super::super::error::{ApiError, Members, blocking};
+use super::super::router::App;
 use super::feed::{self, Pieces};
-use axum::extract::rejection::QueryRejection;
 use axum::extract::{Query, State};
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
@@ -12,12 +11,11 @@ use history::Archive;
 use history::inquiry::rejudge::{RejudgedPart, Rejudging};
 use serde::Deserialize;
 use std::io::{self, Write};
-use tokio::task::spawn_blocking;
 
 /// Members: the lot and the recipe.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(in super::super) struct RejudgeQuery {
+pub(crate) struct RejudgeQuery {
     lot: String,
     recipe: String,
     /// Number of the run; all runs when absent.
@@ -28,9 +26,9 @@ pub(in super::super) struct RejudgeQuery {
 }
 
 /// `GET /api/history/rejudge`: returns an array of parts with the summary as its last element.
-pub(in super::super) async fn rejudge(
-    State(app): State<AppState>,
-    asked: Result<Query<RejudgeQuery>, QueryRejection>,
+pub(crate) async fn rejudge(
+    State(app): App,
+    asked: Members<RejudgeQuery>,
 ) -> Result<Response, ApiError> {
     let Query(RejudgeQuery {
         lot,
@@ -40,12 +38,12 @@ pub(in super::super) async fn rejudge(
     }) = asked?;
     let (archive, place) = app.readers.open().await?;
     let dir = app.shared.config.clone();
-    let prepared = spawn_blocking(move || -> Result<(Archive, Rejudging), ApiError> {
+    let prepared = blocking(move || -> Result<(Archive, Rejudging), ApiError> {
         let recipe = load_recipe(&dir, &recipe)?;
         let question = Rejudging::of(&archive, lot, run, recipe)?;
         Ok((archive, question))
     });
-    let (archive, question) = prepared.await.map_err(|_| ApiError::ReaderLost)??;
+    let (archive, question) = prepared.await?;
     let parts = feed::streamed((archive, place), move |archive, out| {
         written(&question, archive, changed, out)
     });

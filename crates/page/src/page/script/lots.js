@@ -59,7 +59,7 @@ at("l_form").addEventListener("submit", (event) => {
   orderLot(order);
 });
 
-// --- the book ---
+// --- the list of lots ---
 
 function lotRow(line) {
   const state = make("span", word("lot_state-" + line.state), "lot_state " + line.state);

@@ -47,7 +47,7 @@ function showAll() {
 
 at("language").addEventListener("click", () => {
   language = language === "zh" ? "en" : "zh";
-  // Answers in the other language go.
+  // Clear the answers, which are in the other language.
   for (const element of document.querySelectorAll(".answer")) element.textContent = "";
   stored.set("lang", language);
   showAll();
