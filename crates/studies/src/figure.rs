@@ -73,6 +73,11 @@ impl Figure {
         Self::new(name, n, count.map(|it| it as f64), "")
     }
 
+    /// Counts things that must not happen, held against zero.
+    pub fn none(name: impl Into<String>, n: u64, count: u64) -> Self {
+        Self::count(name, n, Some(count)).bar(Bar::AtMost(0.0))
+    }
+
     /// The same, held against a bar.
     pub fn bar(self, bar: Bar) -> Self {
         Self {

@@ -3,6 +3,7 @@
 //! Lengths in px. A point whose error is zero, or below the lowest line, stands on the bottom line, which
 //! says so; a method with wrong verdicts is drawn hollow and says how many.
 
+use super::chart::escaped;
 use std::fmt::Write;
 
 /// A method.
@@ -216,10 +217,4 @@ fn power(decade: i32) -> String {
         1..=5 => format!("{:.0}", 10f64.powi(decade)),
         _ => format!("1e{decade}"),
     }
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
 }

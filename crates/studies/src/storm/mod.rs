@@ -22,6 +22,7 @@ use super::fleet::{Folder, Order};
 use super::output::Report;
 use anyhow::Context;
 use app::exit::Exit;
+use app::progress::{PIECES, progress};
 use config::{Plant, load_recipe};
 use history::{Archive, Filter};
 use judge::Case;
@@ -126,7 +127,7 @@ impl<'a> Sea<'a> {
     fn all(&self, seeds: &[u64]) -> anyhow::Result<Vec<Outcome>> {
         let next = AtomicU64::new(0);
         let done: Mutex<Vec<anyhow::Result<Outcome>>> = Mutex::new(Vec::new());
-        let bar = crate::progress::progress(seeds.len() as u64);
+        let bar = progress(Some(seeds.len() as u64), PIECES);
         let worker = || {
             // Alarms are what a storm is made of; nobody wants to read them as they come.
             tracing::subscriber::with_default(tracing::subscriber::NoSubscriber::new(), || {
