@@ -1,4 +1,4 @@
-//! What became of the parts: good ones rejected, bad ones passed, rows that do not agree with the floor.
+//! Outcome of the parts: good parts rejected, bad parts passed, rows that name another bin than the one the part lies in.
 
 use super::error::percent;
 use super::figure::{Bar, Figure};
@@ -76,7 +76,7 @@ fn beyond_a_limit(parts: &[&Part]) -> Figure {
         .with("passed", Some(passed as f64))
 }
 
-/// What the rig had to say for itself.
+/// Counts EEPROM writes, alarms and logged errors.
 pub fn machine(lots: &[Lot]) -> Vec<Figure> {
     let n = lots.len() as u64;
     let writes: Option<u64> = lots.iter().map(|lot| lot.summary.eeprom_writes).sum();
@@ -114,7 +114,7 @@ pub fn defects(lots: &[Lot]) -> Vec<Figure> {
     seen.into_iter().map(row).collect()
 }
 
-/// By row or by body: either is one too many.
+/// Returns true when the row or the body of the part is in the pass bin.
 pub fn has_passed(part: &Part) -> bool {
     let landed = part
         .truth

@@ -37,7 +37,7 @@ const PIECES: [(&str, &str); 4] = [
     ("ramp_s", "ramps"),
 ];
 
-/// Runs the lots and draws the report up.
+/// Runs the lots and makes the report.
 ///
 /// # Errors
 /// A lot that could not be run.

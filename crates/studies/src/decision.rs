@@ -30,7 +30,7 @@ const LOT_V: f64 = 12.0;
 /// What a U must fall by to be that of a slow repetition: noise alone moves it by less.
 const AGAIN: f64 = 0.98;
 
-/// Runs the lots and draws the report up.
+/// Runs the lots and makes the report.
 ///
 /// # Errors
 /// A lot that could not be run.

@@ -30,7 +30,7 @@ const FILTERS: usize = 300;
 /// Between two looks at the memory of the export.
 const LOOK: Duration = Duration::from_millis(5);
 
-/// Writes the file, asks everything of it and draws the report up.
+/// Writes the file, asks everything of it and makes the report.
 ///
 /// # Errors
 /// A file that could not be written or read.

@@ -50,7 +50,7 @@ struct Counts {
     refused: u64,
 }
 
-/// Kills as many lots as the order has and draws the report up.
+/// Kills as many lots as the order has and makes the report.
 ///
 /// # Errors
 /// A process that could not be started or a history that could not be read.

@@ -6,7 +6,7 @@ use super::exception;
 use super::fleet::Order;
 use super::output::Report;
 
-/// Runs the lots and draws the report up.
+/// Runs the lots and makes the report.
 ///
 /// # Errors
 /// A lot that could not be run.

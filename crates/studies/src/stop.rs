@@ -68,7 +68,7 @@ impl SweepResult {
     }
 }
 
-/// Plays the lots and draws the report up.
+/// Plays the lots and makes the report.
 ///
 /// # Errors
 /// A configuration that does not load, or a story that could not be played.

@@ -23,7 +23,7 @@ use std::process::Command;
 /// One day on a rig: name of every factor with what was off, in standard uncertainties.
 type Day = BTreeMap<String, f64>;
 
-/// Calibrates as many rigs as the order has lots, verifies each as often as a lot has parts, and draws the report up.
+/// Calibrates as many rigs as the order has lots, verifies each as often as a lot has parts, and makes the report.
 ///
 /// # Errors
 /// A process that could not be started or whose answer could not be read.

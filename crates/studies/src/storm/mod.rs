@@ -94,7 +94,7 @@ struct Sea<'a> {
     calibrations: [OnceLock<Calibration>; RIGS as usize],
 }
 
-/// Runs the seeds (or the one that is asked for) and draws the report up.
+/// Runs the seeds (or the one that is asked for) and makes the report.
 ///
 /// # Errors
 /// Files that cannot be read or written, or a rig that cannot be built.
