@@ -10,7 +10,6 @@ pub mod config;
 pub mod demo;
 pub mod history;
 pub mod lot;
-mod progress;
 pub mod rig;
 pub mod run;
 pub mod serve;

@@ -61,9 +61,13 @@ impl Table {
             summary.void,
             bins.join(", ")
         );
+        let bodies = match summary.bodies_watched {
+            Some(false) => ", bodies: not watched",
+            Some(true) | None => "",
+        };
         let _ = writeln!(
             text,
-            "{} parts/h, {} s of rig time in {} s, {} alarms",
+            "{} parts/h, {} s of rig time in {} s, {} alarms{bodies}",
             summary.parts_per_hour, summary.elapsed_s, summary.wall_s, summary.alarms
         );
         text

@@ -1,10 +1,10 @@
 //! What a person or a program at the terminal sees of a run: progress bar, alarms, rows, and what it came to.
 
-use super::progress::progress;
 use super::table::Table;
 use app::cycle::Event;
 use app::exit::Exit;
 use app::lot::{LotEvent, LotProgress, Subscriber, part_json};
+use app::progress::progress;
 use indicatif::ProgressBar;
 use machine::handling::ledger::Kind;
 use machine::handling::wants::Judged;

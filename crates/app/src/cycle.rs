@@ -8,10 +8,10 @@
 //! step asked for. Nothing here knows what a relay is: that is the station's.
 
 mod commission;
-mod desk;
 mod event;
 mod foresight;
 pub mod mimic;
+mod orders;
 mod profile;
 mod publish;
 mod record;
@@ -25,7 +25,6 @@ pub use traffic::LineEnds;
 
 use bus::{Answer, LineError, Pace};
 use dcon::Command;
-pub use desk::PANEL;
 pub use event::Event;
 use machine::guard::Guard;
 use machine::handling::NestId;
@@ -43,6 +42,7 @@ use machine::station::packml;
 use machine::station::trouble::Alarm;
 use machine::station::wants::{Ending, Inputs, Wants};
 use machine::view::{self, OrderRequest, View};
+pub use orders::PANEL;
 pub use profile::Profile;
 use profile::lap;
 use std::sync::Arc;
@@ -367,7 +367,7 @@ impl Cycle {
                 self.bus_alarm.get_or_insert(Alarm::bus(&needs.to_string()));
             }
         }
-        self.traffic.suspect(wants.rig.restart_check);
+        self.traffic.check_restarts(wants.rig.restart_check);
         self.traffic
             .watch_beam(wants.rig.beam.map(|beam| self.wiring.read_events(beam)));
         let is_job = wants.rig.job.is_some();

@@ -97,8 +97,8 @@ impl Cause {
         Self::new("not_calibrated", text)
     }
 
-    /// The program could not go on, whatever the rig did.
-    pub fn is_of_the_program(&self) -> bool {
+    /// Returns true when the program itself failed: an assertion, or a history that cannot be written.
+    pub fn is_program_failure(&self) -> bool {
         [ASSERTION, HISTORY_LOST].contains(&self.code.as_str())
     }
 

@@ -16,7 +16,7 @@ use tokio::net::TcpStream;
 /// Between two looks: a line at 115200 baud makes some 130 messages in this time, and a thousand are kept.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(200);
 /// Longest wait for an answer of the server.
-const PATIENCE: Duration = Duration::from_secs(10);
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// Where a page is served: host and port of `http://HOST:PORT`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -84,12 +84,12 @@ pub enum What {
     Message(Message),
 }
 
-/// What has been handed over of every line.
+/// The newest message handed over, by line.
 #[derive(Debug, Default)]
-struct Known(BTreeMap<String, Message>);
+struct Delivered(BTreeMap<String, Message>);
 
-impl Known {
-    /// What is new, oldest first.
+impl Delivered {
+    /// Returns the messages that came after those handed over before, oldest first.
     fn news(&mut self, lines: Vec<Line>) -> Vec<News> {
         let mut news = Vec::new();
         for Line { line, entries } in lines {
@@ -122,10 +122,10 @@ pub async fn follow(
     page: &Page,
     mut tell: impl FnMut(&News) -> anyhow::Result<()>,
 ) -> anyhow::Result<()> {
-    let mut known = Known::default();
+    let mut delivered = Delivered::default();
     let mut lines = look(page).await?;
     loop {
-        for news in known.news(lines) {
+        for news in delivered.news(lines) {
             tell(&news)?;
         }
         tokio::time::sleep(BETWEEN_LOOKS).await;
@@ -141,10 +141,10 @@ pub async fn follow(
 
 async fn look(page: &Page) -> anyhow::Result<Vec<Line>> {
     let Page(host) = page;
-    let body = tokio::time::timeout(PATIENCE, get(host, "/api/trace?last=1000"));
+    let body = tokio::time::timeout(ANSWER_TIMEOUT, get(host, "/api/trace?last=1000"));
     let body = body
         .await
-        .map_err(|_| anyhow!("no answer within {} s", PATIENCE.as_secs()))
+        .map_err(|_| anyhow!("no answer within {} s", ANSWER_TIMEOUT.as_secs()))
         .and_then(|body| body)
         .with_context(|| format!("--from http://{host}"))?;
     serde_json::from_slice(&body)
@@ -198,30 +198,30 @@ mod tests {
 
     #[test]
     fn what_was_seen_comes_once_and_in_order_of_time() {
-        let mut known = Known::default();
-        let news = known.news(vec![line("motion", &[1, 4]), line("measure", &[2])]);
+        let mut delivered = Delivered::default();
+        let news = delivered.news(vec![line("motion", &[1, 4]), line("measure", &[2])]);
         let expected = [
             (1, "motion", true),
             (2, "measure", true),
             (4, "motion", true),
         ];
         assert_eq!(seen(&news), expected);
-        let news = known.news(vec![line("motion", &[1, 4]), line("measure", &[2, 5])]);
+        let news = delivered.news(vec![line("motion", &[1, 4]), line("measure", &[2, 5])]);
         assert_eq!(seen(&news), [(5, "measure", true)]);
     }
 
     #[test]
     fn where_more_passed_than_is_kept_there_is_a_gap() {
-        let mut known = Known::default();
-        known.news(vec![line("motion", &[1, 4])]);
-        let news = known.news(vec![line("motion", &[7, 9])]);
+        let mut delivered = Delivered::default();
+        delivered.news(vec![line("motion", &[1, 4])]);
+        let news = delivered.news(vec![line("motion", &[7, 9])]);
         let expected = [
             (7, "motion", false),
             (7, "motion", true),
             (9, "motion", true),
         ];
         assert_eq!(seen(&news), expected);
-        assert!(known.news(vec![line("motion", &[7, 9])]).is_empty());
+        assert!(delivered.news(vec![line("motion", &[7, 9])]).is_empty());
     }
 
     #[test]

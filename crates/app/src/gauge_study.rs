@@ -35,17 +35,17 @@ pub struct Figure {
 
 /// The rig of one operator: its own errors, the same parts fed again and again.
 fn refed(source: &RigSource, operator: u64, parts: u64) -> RigSource {
-    let mut refed = source.clone();
-    match &mut refed {
-        RigSource::Serial(_) => {}
+    let _ = (operator, parts);
+    match source.clone() {
         #[cfg(feature = "sim")]
-        RigSource::Simulated(rig) => {
+        RigSource::Simulated(mut rig) => {
             rig.faults.push(format!("refeed={parts}"));
             rig.faults.push(format!("parts_seed={}", rig.seed));
             rig.seed += operator;
+            RigSource::Simulated(rig)
         }
+        serial @ RigSource::Serial(_) => serial,
     }
-    refed
 }
 
 /// Runs the lots named after `order`, and returns the figures of every parameter, or how the first lot ended that did

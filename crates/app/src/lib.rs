@@ -1,7 +1,7 @@
 //! What a lot, a day of service, a story, a calibration and a follower of the traffic *are*, in types of their own.
 //!
-//! The command line turns arguments into these types and answers into text. Nothing here reads an argument or writes
-//! to the terminal; what is logged goes through `tracing`.
+//! The command line turns arguments into these types and answers into text. Nothing here reads an argument. Only
+//! [`progress`] writes to the terminal; log messages go through `tracing`.
 //!
 //! | module | holds |
 //! |---|---|
@@ -27,8 +27,7 @@ pub mod lot;
 pub mod lot_decision;
 pub mod order;
 pub mod order_queue;
-#[cfg(feature = "sim")]
-mod plug;
+pub mod progress;
 pub mod service;
 #[cfg(feature = "sim")]
 pub mod simulated;
@@ -36,6 +35,8 @@ pub mod source;
 #[cfg(feature = "sim")]
 pub mod story;
 pub mod traces;
+#[cfg(feature = "sim")]
+mod wire_ports;
 
 use admission::admit;
 use anyhow::Context;
@@ -77,7 +78,7 @@ pub fn run_lot(
     };
     block_on(source, async {
         controls.heed_signals();
-        runner.run(OrderQueue::nobody(), outer).await
+        runner.run(OrderQueue::without_orders(), outer).await
     })
 }
 

@@ -3,7 +3,7 @@
 use super::lot::LotContext;
 use super::source::{LinePort, RigSource};
 #[cfg(feature = "sim")]
-use super::{plug::PlugPorts, simulated, source::Simulated};
+use super::{simulated, source::Simulated, wire_ports::WirePorts};
 use crate::cycle::LineEnds;
 use anyhow::anyhow;
 use bus::{LineLog, LineSettings, Pace, SerialPorts};
@@ -185,7 +185,7 @@ fn simulated_lines(
         lines._ptys = Some(ptys);
     } else {
         for (name, plug) in wire::plugs(&rig) {
-            lines.ports(plant, named(&name)?, PlugPorts(plug), pace);
+            lines.ports(plant, named(&name)?, WirePorts(plug), pace);
         }
     }
     lines.rig = Some(rig);

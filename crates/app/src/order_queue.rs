@@ -1,4 +1,4 @@
-//! Where the orders of a run come in.
+//! The channel that brings orders to the cycle of a run.
 
 use machine::view::OrderRequest;
 use tokio::sync::mpsc;
@@ -7,17 +7,17 @@ use tokio::sync::mpsc;
 #[derive(Debug)]
 pub struct OrderQueue {
     pub(super) orders: mpsc::Receiver<OrderRequest>,
-    /// Kept, so that the cycle does not take a silent queue for a closed one.
-    _nobody: Option<mpsc::Sender<OrderRequest>>,
+    /// Keeps the channel open: the cycle would stop reading a closed one.
+    _sender: Option<mpsc::Sender<OrderRequest>>,
 }
 
 impl OrderQueue {
-    /// Nobody orders anything: an unattended station resets and starts by itself.
-    pub fn nobody() -> Self {
+    /// Returns a queue that stays open and never delivers an order; an unattended station resets and starts by itself.
+    pub fn without_orders() -> Self {
         let (given, orders) = mpsc::channel(1);
         Self {
             orders,
-            _nobody: Some(given),
+            _sender: Some(given),
         }
     }
 }
@@ -26,7 +26,7 @@ impl From<mpsc::Receiver<OrderRequest>> for OrderQueue {
     fn from(orders: mpsc::Receiver<OrderRequest>) -> Self {
         Self {
             orders,
-            _nobody: None,
+            _sender: None,
         }
     }
 }

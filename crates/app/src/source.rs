@@ -88,6 +88,15 @@ impl RigSource {
         }
     }
 
+    /// Whether the simulated rig looks for bodies that touch (feature `bodies`); none of a real rig.
+    pub fn bodies_watched(&self) -> Option<bool> {
+        match self {
+            Self::Serial(_) => None,
+            #[cfg(feature = "sim")]
+            Self::Simulated(_) => Some(rigsim::world::bodies::WATCHED),
+        }
+    }
+
     /// The rig is simulated.
     pub fn is_simulated(&self) -> bool {
         self.seed().is_some()

@@ -12,7 +12,7 @@ use super::output::Report;
 use super::parameters;
 use machine::dut::em_relay::Parameter;
 
-/// Runs the lots and draws the report up.
+/// Runs the lots and makes the report.
 ///
 /// # Errors
 /// A lot that could not be run.

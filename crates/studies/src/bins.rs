@@ -1,4 +1,4 @@
-//! What became of the parts: good ones rejected, bad ones passed, rows that do not agree with the floor.
+//! Outcome of the parts: good parts rejected, bad parts passed, rows that name another bin than the one the part lies in.
 
 use super::error::percent;
 use super::figure::{Bar, Figure};
@@ -50,17 +50,17 @@ pub fn outcome(lots: &[Lot]) -> Vec<Figure> {
         Figure::new("voids of good parts", n_good, percent(voids, n_good), "%")
             .bar(Bar::Below(0.5)),
         beyond_a_limit(&beyond),
-        none(
+        Figure::none(
             "defective parts passed",
             n_bad,
             bad.filter(|part| has_passed(part)).count() as u64,
         ),
-        none(
+        Figure::none(
             "rows whose bin is not where the part is",
             all.len() as u64,
             elsewhere,
         ),
-        none(
+        Figure::none(
             "parts without a row",
             all.len() as u64,
             lots.iter().map(|lot| lot.unrecorded).sum(),
@@ -76,14 +76,14 @@ fn beyond_a_limit(parts: &[&Part]) -> Figure {
         .with("passed", Some(passed as f64))
 }
 
-/// What the rig had to say for itself.
+/// Counts EEPROM writes, alarms and logged errors.
 pub fn machine(lots: &[Lot]) -> Vec<Figure> {
     let n = lots.len() as u64;
     let writes: Option<u64> = lots.iter().map(|lot| lot.summary.eeprom_writes).sum();
     vec![
         Figure::count("EEPROM writes during the lots", n, writes).bar(Bar::AtMost(0.0)),
-        none("alarms", n, lots.iter().map(|lot| lot.summary.alarms).sum()),
-        none(
+        Figure::none("alarms", n, lots.iter().map(|lot| lot.summary.alarms).sum()),
+        Figure::none(
             "errors logged, touching bodies included",
             n,
             lots.iter().map(|lot| lot.errors_logged).sum(),
@@ -114,12 +114,7 @@ pub fn defects(lots: &[Lot]) -> Vec<Figure> {
     seen.into_iter().map(row).collect()
 }
 
-/// A number of things that must not happen.
-fn none(name: &str, of: u64, count: u64) -> Figure {
-    Figure::count(name, of, Some(count)).bar(Bar::AtMost(0.0))
-}
-
-/// By row or by body: either is one too many.
+/// Returns true when the row or the body of the part is in the pass bin.
 pub fn has_passed(part: &Part) -> bool {
     let landed = part
         .truth

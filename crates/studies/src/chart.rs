@@ -3,7 +3,7 @@
 //! Lengths in px. The text is plain and the colours are fixed, so that the file reads the same in a page, in a
 //! viewer and on paper.
 
-use super::figure::shown;
+use super::figure::{Figure, shown};
 use history::report::svg::Svg;
 
 /// What to draw.
@@ -28,6 +28,23 @@ const TOP: f64 = 44.0;
 const ROW: f64 = 24.0;
 
 impl Chart {
+    /// Draws one bar from 0 per figure.
+    pub fn of<'a>(
+        title: impl Into<String>,
+        unit: &'static str,
+        marks: Vec<f64>,
+        figures: impl IntoIterator<Item = &'a Figure>,
+    ) -> Self {
+        let bars = figures.into_iter().map(|it| (it.name.clone(), it.value));
+        Self {
+            title: title.into(),
+            unit,
+            from: 0.0,
+            marks,
+            bars: bars.collect(),
+        }
+    }
+
     /// Value at the right end: the greatest one, or mark, and a little more.
     fn to(&self) -> f64 {
         let all = self

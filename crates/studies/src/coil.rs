@@ -51,7 +51,7 @@ fn worlds() -> [(&'static str, Vec<Change>); 3] {
     ]
 }
 
-/// Runs the lots and draws the report up.
+/// Runs the lots and makes the report.
 ///
 /// # Errors
 /// A lot that could not be run.

@@ -45,7 +45,7 @@ fn recipe(polarities: &str, closures: i64, stops_early: bool) -> Vec<Change> {
     ]
 }
 
-/// Runs the lots and draws the report up.
+/// Runs the lots and makes the report.
 ///
 /// # Errors
 /// A lot that could not be run.

@@ -15,7 +15,7 @@ use machine::dut::em_relay::Parameter;
 /// Percent of values that may be covered.
 const ALLOWED: (f64, f64) = (93.0, 98.0);
 
-/// Runs the lots and draws the report up.
+/// Runs the lots and makes the report.
 ///
 /// # Errors
 /// A lot that could not be run.

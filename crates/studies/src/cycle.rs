@@ -37,7 +37,7 @@ const PIECES: [(&str, &str); 4] = [
     ("ramp_s", "ramps"),
 ];
 
-/// Runs the lots and draws the report up.
+/// Runs the lots and makes the report.
 ///
 /// # Errors
 /// A lot that could not be run.
@@ -46,16 +46,12 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     let adaptive = order.recipe.ends_with("-adaptive");
     let mean_bar = if adaptive { ADAPTIVE_MEAN_S } else { TEST_S };
     let pieces = pieces(&lots);
-    let chart = Chart {
-        title: format!("where a cycle goes, mean per part: {}", order.about()),
-        unit: "s",
-        from: 0.0,
-        marks: Vec::new(),
-        bars: pieces
-            .iter()
-            .map(|figure| (figure.name.clone(), figure.value))
-            .collect(),
-    };
+    let chart = Chart::of(
+        format!("where a cycle goes, mean per part: {}", order.about()),
+        "s",
+        Vec::new(),
+        &pieces,
+    );
     let groups = vec![
         times(&lots),
         bound(&lots, mean_bar),

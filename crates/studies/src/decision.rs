@@ -30,7 +30,7 @@ const LOT_V: f64 = 12.0;
 /// What a U must fall by to be that of a slow repetition: noise alone moves it by less.
 const AGAIN: f64 = 0.98;
 
-/// Runs the lots and draws the report up.
+/// Runs the lots and makes the report.
 ///
 /// # Errors
 /// A lot that could not be run.
@@ -41,19 +41,15 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
         .iter()
         .map(|(parameter, limits)| predicted(*parameter, limits, &lots))
         .collect();
-    let chart = Chart {
-        title: format!(
+    let chart = Chart::of(
+        format!(
             "rejects of good parts that the rule predicts: {}",
             order.about()
         ),
-        unit: "ppm",
-        from: 0.0,
-        marks: Vec::new(),
-        bars: rows
-            .iter()
-            .map(|row| (row.name.clone(), row.value))
-            .collect(),
-    };
+        "ppm",
+        Vec::new(),
+        &rows,
+    );
     let told = |what: fn(&Figure) -> Option<f64>| rows.iter().filter_map(what).sum::<f64>() / PPM;
     let risks = (told(false_accept), told(|row| row.value));
     let groups = vec![

@@ -9,7 +9,7 @@ use quality::Spread;
 use quality::spread::median;
 use units::Unit;
 
-/// Unit in which the error of a parameter is told.
+/// Unit of the error of a parameter in reports.
 pub fn unit(parameter: Parameter) -> &'static str {
     match parameter.definition().unit {
         Unit::Ohm => "%",
@@ -59,7 +59,7 @@ impl Errors {
         }
     }
 
-    /// How many.
+    /// Number of values.
     pub fn n(&self) -> u64 {
         self.spread.n()
     }
@@ -77,7 +77,7 @@ impl Errors {
         Some((mean * mean + sd * sd * (n - 1.0) / n).sqrt())
     }
 
-    /// Greatest error, sign taken off.
+    /// Greatest error, as an absolute value.
     pub fn worst(&self) -> Option<f64> {
         Some(self.spread.min()?.abs().max(self.spread.max()?.abs()))
     }
@@ -105,7 +105,7 @@ impl Pooled {
         Self(lots.iter().map(of).collect())
     }
 
-    /// How many in all lots.
+    /// Number of values in all lots.
     pub fn n(&self) -> u64 {
         self.0.iter().map(Errors::n).sum()
     }
@@ -147,7 +147,7 @@ impl Pooled {
     }
 }
 
-/// None of nothing.
+/// Returns the share in percent; none when `all` is 0.
 pub fn percent(some: u64, all: u64) -> Option<f64> {
     (all > 0).then(|| 100.0 * some as f64 / all as f64)
 }

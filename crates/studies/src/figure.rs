@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-/// What a figure has to keep. Every end is part of what is allowed, but for [`Bar::Below`].
+/// Range that a figure must keep; both ends belong to it, except for [`Bar::Below`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Bar {
     /// At most.
@@ -16,7 +16,7 @@ pub enum Bar {
 }
 
 impl Bar {
-    /// False for NaN.
+    /// Checks a value; NaN never keeps a bar.
     pub fn is_met(self, value: f64) -> bool {
         match self {
             Self::AtMost(high) => value <= high,
@@ -26,7 +26,7 @@ impl Bar {
         }
     }
 
-    /// As it stands in the column.
+    /// Returns the text of the report column `bar`.
     pub fn text(self) -> String {
         match self {
             Self::AtMost(high) => format!("<= {high}"),
@@ -40,11 +40,11 @@ impl Bar {
 /// One row of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
-    /// What it is.
+    /// Name, the first column of the report.
     pub name: String,
-    /// From how many (parts, lots, runs: the name says which).
+    /// Number of parts, lots or runs behind the value.
     pub n: u64,
-    /// The figure that is held against the bar; none when it could not be had.
+    /// The figure that is held against the bar; none when nothing was measured.
     pub value: Option<f64>,
     /// Unit of `value` and of `more`, unless a column names its own.
     pub unit: &'static str,
@@ -73,6 +73,11 @@ impl Figure {
         Self::new(name, n, count.map(|it| it as f64), "")
     }
 
+    /// Counts things that must not happen, held against zero.
+    pub fn none(name: impl Into<String>, n: u64, count: u64) -> Self {
+        Self::count(name, n, Some(count)).bar(Bar::AtMost(0.0))
+    }
+
     /// The same, held against a bar.
     pub fn bar(self, bar: Bar) -> Self {
         Self {
@@ -87,7 +92,7 @@ impl Figure {
         self
     }
 
-    /// None without a bar; a figure that could not be had has missed it.
+    /// Returns whether the bar is kept: none without a bar, false without a value.
     pub fn met(&self) -> Option<bool> {
         self.bar
             .map(|bar| self.value.is_some_and(|value| bar.is_met(value)))
@@ -111,7 +116,7 @@ impl Figure {
     }
 }
 
-/// To five digits, without an exponent where a person would write none.
+/// Formats a value to five digits, without an exponent.
 pub fn shown(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return if value == 0.0 { "0".into() } else { "-".into() };

@@ -12,7 +12,7 @@ use std::time::Instant;
 /// Exit status of a lot that an alarm ended: its rows count all the same.
 const RIG_TROUBLE: i32 = 3;
 
-/// What to run.
+/// Lots to run.
 #[derive(Debug, Clone)]
 pub struct Order {
     /// The program, this one.
@@ -25,9 +25,9 @@ pub struct Order {
     pub admitted: Admitted,
     /// World of the simulated rig; none is the one of the configuration.
     pub world: Option<PathBuf>,
-    /// Faults asked of the simulated rig, as `--fault` takes them.
+    /// Faults of the simulated rig, in the form of `--fault`.
     pub faults: Vec<String>,
-    /// How many lots.
+    /// Number of lots.
     pub lots: u64,
     /// First seed, where a study takes it.
     pub from: u64,
@@ -38,7 +38,7 @@ pub struct Order {
 }
 
 impl Order {
-    /// What was run, for the head of a report.
+    /// Describes the lots for the head of a report.
     pub fn about(&self) -> String {
         let world = self
             .world
@@ -169,7 +169,7 @@ impl Drop for Folder {
     }
 }
 
-/// Lots done, on stderr, when somebody looks.
+/// Number of finished lots on stderr; silent when stderr is no terminal.
 struct Progress {
     of: usize,
     seen: bool,

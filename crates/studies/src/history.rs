@@ -10,6 +10,7 @@ use super::fleet::{Folder, Order};
 use super::output::Report;
 use anyhow::Context;
 use app::generate::{Wanted, generate};
+use app::progress::{PIECES, progress};
 use history::inquiry::figures::figures;
 use history::{Archive, Filter, Identity, LotRecord, Moment, Row, Store};
 use machine::dut::em_relay::Parameter;
@@ -29,7 +30,7 @@ const FILTERS: usize = 300;
 /// Between two looks at the memory of the export.
 const LOOK: Duration = Duration::from_millis(5);
 
-/// Writes the file, asks everything of it and draws the report up.
+/// Writes the file, asks everything of it and makes the report.
 ///
 /// # Errors
 /// A file that could not be written or read.
@@ -42,7 +43,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
         recipe: order.recipe.clone(),
         until: None,
     };
-    let bar = crate::progress::progress(order.parts);
+    let bar = progress(Some(order.parts), PIECES);
     let made = generate(&order.config, &db, &wanted, |parts| bar.set_position(parts))?;
     bar.finish_and_clear();
     let rate = made.parts as f64 / made.writing.as_secs_f64();
@@ -77,16 +78,12 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
         stats(&archive, &db, "of its good parts, p95", &good())?,
     ];
     let sheet = sheets(order, &folder.0, &db)?;
-    let chart = Chart {
-        title: format!("wall time of queries over {} parts", made.parts),
-        unit: "ms",
-        from: 0.0,
-        marks: vec![50.0, 300.0],
-        bars: reading
-            .iter()
-            .map(|it| (it.name.clone(), it.value))
-            .collect(),
-    };
+    let chart = Chart::of(
+        format!("wall time of queries over {} parts", made.parts),
+        "ms",
+        vec![50.0, 300.0],
+        &reading,
+    );
     Ok(Report {
         study: "history",
         about: format!("{} made-up parts of {}", made.parts, order.recipe),

@@ -23,19 +23,19 @@ pub enum Entry {
     Struck {
         /// Rig time, microseconds.
         t_us: u64,
-        /// As the script says.
+        /// Fault as the script writes it.
         fault: String,
     },
-    /// A host watchdog has expired; not looked at here.
+    /// A host watchdog has expired; the studies do not use it.
     Expired {},
 }
 
 /// A story that was played.
 #[derive(Debug)]
 pub struct Played {
-    /// What was told.
+    /// Text of the story.
     pub text: String,
-    /// What the outputs did.
+    /// Entries of the journal, in order of time.
     pub entries: Vec<Entry>,
     /// The script was played to its end.
     pub whole: bool,

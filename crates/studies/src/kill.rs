@@ -10,10 +10,11 @@
 //! All rounds share one history. Every tenth round a short lot runs to its end in it.
 
 use super::chart::Chart;
-use super::figure::{Bar, Figure};
+use super::figure::Figure;
 use super::fleet::{Folder, Order};
 use super::output::Report;
 use anyhow::Context;
+use app::progress::{PIECES, progress};
 use history::{Archive, Filter, Part};
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
@@ -49,7 +50,7 @@ struct Counts {
     refused: u64,
 }
 
-/// Kills as many lots as the order has and draws the report up.
+/// Kills as many lots as the order has and makes the report.
 ///
 /// # Errors
 /// A process that could not be started or a history that could not be read.
@@ -58,7 +59,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     let db = folder.0.join("history.db");
     let mut counts = Counts::default();
     let mut instants = Vec::new();
-    let bar = crate::progress::progress(order.lots);
+    let bar = progress(Some(order.lots), PIECES);
     // A seed of its own, so that each run of the study kills at the same instants.
     let mut draws = SplitMix64::seed_from_u64(0);
     for round in 0..order.lots {
@@ -80,20 +81,17 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
 }
 
 fn report(order: &Order, it: &Counts, instants: &[f64]) -> Report {
-    let none = |name: &str, of: u64, count: u64| {
-        Figure::count(name, of, Some(count)).bar(Bar::AtMost(0.0))
-    };
     let bars = vec![
-        none("told parts without their row", it.told, it.lost),
-        none("told parts with another verdict or bin", it.told, it.other),
-        none(
+        Figure::none("told parts without their row", it.told, it.lost),
+        Figure::none("told parts with another verdict or bin", it.told, it.other),
+        Figure::none(
             "lots whose numbers have a gap or a double",
             order.lots,
             it.gaps,
         ),
-        none("told parts that failed and have no curve", it.told, it.bare),
-        none("kills that damaged the file", order.lots, it.damaged),
-        none(
+        Figure::none("told parts that failed and have no curve", it.told, it.bare),
+        Figure::none("kills that damaged the file", order.lots, it.damaged),
+        Figure::none(
             "lots that could not run afterwards",
             it.restarts,
             it.refused,

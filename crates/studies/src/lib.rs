@@ -37,7 +37,6 @@ mod output;
 mod pace;
 mod parameters;
 mod path;
-mod progress;
 mod scatter;
 mod sorting;
 mod stop;

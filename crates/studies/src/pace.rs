@@ -17,7 +17,7 @@ const PARTS_PER_SECOND: f64 = 50.0;
 /// Seed of every run.
 const SEED: u64 = 1;
 
-/// Runs the lot several times and draws the report up.
+/// Runs the lot several times and makes the report.
 ///
 /// # Errors
 /// A run that could not be made.

@@ -6,23 +6,19 @@ use super::exception;
 use super::fleet::Order;
 use super::output::Report;
 
-/// Runs the lots and draws the report up.
+/// Runs the lots and makes the report.
 ///
 /// # Errors
 /// A lot that could not be run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let lots = order.run_all()?;
     let defects = bins::defects(&lots);
-    let chart = Chart {
-        title: format!("defects in the bin of their cause: {}", order.about()),
-        unit: "%",
-        from: 0.0,
-        marks: vec![100.0],
-        bars: defects
-            .iter()
-            .map(|figure| (figure.name.clone(), figure.value))
-            .collect(),
-    };
+    let chart = Chart::of(
+        format!("defects in the bin of their cause: {}", order.about()),
+        "%",
+        vec![100.0],
+        &defects,
+    );
     let groups = vec![bins::outcome(&lots), defects, bins::machine(&lots)];
     Ok(Report {
         study: "sorting",

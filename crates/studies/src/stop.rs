@@ -14,6 +14,7 @@ use super::figure::{Bar, Figure};
 use super::fleet::{Folder, Order};
 use super::journal;
 use super::output::Report;
+use app::progress::{PIECES, progress};
 use config::Plant;
 use machine::rig::point::DigitalOut;
 use machine::rig::wiring::Wiring;
@@ -37,9 +38,9 @@ struct Stop {
     reaction_ms: Option<f64>,
 }
 
-/// What the lots of one sweep told, with modules as they are or with late replies.
+/// What the lots of one sweep result, with modules as they are or with late replies.
 #[derive(Debug)]
-struct Told {
+struct SweepResult {
     sweep: Sweep,
     slow: bool,
     stops: Vec<Stop>,
@@ -47,7 +48,7 @@ struct Told {
     unfinished: u64,
 }
 
-impl Told {
+impl SweepResult {
     fn nothing(sweep: Sweep, slow: bool) -> Self {
         Self {
             sweep,
@@ -67,7 +68,7 @@ impl Told {
     }
 }
 
-/// Plays the lots and draws the report up.
+/// Plays the lots and makes the report.
 ///
 /// # Errors
 /// A configuration that does not load, or a story that could not be played.
@@ -75,19 +76,22 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     let plant = Plant::load(&order.config)?;
     let bound_ms = plant.wiring.longest_reaction().as_seconds() * 1e3;
     let folder = Folder::new()?;
-    let of = |sweep| [false, true].map(|slow| Told::nothing(sweep, slow));
-    let mut all: Vec<Told> = Sweep::ALL.into_iter().flat_map(of).collect();
-    let bar = crate::progress::progress(order.lots * all.len() as u64 / 2);
-    for told in &mut all {
-        for lot in (u64::from(told.slow)..order.lots).step_by(2) {
-            played(order, &folder.0, &plant.wiring, lot, told)?;
+    let of = |sweep| [false, true].map(|slow| SweepResult::nothing(sweep, slow));
+    let mut all: Vec<SweepResult> = Sweep::ALL.into_iter().flat_map(of).collect();
+    let bar = progress(Some(order.lots * all.len() as u64 / 2), PIECES);
+    for result in &mut all {
+        for lot in (u64::from(result.slow)..order.lots).step_by(2) {
+            played(order, &folder.0, &plant.wiring, lot, result)?;
             bar.inc(1);
         }
     }
     bar.finish_and_clear();
-    let sum = |of: fn(&Told) -> u64| all.iter().map(of).sum::<u64>();
+    let sum = |of: fn(&SweepResult) -> u64| all.iter().map(of).sum::<u64>();
     let lots = order.lots * Sweep::ALL.len() as u64;
-    let mut reactions: Vec<Figure> = all.iter().map(|told| reaction(told, bound_ms)).collect();
+    let mut reactions: Vec<Figure> = all
+        .iter()
+        .map(|result| reaction(result, bound_ms))
+        .collect();
     reactions.push(Figure::new("bound of rig.toml", 1, Some(bound_ms), "ms"));
     Ok(Report {
         study: "stop",
@@ -98,8 +102,8 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
         groups: vec![
             reactions,
             vec![
-                none("bodies that touched", sum(|it| it.touched), lots),
-                none("lots that did not go on", sum(|it| it.unfinished), lots),
+                Figure::none("bodies that touched", lots, sum(|it| it.touched)),
+                Figure::none("lots that did not go on", lots, sum(|it| it.unfinished)),
             ],
         ],
         notes: Vec::new(),
@@ -107,16 +111,16 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     })
 }
 
-fn reaction(told: &Told, bound_ms: f64) -> Figure {
-    let times: Vec<f64> = told
+fn reaction(result: &SweepResult, bound_ms: f64) -> Figure {
+    let times: Vec<f64> = result
         .stops
         .iter()
         .filter_map(|stop| stop.reaction_ms)
         .collect();
     let ordered = Ordered::of(&times);
     Figure::new(
-        told.name(),
-        told.stops.len() as u64,
+        result.name(),
+        result.stops.len() as u64,
         ordered.quantile(1.0),
         "ms",
     )
@@ -126,15 +130,11 @@ fn reaction(told: &Told, bound_ms: f64) -> Figure {
     .bar(Bar::AtMost(bound_ms))
 }
 
-fn none(name: &str, count: u64, of: u64) -> Figure {
-    Figure::count(name, of, Some(count)).bar(Bar::AtMost(0.0))
-}
-
 /// Worst reaction by the instant in the cycle.
-fn chart(told: &Told, bound_ms: f64) -> Chart {
-    let width = told.sweep.span_s() / CLASSES as f64;
+fn chart(result: &SweepResult, bound_ms: f64) -> Chart {
+    let width = result.sweep.span_s() / CLASSES as f64;
     let worst = |class: usize| {
-        let inside = told
+        let inside = result
             .stops
             .iter()
             .filter(|stop| (stop.instant_s / width) as usize == class);
@@ -157,24 +157,25 @@ fn played(
     folder: &Path,
     wiring: &Wiring,
     lot: u64,
-    told: &mut Told,
+    result: &mut SweepResult,
 ) -> anyhow::Result<()> {
-    let sweep = told.sweep;
+    let sweep = result.sweep;
     let instants = sweep.instants(order, lot);
-    let script = sweep.script(&instants, told.slow);
+    let script = sweep.script(&instants, result.slow);
     let played = journal::play(order, folder, &script, lot + 1)?;
     let reactions = reactions(&played.entries, &moving(wiring));
     let last = reactions
         .chunks_exact(sweep.presses())
         .map(|all| all[all.len() - 1]);
     let stops = instants.iter().zip(last);
-    told.stops
+    result
+        .stops
         .extend(stops.map(|(instant_s, reaction_ms)| Stop {
             instant_s: *instant_s,
             reaction_ms,
         }));
-    told.touched += played.text.matches("BODIES TOUCHED").count() as u64;
-    told.unfinished += u64::from(!played.whole);
+    result.touched += played.text.matches("BODIES TOUCHED").count() as u64;
+    result.unfinished += u64::from(!played.whole);
     Ok(())
 }
 

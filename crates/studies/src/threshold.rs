@@ -36,7 +36,7 @@ fn bars(parameter: Parameter, strategy: Strategy) -> Option<(f64, f64)> {
     }
 }
 
-/// Runs the lots and draws the report up.
+/// Runs the lots and makes the report.
 ///
 /// # Errors
 /// A lot that could not be run.

@@ -41,7 +41,7 @@ const DIRECTIONS: [(&str, Paid, Paid); 2] = [
 const TIME_MS: f64 = 0.02;
 const BOUNCE_MS: f64 = 0.05;
 
-/// Runs the lots and draws the report up.
+/// Runs the lots and makes the report.
 ///
 /// # Errors
 /// A lot that could not be run.

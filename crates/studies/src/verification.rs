@@ -13,6 +13,7 @@ use super::fleet::{Folder, Order};
 use super::output::Report;
 use anyhow::{Context, bail};
 use app::calibration::K_OF_ALL;
+use app::progress::{PIECES, progress};
 use serde_json::Value;
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::collections::BTreeMap;
@@ -22,14 +23,14 @@ use std::process::Command;
 /// One day on a rig: name of every factor with what was off, in standard uncertainties.
 type Day = BTreeMap<String, f64>;
 
-/// Calibrates as many rigs as the order has lots, verifies each as often as a lot has parts, and draws the report up.
+/// Calibrates as many rigs as the order has lots, verifies each as often as a lot has parts, and makes the report.
 ///
 /// # Errors
 /// A process that could not be started or whose answer could not be read.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let folder = Folder::new()?;
     let mut days = Vec::new();
-    let bar = crate::progress::progress(order.lots);
+    let bar = progress(Some(order.lots), PIECES);
     for rig in 1..=order.lots {
         let db = folder.0.join(format!("{rig}.db"));
         calibrate(order, &db, rig, None)?;

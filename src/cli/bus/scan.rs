@@ -4,10 +4,9 @@ use super::found::{Found, told};
 use super::{PortArgs, print};
 use anyhow::{Context, anyhow, bail};
 use app::exit::Exit;
+use app::progress::progress;
 use bus::{Answer, LineLog, Pace, Request};
 use dcon::{Address, BaudCode, Command, Common, Reply};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::io::IsTerminal;
 use thiserror::Error;
 use tokio::sync::mpsc;
 use tokio::task::JoinHandle;
@@ -117,7 +116,8 @@ async fn ask_all(args: &ScanArgs, found: &mut Vec<Found>) -> anyhow::Result<()> 
     let (first, last) = args.addresses;
     let checksums = args.checksum.list();
     let each = u64::from(last - first) + 1;
-    let bar = bar(each * (rates.len() * checksums.len()) as u64);
+    let length = each * (rates.len() * checksums.len()) as u64;
+    let bar = progress(Some(length), "{bar:30} {pos}/{len} {msg} {eta}");
     for (rate, checksum) in rates
         .iter()
         .flat_map(|rate| checksums.iter().map(move |it| (*rate, *it)))
@@ -232,17 +232,4 @@ impl Asking {
             Err(_) => said.filter(|_| is_init).unwrap_or("?").to_owned(),
         })
     }
-}
-
-fn bar(length: u64) -> ProgressBar {
-    let target = if std::io::stderr().is_terminal() {
-        ProgressDrawTarget::stderr()
-    } else {
-        ProgressDrawTarget::hidden()
-    };
-    let bar = ProgressBar::with_draw_target(Some(length), target);
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg} {eta}") {
-        bar.set_style(style);
-    }
-    bar
 }

@@ -2,8 +2,8 @@
 
 use super::filter::{PartArgs, RangeArgs};
 use super::paper::{Tongue, sink};
-use crate::cli::progress::{PIECES, progress};
 use anyhow::Context;
+use app::progress::{PIECES, progress};
 use clap::{Args, ValueEnum};
 use history::inquiry::{checks, export};
 use history::{Archive, Filter, csv::BYTE_ORDER_MARK};

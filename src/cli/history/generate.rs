@@ -1,8 +1,8 @@
 //! `history generate`: a made-up history as large as a plant fills in weeks, see [`app::generate`].
 
-use crate::cli::progress::{PIECES, progress};
 use app::exit::Exit;
 use app::generate::{BATCH, Wanted, generate};
+use app::progress::{PIECES, progress};
 use clap::Args;
 use history::Moment;
 use std::path::Path;

@@ -1,8 +1,8 @@
 //! `history prune`: old runs that were copied whole lose their parts here; without `--yes` it only says which.
 
 use super::output::{Output, Table};
-use crate::cli::progress::{PIECES, progress};
 use app::exit::Exit;
+use app::progress::{PIECES, progress};
 use clap::Args;
 use history::{Identity, Pruned, Store};
 use std::io::Write;

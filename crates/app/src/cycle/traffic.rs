@@ -90,8 +90,8 @@ pub struct Traffic {
     scan_period: Span,
     job: Option<JobUnderway>,
     beam: Option<Command>,
-    /// An actuator is not where it should be.
-    suspicious: bool,
+    /// An actuator is not where it should be: the scan asks first which modules have restarted.
+    restart_check: bool,
     beam_line: LineId,
     scanning: bool,
     check_tries: u8,
@@ -134,7 +134,7 @@ impl Traffic {
             scan_period: Span::seconds(wiring.bus.scan_period_ms / 1e3),
             job: None,
             beam: None,
-            suspicious: false,
+            restart_check: false,
             beam_line: estop_line,
             scanning: false,
             check_tries: wiring.bus.tries,
@@ -202,15 +202,15 @@ impl Traffic {
         self.beam = command;
     }
 
-    /// When an actuator is first found where it should not be, the modules that are scanned are asked at once whether
-    /// they have restarted: within the time for which a sensor is taken to bounce.
-    pub fn suspect(&mut self, suspicious: bool) {
-        if suspicious && !self.suspicious {
+    /// Turns the restart check on or off. When it turns on, the scan asks every scanned module at once whether it has
+    /// restarted, so that the answers arrive before the debounce time of a sensor ends.
+    pub fn check_restarts(&mut self, restart_check: bool) {
+        if restart_check && !self.restart_check {
             for slot in &mut self.slots {
                 slot.scan_schedule.ask_for_resets();
             }
         }
-        self.suspicious = suspicious;
+        self.restart_check = restart_check;
     }
 
     /// A lost write of the job will be written again; the job waits for it.

@@ -191,6 +191,7 @@ impl<'a> LotProgress<'a> {
         let eeprom = self.eeprom_at_start.zip((self.eeprom)());
         let mut summary = Summary::new(&self.counts, (ending, cause), elapsed_s, wall, logs);
         summary.eeprom_writes = eeprom.map(|(before, after)| after - before);
+        summary.bodies_watched = self.context.source.bodies_watched();
         summary.wall_profile = WallProfile::new(profile, writing, wall);
         summary
     }

@@ -41,6 +41,9 @@ pub struct Summary {
     /// EEPROM writes of all modules since the lot began; absent on a rig, where nobody can count them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub eeprom_writes: Option<u64>,
+    /// Whether the simulated rig looked for bodies that touch; absent on a real rig.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bodies_watched: Option<bool>,
     /// Where the wall time went.
     pub wall_profile: WallProfile,
     /// Fingerprint of everything that each line carried.
@@ -70,6 +73,7 @@ impl Summary {
             ended: ending.name(),
             cause: cause.cloned(),
             eeprom_writes: None,
+            bodies_watched: None,
             wall_profile: WallProfile::default(),
             bytes: logs
                 .iter()

@@ -77,8 +77,10 @@ impl Service {
         let listener = TcpListener::bind(listen)
             .with_context(|| format!("--listen {listen}: the page cannot listen there"))?;
         let plant = Arc::new(Plant::load(&files.config)?);
-        if let RigSource::Serial(given) = &source {
-            links::check(&plant, given)?;
+        match &source {
+            RigSource::Serial(given) => links::check(&plant, given)?,
+            #[cfg(feature = "sim")]
+            RigSource::Simulated(_) => {}
         }
         let order = between(&files.config)?;
         let recipe = Arc::new(load_recipe(&files.config, &order.recipe)?);

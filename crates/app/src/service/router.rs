@@ -32,32 +32,33 @@ pub enum Next {
     Hold(Box<(Order, By)>),
 }
 
-/// The run under way.
+/// The run that receives orders now.
 #[derive(Debug, Default)]
-struct UnderWay {
+struct ActiveRun {
     orders: Option<mpsc::Sender<OrderRequest>>,
     lot: Option<String>,
     next: Option<Next>,
 }
 
+/// State that all copies of the router share.
 #[derive(Debug)]
-struct Inner {
+struct RouterState {
     db: PathBuf,
     plant: Arc<Plant>,
     source: RigSource,
-    run: Mutex<UnderWay>,
+    run: Mutex<ActiveRun>,
     /// One order about lots at a time.
     turn: tokio::sync::Mutex<()>,
 }
 
 /// Where orders of screens come in; copies are the same router.
 #[derive(Debug, Clone)]
-pub struct OrderRouter(Arc<Inner>);
+pub struct OrderRouter(Arc<RouterState>);
 
 impl OrderRouter {
     /// Over the history in `db`.
     pub fn new(db: &Path, plant: &Arc<Plant>, source: &RigSource) -> Self {
-        Self(Arc::new(Inner {
+        Self(Arc::new(RouterState {
             db: db.to_owned(),
             plant: Arc::clone(plant),
             source: source.clone(),
@@ -68,7 +69,7 @@ impl OrderRouter {
 
     /// From now on orders go to this run.
     pub fn route_to(&self, orders: mpsc::Sender<OrderRequest>, lot: Option<&str>) {
-        *self.run() = UnderWay {
+        *self.run() = ActiveRun {
             orders: Some(orders),
             lot: lot.map(str::to_owned),
             next: None,
@@ -136,7 +137,7 @@ impl OrderRouter {
         };
         let router = self.clone();
         let look = move || {
-            let Inner {
+            let RouterState {
                 db, plant, source, ..
             } = &*router.0;
             let recipe = admission::admit(db, plant, &order, Purpose::Lot)
@@ -195,7 +196,7 @@ impl OrderRouter {
         }
     }
 
-    fn run(&self) -> MutexGuard<'_, UnderWay> {
+    fn run(&self) -> MutexGuard<'_, ActiveRun> {
         self.0.run.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -22,7 +22,7 @@ use super::source::{RigSource, Simulated};
 use bus::Pace;
 use config::Plant;
 use play::Play;
-pub use play::{PATIENCE, Told};
+pub use play::{PATIENCE, StoryReport};
 use script::Script;
 use std::fs::File;
 use std::sync::Arc;
@@ -39,7 +39,7 @@ pub fn tell(
     order: &LotOrder,
     (script, journal): (Script, Option<File>),
     outer: &mut dyn Subscriber,
-) -> anyhow::Result<(Option<Told>, Exit)> {
+) -> anyhow::Result<(Option<StoryReport>, Exit)> {
     let plant = Plant::load(&files.config)?;
     let recipe = admit(&files.db, &plant, order, Purpose::Lot)?;
     let live = simulated::build(&plant, &rig, order)?;
@@ -75,7 +75,7 @@ pub fn tell(
             None => Exit::Trouble(Cause::script()),
         };
         // An alarm is part of the story; trouble of the program itself is not.
-        let own = exit.cause().is_some_and(Cause::is_of_the_program);
+        let own = exit.cause().is_some_and(Cause::is_program_failure);
         Ok((told, if own { exit } else { played }))
     })
 }

@@ -134,6 +134,9 @@ impl Narrator {
         for crash in crashes {
             self.text += &format!("BODIES TOUCHED: {crash}\n");
         }
+        if !rigsim::world::bodies::WATCHED {
+            self.text += "bodies: not watched\n";
+        }
         self.text
     }
 

@@ -1,4 +1,4 @@
-//! Plays a script beside a running lot: waits, strikes, orders, and has everything narrator.
+//! Plays a script beside a running lot: waits, strikes, orders, and has the narrator describe what happens.
 
 use super::narrator::Narrator;
 use super::script::{Awaited, Deed, Script};
@@ -24,7 +24,7 @@ use units::{RigTime, Span};
 pub const PATIENCE: Span = Span::ms(180_000);
 /// What happened, line by line.
 #[derive(Debug)]
-pub struct Told {
+pub struct StoryReport {
     /// The story.
     pub text: String,
     /// Everything in the script came, and the journal was kept.
@@ -65,7 +65,7 @@ impl Play {
         rig: SharedRig,
         pace: Pace,
         stop: Arc<AtomicBool>,
-    ) -> Told {
+    ) -> StoryReport {
         let journal = self.journal.map(|file| (file, rig.journal()));
         let mut narrator = Narrator::new(&self.script);
         let mut observed = Observed::default();
@@ -113,7 +113,7 @@ impl Play {
             tracing::error!("--journal: {error}");
             whole = false;
         }
-        Told { text, whole }
+        StoryReport { text, whole }
     }
 }
 

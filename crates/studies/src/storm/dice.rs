@@ -13,7 +13,7 @@ impl Dice {
         Self(SplitMix64::seed_from_u64(seed))
     }
 
-    /// A die that throws otherwise, for another purpose of the same seed.
+    /// Returns an independent generator for another purpose of the same seed.
     pub fn apart(&mut self) -> Self {
         Self::new(self.0.next_u64())
     }

@@ -48,13 +48,13 @@ pub struct Lived {
     pub began_us: u64,
     /// And at its end.
     pub ended_us: u64,
-    /// How.
+    /// Why it ended.
     pub end: End,
     /// What the operator said.
     pub said: Vec<Said>,
 }
 
-/// What every life shares.
+/// Inputs that all lives share.
 pub struct Shop<'a> {
     /// Configuration.
     pub plant: &'a Plant,

@@ -22,6 +22,7 @@ use super::fleet::{Folder, Order};
 use super::output::Report;
 use anyhow::Context;
 use app::exit::Exit;
+use app::progress::{PIECES, progress};
 use config::{Plant, load_recipe};
 use history::{Archive, Filter};
 use judge::Case;
@@ -93,7 +94,7 @@ struct Sea<'a> {
     calibrations: [OnceLock<Calibration>; RIGS as usize],
 }
 
-/// Runs the seeds (or the one that is asked for) and draws the report up.
+/// Runs the seeds (or the one that is asked for) and makes the report.
 ///
 /// # Errors
 /// Files that cannot be read or written, or a rig that cannot be built.
@@ -126,7 +127,7 @@ impl<'a> Sea<'a> {
     fn all(&self, seeds: &[u64]) -> anyhow::Result<Vec<Outcome>> {
         let next = AtomicU64::new(0);
         let done: Mutex<Vec<anyhow::Result<Outcome>>> = Mutex::new(Vec::new());
-        let bar = crate::progress::progress(seeds.len() as u64);
+        let bar = progress(Some(seeds.len() as u64), PIECES);
         let worker = || {
             // Alarms are what a storm is made of; nobody wants to read them as they come.
             tracing::subscriber::with_default(tracing::subscriber::NoSubscriber::new(), || {

@@ -29,7 +29,7 @@ pub struct Said {
 
 /// The person.
 pub struct Operator {
-    /// What is seen.
+    /// View of the page.
     pub view: watch::Receiver<View>,
     /// Where orders go.
     pub orders: mpsc::Sender<OrderRequest>,
@@ -39,9 +39,9 @@ pub struct Operator {
     pub stop: Arc<AtomicBool>,
     /// Ends it at once.
     pub abort: Arc<AtomicBool>,
-    /// Moods.
+    /// Draws orders and waits.
     pub dice: Dice,
-    /// Where it is kept what was said.
+    /// Receives every order with its answer.
     pub said: mpsc::UnboundedSender<Said>,
 }
 

@@ -4,10 +4,10 @@ use bus::{PortError, Ports};
 use rigsim::wire::Plug;
 use tokio::io::DuplexStream;
 
-/// The plug of one line.
-pub struct PlugPorts(pub Plug);
+/// Opens the in-process stream of one line.
+pub struct WirePorts(pub Plug);
 
-impl Ports for PlugPorts {
+impl Ports for WirePorts {
     type Port = DuplexStream;
 
     async fn open(&mut self) -> Result<DuplexStream, PortError> {

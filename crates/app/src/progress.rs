@@ -1,12 +1,12 @@
-//! A progress bar on stderr, and only where somebody looks.
+//! A progress bar on stderr, hidden when stderr is no terminal.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 
-/// Template of work that is counted in pieces.
+/// Template for work that counts pieces.
 pub const PIECES: &str = "{bar:40} {pos}/{len} {per_sec} {eta}";
 
-/// The bar of work with `length` pieces; without a length it has no end.
+/// Returns the bar of work with `length` pieces; without a length the bar shows no end.
 pub fn progress(length: Option<u64>, template: &str) -> ProgressBar {
     let target = match std::io::stderr().is_terminal() {
         true => ProgressDrawTarget::stderr(),
