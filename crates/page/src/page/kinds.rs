@@ -5,10 +5,12 @@ use serde_json::{Value, json};
 use texts::Lang;
 
 /// Families of texts that the pages do not use: their texts come with alarms, reasons and refusals, or are for print only.
-const ELSEWHERE: [&str; 10] = [
+const ELSEWHERE: [&str; 12] = [
     "alarm",
     "card",
     "characteristic",
+    "fault",
+    "interruption",
     "paper",
     "paper_verdict",
     "place",
