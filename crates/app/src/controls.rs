@@ -1,4 +1,4 @@
-//! What somebody outside of a run may do to it and see of it; it outlives the run.
+//! Controls that the page, signals and scripts share with a run: flags, orders, view. They outlive the run.
 
 use super::traces::Traces;
 use machine::view::{LineTraffic, View};

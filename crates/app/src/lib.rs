@@ -49,7 +49,7 @@ use order_queue::OrderQueue;
 use source::RigSource;
 use std::time::Duration;
 
-/// Runs one lot that nobody attends; Ctrl-C stops it. `outer` hears every event.
+/// Runs one unattended lot; Ctrl-C stops it. `outer` receives every event.
 ///
 /// # Errors
 /// Bad input: a configuration, a lot or a rig that is refused before anything moves.

@@ -24,13 +24,13 @@ pub enum LotEvent {
     Ended(Box<Summary>),
 }
 
-/// Somebody who looks on: a page, a terminal, a script.
+/// Receives the events of a run: a page, a terminal, a script.
 pub trait Subscriber {
     /// Hears an event that `lot` has already taken in.
     fn hear(&mut self, event: &LotEvent, lot: &LotProgress<'_>);
 }
 
-/// Nobody looks on.
+/// Ignores every event.
 impl Subscriber for () {
     fn hear(&mut self, _: &LotEvent, _: &LotProgress<'_>) {}
 }

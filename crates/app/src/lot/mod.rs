@@ -49,7 +49,7 @@ pub struct LotRunner<'a> {
     pub db: &'a Path,
     /// What the run was started with; the lot has passed the gates.
     pub context: LotContext<'a>,
-    /// What somebody outside may do to it.
+    /// Controls shared with page, signals and scripts.
     pub controls: &'a Controls,
 }
 

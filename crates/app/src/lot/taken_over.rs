@@ -13,7 +13,7 @@ pub(super) struct TakenOver {
     pub calibration: Option<Calibration>,
     /// Uses of what wears.
     pub worn: Uses,
-    /// Alarms that nobody has seen yet.
+    /// Alarms that no person has acknowledged or seen yet.
     pub alarms: Vec<UnacknowledgedAlarm>,
     /// What the run before left inside.
     pub left: Inside,
