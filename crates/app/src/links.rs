@@ -13,11 +13,11 @@ use machine::rig::wiring::LineId;
 use rigsim::{SharedRig, pty, wire};
 use tokio::sync::mpsc;
 
-/// How long a silent module of a measuring line is asked who it is before the line goes on without it. Three tries
-/// with this grace take 0.65 s, so the host watchdogs of the line's other modules still hear their host in time.
+/// Grace for a late reply of a measuring line, ms. A silent module gets three requests for its name; with this grace they
+/// take 0.65 s, so the host watchdogs of the line's other modules receive their next sign of life in time.
 const LATE_REPLY_MS: u64 = 180;
 
-/// EEPROM writes of all modules so far; `None` on a rig, where nobody can count them.
+/// EEPROM writes of all modules so far; `None` on a real rig, whose modules keep no count.
 pub type EepromCount = Box<dyn Fn() -> Option<u64> + Send>;
 
 /// Open lines, ready for the cycle.

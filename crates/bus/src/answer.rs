@@ -81,7 +81,7 @@ pub enum LineError {
     OutOfStep {
         /// Command that was sent.
         line: String,
-        /// What was asked.
+        /// The request that this answers.
         command: Command,
     },
     /// After a damaged reply from this address, the repeated reads disagree: two modules share the address, the line
@@ -92,7 +92,7 @@ pub enum LineError {
     Contradicted {
         /// Command that was sent.
         line: String,
-        /// What was asked.
+        /// The request that this answers.
         command: Command,
     },
     /// A module sends unasked and does not stop; the line sent nothing.

@@ -16,7 +16,7 @@ const PURE: &[&str] = &[
     "handling",
     "station",
     "quality",
-    "plan",
+    "texts",
     "view",
     "report",
 ];

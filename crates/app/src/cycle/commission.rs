@@ -1,5 +1,5 @@
-//! Before anything moves: every module is asked who it is and how it is set, and compared with the wiring. Nobody
-//! waits for an emergency stop yet, so that a question is tried as often as the bus settings allow, on every line.
+//! Compares every module's name and settings with the wiring before anything moves. Outputs are still safe, so no
+//! emergency stop waits, and each line repeats a question as often as the bus settings allow.
 
 use super::traffic::{Purpose, Traffic};
 use bus::Pace;

@@ -38,7 +38,7 @@ pub struct Summary {
     pub ended: &'static str,
     /// Why it ended with status 3; null when it did not.
     pub cause: Option<Cause>,
-    /// EEPROM writes of all modules since the lot began; absent on a rig, where nobody can count them.
+    /// EEPROM writes of all modules since the lot began; absent on a real rig, whose modules keep no count.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub eeprom_writes: Option<u64>,
     /// Whether the simulated rig looked for bodies that touch; absent on a real rig.

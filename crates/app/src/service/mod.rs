@@ -1,7 +1,7 @@
 //! The rig under one program for a whole day. Page and API stand over the rig; lots come and go.
 //!
 //! The rig is always under one *run*, as the command `run` has it. Between lots it is one without a lot: the machine
-//! stays as it is until somebody resets it, inputs and alarms are shown, motions by hand are possible, and what is found
+//! stays as it is until an operator resets it, inputs and alarms are shown, motions by hand are possible, and what is found
 //! inside is discharged. A lot that is ordered at the page ([`router`]) and passes the gates ends that run in a turn of
 //! its station; then the run of the lot begins with what every lot begins with: the modules are verified, the machine
 //! is brought home, and the rig is calibrated unless it is. When the lot ends the rig is between lots again.
@@ -117,7 +117,7 @@ impl Service {
         self.page.first_login.take()
     }
 
-    /// Works until somebody ends the program; `outer` hears every run.
+    /// Serves until a signal ends the program; `outer` receives the events of every run.
     ///
     /// # Errors
     /// A history that cannot be opened, or a rig that cannot be loaded.
@@ -133,7 +133,7 @@ impl Service {
         exit
     }
 
-    /// Lot after lot, until somebody ends the program.
+    /// Runs one lot after the other until a signal ends the program.
     async fn work(&mut self, outer: &mut dyn Subscriber) -> anyhow::Result<Exit> {
         let mut next = self.first.take();
         let mut rests = State::Stopped;

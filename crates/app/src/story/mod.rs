@@ -1,8 +1,8 @@
 //! A story: a script of troubles and orders on the simulated rig, and what happened, line by line.
 //!
 //! A script ([`script`]) says which faults strike the rig and what a person at the screen does, each after an event,
-//! not at a time: so it tells the same story on a faster line. What is seen is told as a mechanic who stood
-//! beside it would (`narrator`). Seconds count from the first trouble, in whole ones, and only of what has to do with it.
+//! not at a time: so it tells the same story on a faster line. The `narrator` writes down what a mechanic
+//! beside the rig sees. It counts whole seconds from the first trouble and leaves out what has nothing to do with it.
 //!
 //! A person is at the screen: alarms and stops end nothing. The story ends when the script has been played and the
 //! lot is complete, or when nothing has happened for [`PATIENCE`].

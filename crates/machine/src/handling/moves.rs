@@ -238,22 +238,10 @@ impl Move {
     }
 
     /// The bin that the axis goes to.
-    pub const fn bin(self) -> Option<Bin> {
-        match self {
-            Move::AxisTo(AxisStation::Bin(bin)) => Some(bin),
-            Move::AxisTo(AxisStation::Nest | AxisStation::Park)
-            | Move::EscapementRelease
-            | Move::EscapementHold
-            | Move::PusherExtend
-            | Move::PusherRetract
-            | Move::ClampClose
-            | Move::ClampOpen
-            | Move::ProbesUp
-            | Move::ProbesDown
-            | Move::SortDown
-            | Move::SortUp
-            | Move::GripperClose
-            | Move::GripperOpen => None,
+    pub fn bin(self) -> Option<Bin> {
+        match self.station()? {
+            AxisStation::Bin(bin) => Some(bin),
+            AxisStation::Nest | AxisStation::Park => None,
         }
     }
 }

@@ -77,8 +77,8 @@ pub fn command_lines(text: &str) -> Vec<(usize, String)> {
     found
 }
 
-/// Splits a command line into the words that a shell gives to the program, without its name. A placeholder in capitals
-/// becomes a number, which stands for a name as well.
+/// Splits a command line into the words that a shell gives to the program, without its name. A word in capitals
+/// alone, such as `LOT`, becomes `1`, which the parser takes for a name and for a number.
 pub fn arguments(line: &str) -> Vec<String> {
     let (mut words, mut word, mut quote) = (Vec::new(), None::<String>, None);
     for c in line.chars() {
