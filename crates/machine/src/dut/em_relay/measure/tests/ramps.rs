@@ -1,4 +1,4 @@
-//! One ramp after another: where the supply is when the next one begins.
+//! Consecutive ramps: the position of the supply when the next ramp begins.
 
 use super::super::{Stage, fine};
 use super::{PULLED, RESTING, at_23_c, context, watched};
@@ -55,7 +55,7 @@ fn an_operate_ramp_is_not_armed_while_the_release_ramp_before_it_still_falls() {
         fine::conclude(&context, &event, &mut state, (Direction::Falling, 0));
         let acts = state.enter(Stage::OperateFine(0), &context);
         let falls_ms = (way.span.0 - 0.045) / 1.5 * 1e3 - gate_ms;
-        // The word that arms and the approach take longer; a ramp stands while they do.
+        // Arming and approach take longer; the ramp waits for them.
         let armed_ms = until_armed(&acts).as_seconds() * 1e3;
         assert!(armed_ms >= falls_ms.min(24.0), "{armed_ms} of {falls_ms}");
         assert!(sd_v < 0.02 || falls_ms > 30.0 && armed_ms >= falls_ms);
@@ -110,7 +110,7 @@ fn a_release_ramp_turns_the_one_before_it_round_and_prolongs_an_operate_ramp() {
         }
         until_armed(&state.enter(Stage::ReleaseFine(0), &context)).as_seconds() * 1e3
     };
-    // A repetition from nothing to 0.15 V at 1.5 V/s; to 0.28 V from 0.2 V, of which 74 ms were still to come.
+    // A repetition from 0 to 0.15 V at 1.5 V/s; to 0.28 V from 0.2 V, with 74 ms left to run.
     let (falling, rising) = (wait_ms(false), wait_ms(true));
     assert!((100.0..110.0).contains(&falling), "{falling}");
     assert!((130.0..150.0).contains(&rising), "{rising}");

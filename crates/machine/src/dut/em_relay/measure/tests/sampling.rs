@@ -1,4 +1,4 @@
-//! How often coil and contacts are looked at, as the recipe asks.
+//! Number of readings of coil and contacts that a recipe demands.
 
 use super::super::{Stage, Test};
 use super::{at_23_c, context, good, scan};
@@ -15,7 +15,7 @@ use crate::rig::sample::Sample;
 use std::sync::Arc;
 use units::{Unit, Volt};
 
-/// The default recipe with other samplings.
+/// The default recipe with changed strategies.
 fn with(change: impl Fn(&mut Strategies)) -> Context {
     let mut context = context();
     change(&mut Arc::make_mut(&mut context.relay).test.strategy);
@@ -84,7 +84,7 @@ fn a_coil_is_scanned_as_often_as_its_recipe_says_and_the_mean_is_less_in_doubt()
     assert!((u(&reading(1)) / u(&reading(4)) - 2.0).abs() < 1e-9);
 }
 
-/// A test at its end, with so many closures of NO and NC behind it.
+/// A test at its end, after `closures` closures of NO and NC.
 fn after(context: Context, closures: usize, mohm: f64) -> Test {
     let per_v = context.calibration.contact_mohm_per_v.value;
     let mut test = Test::begin(context, Shop::at_rest().now);

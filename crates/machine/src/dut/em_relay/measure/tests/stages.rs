@@ -172,9 +172,9 @@ fn an_event_after_the_ramp_has_stopped_is_looked_for_around_its_end() {
 fn a_coarse_release_without_a_break_is_searched_by_halves() {
     for readings in [
         watched(false, PULLED, 0.0),
-        // The ramp has ended long before: the time is no voltage.
+        // The ramp ended long before: the gate holds time, not voltage.
         watched(true, RESTING, 60.0),
-        // It ends after 41.1 ms, and its last step may have been made.
+        // The ramp ends after 41.1 ms; its last step may have been made.
         watched(true, RESTING, 40.6),
     ] {
         let mut state = ramp_from(4.0, 4.0);
@@ -278,8 +278,8 @@ fn a_closure_with_the_source_in_compliance_fails_by_contact() {
     assert_ends(&state, bins::CONTACT, "NC contact");
 }
 
-/// The default context on the strategy `ramp`, with a law taught by parts of which each millisecond of operate time
-/// showed 96 mV more.
+/// The default context on the strategy `ramp`, with a model in which each millisecond of operate time adds 96 mV of
+/// overshoot.
 fn on_the_ramp() -> Context {
     let mut law = OvershootModel::guess(0.85);
     for at in 0..40 {
@@ -345,7 +345,7 @@ fn a_part_unlike_those_that_taught_the_law_is_measured_by_the_fine_ramp() {
     assert!(expected.half_width > Volt(0.01), "{expected:?}");
 }
 
-/// The last word to the source before an output is switched on.
+/// Last state written to the source before an output is switched on.
 fn source_before(switched: DigitalOut, acts: &[Act]) -> Option<bool> {
     let words = acts.iter().filter_map(|act| match act {
         Act::Board(word) => Some(word),

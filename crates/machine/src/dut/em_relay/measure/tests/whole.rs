@@ -19,7 +19,7 @@ use crate::rig::point::Point;
 use crate::rig::sample::Sample;
 use units::{Span, Volt};
 
-/// Each stage in the order of a good part: its acts, and what they leave the armature doing.
+/// Each stage of a good part in order: its acts, and the state of the armature after them.
 fn stages_of_a_good_part() -> Vec<(Stage, Vec<Act>, Armature)> {
     let context = context();
     let mut state = at_23_c();
@@ -136,7 +136,7 @@ fn a_test_leaves_source_arm_and_drive_off() {
     }
 }
 
-/// How long a board write is followed by waiting, up to the next act that looks at something.
+/// Total wait after a board write, up to the next act that reads.
 fn waits_after(acts: &[Act]) -> Span {
     let mut waited = Span(0);
     for act in acts {
@@ -179,8 +179,8 @@ fn whoever_switches_under_a_live_source_waits_for_the_board_to_take_it_off_first
 
 #[test]
 fn nothing_is_timed_within_two_milliseconds_of_a_live_source() {
-    // Between the word that takes the source off and the one that drops the drive lies at least one
-    // transaction, 3 ms at the highest baud rate: the source is off and the selection has changed by then.
+    // At least one transaction, 3 ms at the highest baud rate, lies between the writes that take the source off and
+    // drop the drive: source and selection have switched by then.
     let (_, acts) = all_acts()
         .into_iter()
         .find(|(stage, _)| *stage == Stage::TimedRelease)
@@ -249,7 +249,7 @@ fn board() -> Job {
     Job::Read(inputs.into_iter().map(Point::Input).collect())
 }
 
-/// Steps a test through good answers up to a job, then lets that job fail.
+/// Steps a test through good replies up to `job`, then fails that job.
 fn fails_at(job: &Job) -> Test {
     let mut shop = Shop::at_rest();
     shop.track(23.0);
