@@ -1,5 +1,5 @@
-//! Lower bounds that stored curves prove for a parameter without a value: as long as the contact has not moved, the
-//! threshold or the time is greater than the curve shows.
+//! Lower bounds that stored curves prove for a parameter without a value: while the contact has not moved, threshold
+//! or time exceed what the curve shows.
 //!
 //! | parameter | is at least |
 //! |---|---|
@@ -39,7 +39,7 @@ pub fn at_least(curves: &[Curve], parameter: Parameter, nominal_v: f64) -> Optio
 
 /// One event of the curves.
 enum Event {
-    /// Command of a supply output, by its place in [`SUPPLY`], volts.
+    /// Command of a supply output, by its index in [`SUPPLY`], volts.
     Asked(usize, f64),
     /// Drive on or off.
     Drive(bool),
@@ -132,7 +132,7 @@ fn events(curves: &[Curve]) -> Vec<(i64, Event)> {
 mod tests {
     use super::*;
 
-    /// A signal from pairs of millisecond and value.
+    /// Curve of a signal from pairs of millisecond and value.
     fn curve(signal: &str, samples: &[(i64, f64)]) -> Curve {
         Curve {
             signal: signal.into(),

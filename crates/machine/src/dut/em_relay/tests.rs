@@ -1,4 +1,4 @@
-//! Recipe, reference parts and instruments that err by nothing.
+//! Recipe, reference parts and instruments without error.
 #![allow(clippy::unwrap_used)]
 
 use crate::dut;
@@ -24,7 +24,7 @@ struct Instruments {
     accuracy: AccuracySettings,
 }
 
-/// The default recipe on instruments that err by nothing, lags known.
+/// The default recipe on instruments without error, overshoot known.
 pub fn context() -> Context {
     let recipe: Recipe = toml::from_str(include_str!(
         "../../../../../config/recipes/jzc-22f-012.toml"
@@ -48,7 +48,7 @@ pub fn context() -> Context {
     }
 }
 
-/// The same as the station holds it, with the reference parts of the plant.
+/// The same context as a device, with the reference parts of the plant.
 pub fn device() -> dut::Device {
     device_of(context())
 }

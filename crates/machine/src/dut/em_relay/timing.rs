@@ -1,16 +1,15 @@
 //! Times from the gated counters.
 //!
-//! Gate 0 is open from the start event to the latched first make, gate 1 while the window is open
-//! and the selected contact is not made. So `N0 / f` is the operate or release time without bounce
-//! and `(N1 - N0) / f` the open time of the bounces after the first make. A count is the floor of a
-//! length with a random phase: unbiased, sd at most half a period. Bounces shorter than one period
-//! of the 50 kHz clock (20 us) stay unseen.
+//! Gate 0 is open from the start event to the latched first make, gate 1 while the window is open and the selected
+//! contact is open. So `N0 / f` is the operate or release time without bounce, and `(N1 - N0) / f` the open time of
+//! the bounces after the first make. A count is the floor of a length with a random phase: unbiased, sd at most half a
+//! period. Bounces shorter than one period of the 50 kHz clock (20 us) are not counted.
 
 use crate::gauge::Factor;
 use crate::gauge::budget::{Budget, Reading, rectangular};
 use units::Unit;
 
-/// The reference clock at both counters.
+/// Reference clock of both counters.
 #[derive(Debug, Clone, Copy)]
 pub struct Clock {
     /// Nominal frequency, hertz.
@@ -19,17 +18,17 @@ pub struct Clock {
     pub tolerance_ppm: f64,
 }
 
-/// Counts that a counter advanced between two reads, across its 32-bit wrap.
+/// Returns the counts of a counter between two reads, across its 32-bit wrap.
 pub fn counts(before: u32, after: u32) -> u32 {
     after.wrapping_sub(before)
 }
 
-/// Root mean square error of a count with uniform phase and uniform length: `1 / (sqrt(6) f)`.
+/// Returns the root mean square error of a count with uniform phase and uniform length: `1 / (sqrt(6) f)`.
 fn count_u_ms(clock: Clock) -> f64 {
     1e3 / (clock.hz * 6f64.sqrt())
 }
 
-/// Length of one gate in milliseconds.
+/// Returns the length of one gate in milliseconds.
 pub fn gate_ms(gate: u32, delay_us: Factor, clock: Clock) -> Reading {
     let value = f64::from(gate) / clock.hz * 1e3 - delay_us.value / 1e3;
     let budget = Budget::default()
@@ -43,7 +42,7 @@ pub fn gate_ms(gate: u32, delay_us: Factor, clock: Clock) -> Reading {
     }
 }
 
-/// Bounce-open time in milliseconds from both gates.
+/// Returns the total open time of the bounces in milliseconds from both gates.
 ///
 /// Both counts are floors of lengths on one clock, so each brings its own count error.
 pub fn bounce_ms(gate0: u32, gate1: u32, delay_us: [Factor; 2], clock: Clock) -> Reading {

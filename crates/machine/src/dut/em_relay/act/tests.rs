@@ -1,4 +1,4 @@
-//! What the acts of a stage are on the default rig, and how their readings are put together again.
+//! Acts of a stage on the default rig, and the readings that they return.
 #![allow(clippy::unwrap_used)]
 
 use super::{Act, Read};
@@ -69,7 +69,7 @@ fn readings_are_put_together_as_the_stage_has_asked_for_them() {
         assert!(matches!(doing, Doing::Job(_)), "{doing:?}");
         shop.after(4);
         shop.gate(Counter::Gate0, n);
-        // The second counter is not asked again.
+        // The rig reads the second counter only twice.
         if n < 2 {
             shop.gate(Counter::Gate1, 100);
         }

@@ -1,4 +1,4 @@
-//! What a recipe may not ask of modules that cannot give it, and what is not worth judging.
+//! Recipes that the modules cannot perform, and limits too narrow to judge.
 #![allow(clippy::unwrap_used)]
 
 use super::super::bins;
@@ -52,7 +52,7 @@ fn module<'a>(wiring: &'a mut Wiring, name: &str) -> &'a mut Module {
     modules.find(|module| module.name == name).unwrap()
 }
 
-/// Key, what was found and what was expected, of a plant that has been changed.
+/// Key, found and expected of the fault of a changed plant.
 fn refused(strategy: Strategy, change: impl Fn(&mut Wiring)) -> [String; 3] {
     let (mut wiring, accuracy) = plant();
     change(&mut wiring);
@@ -60,7 +60,7 @@ fn refused(strategy: Strategy, change: impl Fn(&mut Wiring)) -> [String; 3] {
     [fault.key, fault.found, fault.expected]
 }
 
-/// Strategies that the plant, changed so, cannot perform.
+/// Strategies that the changed plant cannot perform.
 fn hindered(change: impl Fn(&mut Wiring)) -> Vec<Strategy> {
     let (mut wiring, accuracy) = plant();
     change(&mut wiring);
@@ -218,7 +218,7 @@ fn limits_that_the_guard_bands_fill_are_refused_with_what_they_leave() {
         recipe.limits = toml::from_str(&table).unwrap();
         recipe.feasible(&wiring, &accuracy)
     };
-    // 0.18 K of thermometer and part are 0.28 ohm of a 400 ohm coil: 2 U are 1.12 ohm.
+    // 0.18 K of thermometer and part are 0.28 ohm of a 400 ohm coil: 2 U is 1.12 ohm.
     around(400.0, 1.3).unwrap();
     let fault = around(400.0, 0.9).unwrap_err();
     assert_eq!(fault.key, format!("limits.{}", Parameter::CoilResistance));

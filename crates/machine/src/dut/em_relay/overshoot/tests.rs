@@ -1,8 +1,8 @@
-//! What the law of the overshoot knows after so many parts.
+//! Prediction and uncertainty of the overshoot model after few and many parts.
 
 use super::*;
 
-/// A part of a lot whose lag of 0.85 V follows its times, less so its threshold; no two parts alike.
+/// A part of a lot whose overshoot of 0.85 V follows its times, and less so its threshold; every part differs.
 fn part(at: u32) -> (Shown, Volt) {
     let turn = |by: f64| (f64::from(at) * by).fract() - 0.5;
     let (slow, holding, high) = (0.16 * turn(0.618), 0.15 * turn(0.382_7), 0.11 * turn(0.271));
@@ -18,7 +18,7 @@ fn part(at: u32) -> (Shown, Volt) {
     (shown, Volt(fine))
 }
 
-/// Taught by so many parts, each read wrong by `noise_v` in turn upwards and downwards.
+/// The model after `parts` parts, whose indications err by `noise_v` alternately upwards and downwards.
 fn taught(parts: u32, noise_v: f64) -> OvershootModel {
     let mut law = OvershootModel::guess(0.80);
     for at in 0..parts {
@@ -67,7 +67,7 @@ fn scatter_about_the_law_stays_in_the_uncertainty_however_many_parts_teach() {
 
 #[test]
 fn what_the_line_has_taken_for_itself_is_not_taken_for_agreement() {
-    // Ten parts and six terms: what is left about the line is less than the scatter of the parts.
+    // Ten parts and six terms: the residual about the line is less than the scatter of the parts.
     let u_v = taught(10, 0.006).of(&part(7).0).u_v;
     assert!(u_v > 0.006, "{u_v}");
     for parts in [15, 20, 30] {
@@ -174,7 +174,7 @@ fn parts_that_go_on_to_disagree_with_the_law_win() {
     let (shown, fine) = part(60);
     let now = law.of(&shown);
     let error_v = now.volts - (shown.indicated - fine).0 - 0.2;
-    // The twelve have a fifth of the say.
+    // The twelve have a fifth of the weight.
     assert!(
         error_v.abs() < 0.06 && error_v.abs() < 2.0 * now.u_v,
         "{error_v} {now:?}"

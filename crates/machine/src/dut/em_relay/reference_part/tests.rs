@@ -1,4 +1,4 @@
-//! What reference parts teach, and which of them are refused.
+//! Overshoot from reference parts, and the parts that are refused.
 #![allow(clippy::unwrap_used)]
 
 use crate::dut::em_relay::Parameter;
@@ -16,7 +16,7 @@ use units::{Celsius, Unit, Volt};
 
 const REFERENCE: Celsius = Celsius(23.0);
 
-/// What a test finds on a reference part whose ramps overshoot by so much, at 23 C.
+/// Record of a reference part whose ramps overshoot by `operate_v` and `release_v`, at 23 C.
 fn tested(part: &ReferencePart, operate_v: f64, release_v: f64, coil_off_ohm: f64) -> TestRecord {
     let fine = |volts: f64| Some(Ramp::fine_only(Volt(volts)));
     let mut record = TestRecord::default();

@@ -1,4 +1,4 @@
-//! Three outputs add up to what was asked, whatever the outputs' own gain and offset.
+//! Sums of three outputs with different gains and offsets.
 
 use crate::dut::em_relay::Calibration;
 use crate::dut::em_relay::act::Act;
@@ -9,7 +9,7 @@ use crate::dut::em_relay::tests::context;
 use crate::gauge::Factor;
 use units::{Span, Volt};
 
-/// Outputs that err by as much as their makers allow, each its own way.
+/// Outputs at the limits of their accuracy, each with another error.
 fn crooked() -> Calibration {
     let line = |gain, offset_v| OutputLine {
         gain: Factor::new(gain, 0.0),

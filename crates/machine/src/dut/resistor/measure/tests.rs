@@ -1,4 +1,4 @@
-//! A resistor measured with replies set by hand.
+//! A resistor measured with given replies.
 #![allow(clippy::unwrap_used)]
 
 use super::*;
@@ -38,7 +38,7 @@ fn device(limits: &str) -> Device {
     }
 }
 
-/// Tests a part that draws what `ohm` draws; `None` reads over range. Returns the test and how often it was read.
+/// Tests a part of `ohm`; `None` reads over range. Returns the test and the number of readings.
 fn tested(limits: &str, ohm: Option<f64>) -> (Test, usize) {
     let mut shop = Shop::at_rest();
     let device = device(limits);
@@ -56,7 +56,7 @@ fn tested(limits: &str, ohm: Option<f64>) -> (Test, usize) {
             Progress::Doing(Doing::Job(job)) => {
                 if matches!(job, crate::instrument::act::Job::Read(_)) {
                     reads += 1;
-                    // Volts at the terminal: full scale stands for over range.
+                    // Volts at the terminal: full scale reads as over range.
                     shop.volts_at(
                         device.points.current,
                         ohm.map_or(10.0, |ohm| LEVEL_V / ohm * device.promise.volt_per_ampere),
