@@ -1,4 +1,4 @@
-//! Answers to orders: performs an order, or refuses it with the reason.
+//! Answers to orders: the station performs an order, or refuses it with the reason.
 
 use super::Station;
 use super::orders::{Order, Refused, shelf_minutes};
@@ -11,7 +11,7 @@ use crate::rig::image::Image;
 use units::{RigTime, Span};
 
 impl Station {
-    /// Performs an order, or returns why not.
+    /// Performs an order, or returns the reason of its refusal.
     pub(super) fn order(
         &mut self,
         order: Order,
@@ -69,19 +69,19 @@ impl Station {
         Ok(())
     }
 
-    /// Answers the orders of the push buttons; returns the alarms of stuck ones.
+    /// Answers the orders of the push buttons; returns the alarms of stuck buttons.
     pub(super) fn pressed(&mut self, now: RigTime, image: &Image, wants: &mut Wants) -> Vec<Alarm> {
         let (commands, stuck) = self.alarms.panel.look(now, image, self.machine.state);
         for command in commands {
             let answer = self.order(Order::Command(command), now, wants);
-            // An unattended machine has no person to start it again.
+            // No person can restart an unattended machine.
             self.machine.stopping |= command == Command::Stop && !self.plan.attended;
             wants.pressed.push((command, answer));
         }
         stuck
     }
 
-    /// Checks that the state allows a command now; a screen shows the reason beside the button.
+    /// Checks that the state allows a command now; a screen shows the reason next to the button.
     ///
     /// # Errors
     /// Returns the reason.
@@ -125,7 +125,7 @@ impl Station {
         Ok(())
     }
 
-    /// Checks that the operator may leave the lot as it is, so that another one can begin.
+    /// Checks that the operator may leave the lot as it is, so that another lot can begin.
     ///
     /// # Errors
     /// Returns the reason.
@@ -154,7 +154,7 @@ impl Station {
         }
     }
 
-    /// Returns the refusal with the command that leads to rest.
+    /// Returns the refusal, with the command that brings the machine to rest.
     fn not_at_rest(&self) -> Refused {
         let state = self.machine.state;
         let first = if packml::is_aborted(state) {
@@ -202,7 +202,7 @@ impl Station {
         Ok(())
     }
 
-    /// Checks that a motion of the sequence waits for a step.
+    /// Checks that a motion of the sequence is waiting for a step.
     ///
     /// # Errors
     /// Returns the reason.
@@ -216,7 +216,7 @@ impl Station {
         Ok(())
     }
 
-    /// Takes note of a jog: the machine is no longer homed.
+    /// Records a jog: the machine is no longer homed.
     pub fn jogged(&mut self) {
         self.line.homed = false;
     }

@@ -1,4 +1,4 @@
-//! Activity of the station for screens, in more detail than the state of the outer machine.
+//! Activity of the station for views, in more detail than the state of the outer machine.
 
 use super::packml::State;
 
@@ -15,13 +15,13 @@ pub enum Doing {
     Discharging,
     /// Measures the references.
     Calibrating,
-    /// Tests a part; the name of the stage.
+    /// Tests a part, at the named stage.
     Testing(&'static str),
     /// Handles parts of the lot.
     Running,
     /// Handles reference parts.
     ReferenceParts,
-    /// None of these; the state of the outer machine.
+    /// Rests in this state of the outer machine.
     Resting(State),
 }
 
@@ -57,7 +57,7 @@ impl Doing {
         }
     }
 
-    /// Returns the words of a view: the code with blanks, followed by the stage.
+    /// Returns the words for a view: the code with blanks, followed by the stage.
     pub fn name(self) -> String {
         let code = self.code().replace('_', " ");
         match self.stage() {

@@ -1,4 +1,4 @@
-//! Gates of a lot: conditions for judging the next part, in addition to those of the machine.
+//! Gates of a lot: conditions for the test of the next part, in addition to those of the machine.
 //!
 //! - *First article*: the first parts get confirmation measurements, every result a mean.
 //! - *Reference check*: compares a reference part, measured like a first article, with its certificate: at the start on a
@@ -75,17 +75,17 @@ pub struct WearSettings {
 /// State of the gates.
 #[derive(Debug, Default)]
 pub(super) struct Gates {
-    /// Only reference parts are judged, until one agrees with its certificate.
+    /// True while only reference parts are tested, until one agrees with its certificate.
     checking: bool,
     /// Time of the last good check, and number of parts of the lot in the nest until then.
     good: Option<(RigTime, u64)>,
     judged: u64,
     failed: u64,
-    /// The alarm of the reject-rate limit was raised.
+    /// True after the alarm of the reject-rate limit.
     reject_rate_reported: bool,
-    /// Counters whose alarm was raised.
+    /// Counters after their alarm.
     worn: Vec<Wearing>,
-    /// The probe contact exceeds its limit, and its alarm was raised.
+    /// True while the probe contact exceeds its limit, after its alarm.
     fouled: bool,
 }
 
@@ -95,7 +95,7 @@ impl Gates {
         self.checking
     }
 
-    /// Takes note that the rig agrees with a certificate.
+    /// Records a good check at `now`.
     pub(super) fn good(&mut self, now: RigTime, parts: u64) {
         let before = self.good.map_or(0, |(_, parts)| parts);
         assert!(parts >= before, "fewer parts of the lot than before");

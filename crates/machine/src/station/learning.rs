@@ -1,5 +1,5 @@
-//! Learning before and during a lot: factors from the references, and corrections from reference parts and parts of the
-//! lot.
+//! Learning before and during a lot: factors from the references, and corrections from reference parts and parts of
+//! the lot.
 
 use super::Station;
 use super::gates::Outcome;
@@ -28,7 +28,7 @@ impl Station {
         self.device.conclude_references(&runner.readings, made)
     }
 
-    /// Discards the calibration: the next start measures references and reference parts again, which must lie in front.
+    /// Discards the calibration: the next start measures references and reference parts again.
     pub(super) fn recalibrate(&mut self) {
         self.plan.calibrated = false;
         self.referenced = false;
@@ -39,7 +39,7 @@ impl Station {
         self.device.forget_calibration();
     }
 
-    /// Learns from the parts judged in this turn, and checks them against the gates.
+    /// Learns from the parts judged in this turn, and applies the gates to them.
     pub(super) fn learn(&mut self, wants: &mut Wants) {
         let mut outcome = Outcome::default();
         for judged in &wants.record.parts.judged {
@@ -64,7 +64,7 @@ impl Station {
         wants.record.checked = outcome.checked;
     }
 
-    /// Returns the serial number of the reference part in the nest, unless it is there for a check.
+    /// Returns the serial number of the reference part in the nest, unless it serves a check.
     pub(super) fn teaching(&self) -> Option<&str> {
         match self.line.ledger.part(Place::NEST).map(|part| &part.kind) {
             Some(Kind::Reference(serial)) if !self.lot.gates.is_checking() => Some(serial),
@@ -72,7 +72,7 @@ impl Station {
         }
     }
 
-    /// Completes the calibration without the last reference part, which was interrupted.
+    /// Completes the calibration without the last reference part, whose test was interrupted.
     pub(super) fn end_reference_run(&mut self, wants: &mut Wants) {
         if self.referenced && self.lot.reference_left.is_empty() && self.is_calibrating() {
             let mut outcome = Outcome::default();

@@ -18,11 +18,11 @@ pub(super) struct Line {
     pub ledger: Ledger,
     pub mechanism: Mechanism,
     pub recovery: Recovery,
-    /// Every actuator is home, and no jog or safe state came since.
+    /// True while every actuator is homed; a jog and the safe state reset it.
     pub homed: bool,
-    /// Dark beams with the time since when.
+    /// Dark beams, each with the time since which it is dark.
     pub dark: Vec<(DigitalInput, RigTime)>,
-    /// Motions that wait for the order `step` in maintenance.
+    /// Motions that wait for the order `step`, in maintenance.
     pub stepwise: VecDeque<Move>,
     /// Motions that wait until every end sensor is debounced.
     pub postponed: Vec<Move>,
@@ -42,7 +42,7 @@ impl Line {
         }
     }
 
-    /// Returns feeder and recovery, and the context of a turn for either.
+    /// Returns feeder, recovery, and the context of a turn for both.
     pub fn at<'a>(
         &'a mut self,
         now: RigTime,
@@ -80,7 +80,7 @@ impl Line {
         assert!(self.dark.len() <= beams, "a dark beam without a bin");
     }
 
-    /// Forgets every position, because the outputs have gone safe.
+    /// Forgets every position after the outputs have gone safe.
     pub fn cut_off(&mut self) {
         self.feeder.cut_off(&self.ledger);
         self.stepwise.clear();
@@ -89,7 +89,7 @@ impl Line {
         self.homed = false;
     }
 
-    /// Takes note of a motion that the rig has cleared and driven.
+    /// Records a motion that the guard has cleared and the rig has driven.
     pub fn driven(&mut self, movement: Move, now: RigTime, image: &Image) {
         self.mechanism.driven(movement, now, image);
         self.feeder.driven(movement, &mut self.ledger, now);
@@ -101,7 +101,7 @@ impl Line {
         self.mechanism.situation(parts, now, image)
     }
 
-    /// Holds motions back until every end sensor is debounced: for a doubtful one the guard assumes the whole stroke.
+    /// Holds motions back until every end sensor is debounced: for an undecided one the guard assumes the whole stroke.
     pub fn postpone(&mut self, now: RigTime, wants: &mut Wants) {
         self.postponed.append(&mut wants.rig.motions);
         if self.mechanism.is_in_doubt() {
@@ -115,7 +115,7 @@ impl Line {
         self.mechanism.keep_waiting(&waiting.collect::<Vec<_>>());
     }
 
-    /// Returns true when every part is where it may wait.
+    /// Returns true when every part is in a waiting position.
     pub fn is_at_rest(&self) -> bool {
         self.feeder.is_at_rest(!self.dark.is_empty())
             && !self.ledger.holds(Place::Falling)

@@ -1,7 +1,7 @@
 //! The station: the sequence as a specification.
 //!
-//! `Station::step(now, inputs) -> Wants` is a function of its state and arguments: no clock, no I/O, no
-//! `async`. The caller may call it at any time; the states hold the deadlines.
+//! `Station::step(now, inputs) -> Wants` is a function of its state and arguments: no clock, no I/O, no `async`. The
+//! caller may call it at any time; the states hold the deadlines.
 //!
 //! The outer machine is [`packml`]; `states` performs each state, `asked` answers orders.
 //! 1. `Resetting`: [`crate::handling::recovery`] brings every actuator to its rest end and discharges what is found inside;
@@ -11,12 +11,12 @@
 //! 4. `Completing`, `Stopping`, `Holding`, `Suspending`: the parts inside go to where they may wait.
 //!
 //! Trouble: the [`catalogue`] gives the reaction to an [`trouble::Alarm`]; the [`annunciator`] lists it until its
-//! cause is gone and a person has acknowledged it. After `clear` and `reset` the station continues with the parts inside. A
-//! part inside is void, "interrupted". A stale sensor is trouble, never a guess.
+//! cause is gone and a person has acknowledged it. After `clear` and `reset` the station continues; a part inside is
+//! void, "interrupted". A stale sensor raises an alarm; the station never guesses its state.
 //!
-//! A run ends with its lot, or when a person leaves the lot for another one. Without a person at a screen
-//! ([`Plan::attended`] is false) an alarm that needs one ends the run, too. The station resets and starts a lot by
-//! itself; between lots ([`Plan::between_lots`]) it acts only on orders.
+//! A run ends with its lot, or when a person leaves the lot for another one. Unattended ([`Plan::attended`] is false)
+//! an alarm that needs a person ends the run, too, and the station resets and starts a lot by itself. Between lots
+//! ([`Plan::between_lots`]) it acts only on orders.
 
 pub mod annunciator;
 mod asked;
@@ -61,9 +61,9 @@ use wants::{Inputs, Wants};
 /// Plan of a run.
 #[derive(Debug, Clone)]
 pub struct Plan {
-    /// Parts of the lot; `None` goes on until stopped.
+    /// Number of parts of the lot; `None` for an endless lot.
     pub count: Option<u64>,
-    /// Serial numbers of the reference parts at the head of the magazine, used when there is no calibration.
+    /// Serial numbers of the reference parts at the head of the magazine, used without a calibration.
     pub golden: Vec<String>,
     /// True with a valid calibration: the run measures neither references nor reference parts.
     pub calibrated: bool,
@@ -71,18 +71,18 @@ pub struct Plan {
     pub valid_us: i64,
     /// Wall clock at rig time zero, microseconds since 1970 UTC.
     pub epoch_us: i64,
-    /// The rig is simulated.
+    /// True on a simulated rig.
     pub simulated: bool,
     /// True when a person is at a screen: alarms and stops do not end the run.
     pub attended: bool,
-    /// State in which the last lot left the machine, between lots; none while there is a lot. Between lots the machine
+    /// State in which the last lot left the machine, between lots; `None` during a lot. Between lots the machine
     /// discharges parts found inside and begins nothing by itself.
     pub between_lots: Option<State>,
     /// Gates of the lot.
     pub lot: LotSettings,
     /// Uses of wearing parts before this run.
     pub worn: Uses,
-    /// Parts that the run before left inside.
+    /// Parts that the previous run left inside.
     pub left: Inside,
 }
 
@@ -102,10 +102,10 @@ enum Start {
 #[derive(Debug)]
 pub struct Station {
     plan: Plan,
-    /// The kind under test, with its calibration.
+    /// Recipe and calibration of the device under test.
     device: Device,
     start: Start,
-    /// References were measured in this run.
+    /// True once this run has measured the references.
     referenced: bool,
     machine: Machine,
     line: Line,
@@ -118,7 +118,7 @@ pub struct Station {
 struct LotControl {
     gates: Gates,
     reference_left: VecDeque<String>,
-    /// Reference parts that this run has planned so far.
+    /// Number of reference parts that this run has planned so far.
     reference_planned: u64,
     /// True once calibration and reference parts are complete.
     began: bool,
@@ -142,9 +142,9 @@ struct Alarms {
     timeouts: Timeouts,
     panel: Panel,
     lamps: Lamps,
-    /// When the emergency-stop chain was last seen open.
+    /// Time at which the emergency-stop chain was last open.
     chain_open: Option<RigTime>,
-    /// Safety inputs were read since the start or since the modules were verified.
+    /// True once the safety inputs were read after the start or the last verification.
     sensed: bool,
 }
 
@@ -178,12 +178,12 @@ impl Station {
         station
     }
 
-    /// The part ledger.
+    /// Returns the part ledger.
     pub fn ledger(&self) -> &Ledger {
         &self.line.ledger
     }
 
-    /// Sensors and motions.
+    /// Returns sensors and motions.
     pub fn mechanism(&self) -> &Mechanism {
         &self.line.mechanism
     }
@@ -208,17 +208,17 @@ impl Station {
         self.plan.between_lots.is_some()
     }
 
-    /// Strokes, touches and bounces since the start, by name.
+    /// Returns strokes, touches and bounces since the start, by name.
     pub fn wear(&self) -> Vec<(&'static str, u64)> {
         self.line.mechanism.wear()
     }
 
-    /// State of the outer machine.
+    /// Returns the state of the outer machine.
     pub fn outer(&self) -> State {
         self.machine.state
     }
 
-    /// What the machine is used for.
+    /// Returns the mode of the outer machine.
     pub fn mode(&self) -> Mode {
         self.machine.mode
     }
@@ -252,7 +252,7 @@ impl Station {
         }
     }
 
-    /// One turn.
+    /// Performs one turn.
     pub fn step(&mut self, now: RigTime, mut inputs: Inputs) -> Wants {
         let mut wants = Wants::default();
         if self.machine.ended {
@@ -261,7 +261,7 @@ impl Station {
         self.machine.turn(now);
         let ordered = inputs.orders.len();
         if inputs.verified {
-            // Samples from before the verification are stale, which is no trouble.
+            // Samples from before the verification are stale and raise no alarm.
             (self.alarms.sensed, self.machine.began) = (false, Some(now));
         }
         self.machine.began.get_or_insert(now);
@@ -298,17 +298,17 @@ impl Station {
         wants
     }
 
-    /// Takes note of a motion that the rig has cleared and driven.
+    /// Records a motion that the guard has cleared and the rig has driven.
     pub fn driven(&mut self, movement: Move, now: RigTime, image: &Image) {
         self.line.driven(movement, now, image);
     }
 
-    /// The motion as the guard knows it.
+    /// Returns the motion in the terms of the guard.
     pub fn motion(&self, movement: Move) -> Motion {
         movement.motion(self.line.mechanism.strokes())
     }
 
-    /// Situation for the guard.
+    /// Returns the situation for the guard.
     pub fn situation(&self, now: RigTime, image: &Image) -> Situation {
         self.line.situation(now, image)
     }

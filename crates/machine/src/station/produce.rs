@@ -47,7 +47,7 @@ impl Station {
         }
     }
 
-    /// Returns true while parts of the lot are still to come out of the magazine.
+    /// Returns true while the magazine is to deliver more parts of the lot.
     pub(super) fn wants_more(&self) -> bool {
         self.plan
             .count

@@ -19,7 +19,7 @@ use units::{RigTime, Span};
 
 /// Time after the start within which every safety input must have a sample.
 pub(super) const FIRST_SCAN: Span = Span::ms(3000);
-/// Dark time of a beam from which a bin counts as full; a falling part darkens it for 11 ms.
+/// Dark time of a beam after which its bin counts as full; a falling part darkens it for 11 ms.
 const FULL: Span = Span::ms(500);
 
 /// Longest time from the closing of the emergency-stop chain to full air pressure.
@@ -75,7 +75,7 @@ impl Station {
         }
     }
 
-    /// Returns the alarms of the safety inputs: an open one, and after the first scan an unread one.
+    /// Returns the alarms of the safety inputs: of an open one, and after the first scan of an unread one.
     fn safety(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
         let inputs = [
             (DigitalIn::EmergencyStopOk, AlarmCode::EmergencyStop),
@@ -117,7 +117,7 @@ impl Station {
         alarms
     }
 
-    /// Returns true while low pressure is the consequence of an emergency stop and no actuator is to move.
+    /// Returns true while low pressure follows from an emergency stop and no actuator has to move.
     fn is_vented(&self, now: RigTime) -> bool {
         let rests = packml::is_aborted(self.machine.state)
             || matches!(self.machine.state, State::Stopped | State::Complete);
@@ -153,7 +153,7 @@ impl Station {
         (starved && !parts).then(|| AlarmCode::MagazineEmpty.into())
     }
 
-    /// Takes note of a refused motion: homing tries another one first, any other state raises an alarm.
+    /// Reacts to a refused motion: homing tries another one first, any other state raises an alarm.
     pub fn refused(&mut self, movement: Move, refusal: &str, now: RigTime, wants: &mut Wants) {
         if self.machine.state == State::Resetting && self.line.recovery.refused(movement) {
             return;
@@ -233,7 +233,7 @@ impl Station {
         self.line.cut_off();
     }
 
-    /// Sends parts in nest and gripper to retest; the row of a judged one records it.
+    /// Sends parts in nest and gripper to retest; the row of a judged part records it.
     fn interrupt(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
         let parts = &mut wants.record.parts;
         for part in self.line.ledger.held_mut() {
@@ -265,13 +265,13 @@ impl Station {
         assert!(all, "an interrupted part goes elsewhere");
     }
 
-    /// Returns the alarm whose sensor still shows its cause, which forbids clear and reset.
+    /// Returns the alarm whose sensor still shows its cause; it forbids clear and reset.
     pub(super) fn cause(&self) -> Option<&Standing> {
         self.alarms.annunciator.still_sensed()
     }
 }
 
-/// Returns true when every safety input has a sample after `since`, open or closed.
+/// Returns true when every safety input has a sample later than `since`.
 pub(super) fn safety_was_read(image: &Image, since: RigTime) -> bool {
     let inputs = [
         DigitalIn::EmergencyStopOk,

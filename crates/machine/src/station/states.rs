@@ -17,13 +17,13 @@ use units::{RigTime, Span};
 
 /// Time within which outputs must confirm their safe value; after it the abort continues with an alarm.
 const SAFE_WITHIN: Span = Span::ms(2000);
-/// Reason for a part inside at a reset without an earlier interruption.
+/// Reason for a part that a reset finds inside without an earlier interruption.
 const BY_A_RESET: &str = "reset";
 /// Time after which an unattended suspension ends the run.
 const ALONE: Span = Span::ms(60_000);
 
 impl Station {
-    /// Gives the orders of an unattended machine, and ends the run with the program.
+    /// Gives the commands of an unattended machine, and ends the run with the program.
     pub(super) fn by_itself(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
         if self.machine.ended {
             return;
@@ -94,7 +94,7 @@ impl Station {
         self.machine.ended = true;
     }
 
-    /// Enters the state that follows on a command; the caller has checked that it may.
+    /// Enters the state that follows on a command, which the caller has checked.
     pub(super) fn enter(&mut self, command: Command, now: RigTime, wants: &mut Wants) {
         if let Some(to) = self.machine.follow(On::Command(command), now) {
             self.entered(to, now, wants);
@@ -216,7 +216,7 @@ impl Station {
         }
     }
 
-    /// Continues the sequence with the parts inside.
+    /// Resumes the sequence with the parts inside.
     fn take_up(&mut self, now: RigTime, wants: &mut Wants) {
         self.line.feeder.resume(&self.line.ledger);
         if self.lot.gates.is_checking() {
@@ -228,8 +228,8 @@ impl Station {
         wants.rig.wake_at = Some(now);
     }
 
-    /// Interrupts the part in the nest. One with a bin was judged before and put back: it goes to retest, and its row
-    /// records the reason.
+    /// Interrupts the part in the nest. A part with a bin was judged already and put back: it goes to retest, and its
+    /// row records the reason.
     fn take_up_nested(&mut self, wants: &mut Wants) {
         let Some(part) = self.line.ledger.part_mut(Place::NEST) else {
             return;
@@ -337,7 +337,7 @@ impl Station {
         self.start = Start::References(runner);
     }
 
-    /// Finishes the parts inside; with `push` the one in the pocket too.
+    /// Finishes the parts inside, with `push` also the part in the pocket.
     fn finish(&mut self, now: RigTime, inputs: Inputs, wants: &mut Wants, push: bool) {
         let (state, recorded) = (self.machine.state, inputs.recorded);
         let permits = Permits {
@@ -362,7 +362,7 @@ impl Station {
         }
     }
 
-    /// Verifies the modules, then waits for a fresh sample of every safety input, so that a reset finds them read.
+    /// Verifies the modules, then waits for a fresh sample of every safety input, which a reset requires.
     fn clear(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
         if inputs.verified {
             self.machine.verified = Some(now);

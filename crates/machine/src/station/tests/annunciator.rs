@@ -1,4 +1,4 @@
-//! Alarms that stand: states of ISA-18.2, first-out, repeats, shelf.
+//! Alarms in the list: states of ISA-18.2, first-out, repeats, shelf.
 
 use crate::handling::Move;
 use crate::rig::bin::Bin;

@@ -1,4 +1,4 @@
-//! What opens and closes the gates of a lot.
+//! Events that open and close the gates of a lot.
 
 use super::golden_parts;
 use super::machine::{Machine, Specimen};
@@ -20,7 +20,7 @@ use crate::station::wants::Ending;
 
 const BAD: Specimen = Specimen::OpenCoil;
 
-/// What a test finds on a reference part that is so many standard deviations off in one parameter.
+/// Record of a reference part with one parameter `deviations` standard deviations off its certificate.
 fn read(part: &ReferencePart, off: Parameter, deviations: f64) -> TestRecord {
     let mut record = TestRecord::default();
     for (parameter, certified) in [
@@ -64,7 +64,7 @@ fn a_golden_part_agrees_with_its_certificate_within_three_standard_deviations() 
     assert!(nothing.is_err_and(|why| why.to_string().contains("Coil resistance")));
 }
 
-/// Every part of this magazine has a broken coil, the golden one too: no check can be passed.
+/// A machine whose parts, the reference part included, all have an open coil, so that every check fails.
 fn checked(settings: CheckSettings, attended: bool) -> Machine {
     let lot = LotSettings {
         golden_check: settings,

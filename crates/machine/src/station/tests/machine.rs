@@ -1,4 +1,4 @@
-//! A machine whose actuators always arrive and whose parts are bad in a known way, with its station.
+//! A station with a machine whose actuators always arrive and whose parts have known defects.
 
 use super::{Shop, context, device, device_of};
 use crate::dut::em_relay::bins;
@@ -21,19 +21,19 @@ use crate::station::{Plan, Station};
 use std::collections::{BTreeMap, VecDeque};
 use units::{RigTime, Span};
 
-/// How a part of the magazine is bad.
+/// Defect of a part of the magazine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Specimen {
     /// No pin at NO: void.
     MissingPin,
     /// NO is welded: fails at rest.
     StuckNo,
-    /// Its coil is broken: no current.
+    /// Its coil is open: no current.
     OpenCoil,
 }
 
 impl Specimen {
-    /// Where it belongs.
+    /// Returns the bin in which it belongs.
     pub fn bin(self) -> Bin {
         match self {
             Self::MissingPin => Bin::RETEST,
@@ -43,7 +43,7 @@ impl Specimen {
     }
 }
 
-/// What the station was told in one turn, and what was driven after it.
+/// Inputs of the station in one turn, and the motions driven after it.
 pub struct Told {
     pub now: RigTime,
     pub image: Image,
@@ -77,17 +77,17 @@ pub struct Machine {
     verify: bool,
     /// Outputs of the last turn.
     pub last_outputs: Vec<(DigitalOut, bool)>,
-    /// Every turn.
+    /// Record of every turn.
     pub told: Vec<Told>,
     /// Ordinals and bins in the order of landing.
     pub landed: Vec<(u64, Bin)>,
-    /// Parts that left the nest.
+    /// Number of parts that left the nest.
     pub left: usize,
-    /// How the run ended.
+    /// End of the run.
     pub ending: Option<Ending>,
 }
 
-/// Nothing ordered, nothing to answer, every output confirmed.
+/// Returns inputs without orders or answers, every output confirmed.
 pub fn quiet(image: &Image) -> Inputs<'_> {
     Inputs {
         image,
@@ -102,7 +102,7 @@ pub fn quiet(image: &Image) -> Inputs<'_> {
     }
 }
 
-/// A calibrated station that knows nothing yet.
+/// Returns a calibrated station before its first turn.
 pub fn station(count: Option<u64>, shop: &Shop) -> Station {
     of_plan(plan(count), shop)
 }
@@ -158,7 +158,7 @@ impl Machine {
         }
     }
 
-    /// The same with a person at a screen.
+    /// Returns the same machine, attended.
     pub fn attended(count: Option<u64>, magazine: Vec<Specimen>) -> Self {
         let mut machine = Self::new(count, magazine);
         let plan = Plan {
@@ -169,7 +169,7 @@ impl Machine {
         machine
     }
 
-    /// Between lots, with a person at a screen.
+    /// Returns an attended machine between lots.
     pub fn between_lots() -> Self {
         let mut machine = Self::new(Some(0), Vec::new());
         let plan = Plan {
@@ -181,7 +181,7 @@ impl Machine {
         machine
     }
 
-    /// Behind these gates, with the reference parts of the default plant.
+    /// Returns a machine with these gates and the reference parts of the default plant.
     pub fn of_lot(
         count: Option<u64>,
         magazine: Vec<Specimen>,
@@ -199,7 +199,7 @@ impl Machine {
         machine
     }
 
-    /// The calibration may not be used any more from now on.
+    /// Makes the calibration expire now.
     pub fn calibration_runs_out(&mut self) {
         let mut context = context();
         std::sync::Arc::make_mut(&mut context.calibration).due_at_us =
@@ -207,29 +207,29 @@ impl Machine {
         self.station.device = device_of(context);
     }
 
-    /// What wears was used so often before.
+    /// Sets the uses of wearing parts before the run.
     pub fn wore(&mut self, worn: Uses) {
         self.station.plan.worn = worn;
     }
 
-    /// Gives an order and has it answered in the next turn.
+    /// Gives an order and returns its answer in the next turn.
     pub fn order(&mut self, order: Order) -> Result<(), Refused> {
         self.orders.push(order);
         self.turn();
         self.answers.pop().unwrap()
     }
 
-    /// One more part into the magazine.
+    /// Adds one part to the magazine.
     pub fn fill(&mut self, specimen: Specimen) {
         self.magazine.push_back(specimen);
     }
 
-    /// Motions driven so far.
+    /// Returns the number of motions driven so far.
     pub fn driven(&self) -> usize {
         self.told.iter().map(|told| told.driven.len()).sum()
     }
 
-    /// 4 ms pass, everything is read, the station has its turn and gets what it asks for.
+    /// Advances 4 ms: reads every point, performs the station's turn and its commands.
     pub fn turn(&mut self) -> Wants {
         self.shop.now = self.shop.now + Span::ms(4);
         let now = self.shop.now;
@@ -245,7 +245,7 @@ impl Machine {
         self.turn_without_scan()
     }
 
-    /// A turn on what was read before.
+    /// Performs a turn on the previous samples.
     pub fn turn_without_scan(&mut self) -> Wants {
         let job = self.job.take().map(|NestJob { nest, job }| NestDone {
             nest,
@@ -292,7 +292,7 @@ impl Machine {
         wants
     }
 
-    /// Springs and brakes: bistable cylinders stay, the others go to rest.
+    /// Goes safe: bistable cylinders stay, the others go to rest.
     fn make_safe(&mut self) {
         self.under_way.clear();
         self.job = None;
@@ -361,7 +361,7 @@ impl Machine {
         }
     }
 
-    /// The next part of the magazine lies in the nest.
+    /// Places the next part of the magazine in the nest.
     fn insert(&mut self) {
         let specimen = self.magazine.pop_front().unwrap();
         let kelvin = [
@@ -398,7 +398,7 @@ impl Machine {
         }
     }
 
-    /// The coil is open, contacts are good, nothing is timed.
+    /// Reads a point: the coil is open, the contacts are good, no gate counts.
     fn read(&mut self, point: Point) {
         let known = |input| self.shop.points.analog(input);
         match point {
@@ -416,7 +416,7 @@ impl Machine {
         }
     }
 
-    /// Turns until the run is over.
+    /// Takes turns until the run is over.
     pub fn run(&mut self) -> Wants {
         for _ in 0..10_000 {
             let wants = self.turn();

@@ -1,4 +1,4 @@
-//! Facts about the sequence, on the default rig with sensors set by hand.
+//! Tests of the sequence on the default rig with given sensor states.
 #![allow(clippy::unwrap_used)]
 
 mod annunciator;

@@ -1,4 +1,4 @@
-//! Orders at a screen: what is taken, what is refused and why, and what a person can bring about.
+//! Orders from a screen: accepted or refused with a reason, and their effects.
 
 use super::machine::{Machine, Specimen};
 use crate::rig::bin::Bin;
@@ -112,7 +112,7 @@ fn a_part_that_the_fingers_did_not_let_go_goes_to_retest_and_its_one_row_says_so
     while machine.station.ledger().fall().is_none() {
         machine.turn();
     }
-    // The module that drives the fingers has tripped: they never open.
+    // The module of the fingers has tripped: they never open.
     machine.bus = Some(Alarm::bus("the module ignored the output"));
     machine.turn();
     until(&mut machine, State::Aborted);

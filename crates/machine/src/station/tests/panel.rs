@@ -10,7 +10,7 @@ use units::Span;
 
 type Pressed = Vec<(Command, Result<(), Refused>)>;
 
-/// With a person at a screen, in Stopped.
+/// Returns an attended machine in `Stopped`.
 fn stopped() -> Machine {
     let mut machine = Machine::attended(None, vec![Specimen::MissingPin; 50]);
     turns(&mut machine, 2_000);
@@ -33,7 +33,7 @@ fn turns(machine: &mut Machine, ms: u64) -> Pressed {
     pressed
 }
 
-/// Down for so long, then up for long enough.
+/// Holds a button down for `ms`, then releases it until it settles.
 fn hold(machine: &mut Machine, button: DigitalIn, ms: u64) -> Pressed {
     machine.shop.set(button, true);
     let mut pressed = turns(machine, ms);

@@ -1,4 +1,4 @@
-//! Whole runs: every part lands, a stop finishes what is inside, the same inputs give the same wants.
+//! Whole runs: every part lands, a stop finishes the parts inside, equal inputs give equal outputs.
 
 use super::machine::{Machine, Specimen, quiet, station};
 use crate::handling::moves::Move;

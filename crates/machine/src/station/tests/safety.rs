@@ -1,4 +1,4 @@
-//! Trouble makes everything safe, ends the run and voids the part inside.
+//! Trouble makes the outputs safe, ends the run and voids the part inside.
 
 use super::machine::{Machine, Specimen};
 use crate::dut::{Reason, Verdict};
@@ -180,7 +180,7 @@ fn an_empty_magazine_that_nobody_fills_ends_the_run_after_a_minute() {
     assert_eq!(machine.station.ledger().came_in, 1);
 }
 
-/// Codes of what came anew while `machine` runs for so long.
+/// Codes of the alarms that begin while `machine` runs for `ms`.
 fn told(machine: &mut Machine, ms: u64) -> Vec<String> {
     let end = machine.shop.now + Span::ms(ms);
     let mut told = Vec::new();
