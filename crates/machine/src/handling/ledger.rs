@@ -94,7 +94,7 @@ impl Ledger {
         }
     }
 
-    /// Returns the parts that a new run has to look for.
+    /// Returns the parts that a new run must look for.
     pub fn parts_to_find(&self) -> Inside {
         if self.left == Inside::default() {
             Inside::of(self)
@@ -256,7 +256,7 @@ impl Ledger {
         self.hand_over(Place::Gripper, Place::Falling);
     }
 
-    /// Moves the falling part back to the fingers: it sticks to them, or they never opened.
+    /// Moves the falling part back to the fingers: it sticks to them, or the fingers never opened.
     pub fn return_to_gripper(&mut self) {
         self.fall = None;
         self.hand_over(Place::Falling, Place::Gripper);

@@ -1,4 +1,4 @@
-//! Brings parts to the instruments and into bins.
+//! Handling: brings parts to the instruments and into bins.
 //!
 //! Signals: end sensors of every actuator, part sensors of pocket, nest and gripper, a beam in the chute of each bin.
 //! A sensor value is valid for [`mechanism::SENSOR_AGE`]; an unread one is unknown, never guessed.

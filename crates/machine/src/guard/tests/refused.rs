@@ -245,7 +245,7 @@ fn motions_that_start_together_are_checked_mutually() {
         }
         blocked(Motion::group(&pair), &rest());
     }
-    // Although both ends are clear: the axis leaves before z is up.
+    // Both ends are clear, but the axis leaves before z is up.
     let down = rest().with(SortZ, at(40.0));
     blocked(
         Motion::group(&[stroke(SortZ, 0.0), stroke(SortAxis, 150.0)]),

@@ -172,7 +172,7 @@ fn reference_parts_come_first_in_magazine_order() {
     assert_eq!(shop.golden.len(), 4);
 }
 
-/// A shop whose escapement was open for the given time without a part; it closes again.
+/// Attempts to feed for the given time while no part comes; the escapement closes again.
 fn called_in_vain(shop: &mut Shop, attempt: u8) -> Feed {
     let since = shop.now;
     shop.now = since + Span::ms(1501);

@@ -1,4 +1,4 @@
-//! Tests of feed, nest and sorter, on the default rig with sensors set by hand.
+//! Tests of feed, nest and sorter on the default rig with given sensor states.
 #![allow(clippy::unwrap_used)]
 
 mod feed;

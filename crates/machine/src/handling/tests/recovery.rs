@@ -1,4 +1,4 @@
-//! Homing moves in an order that is provably clear, and takes parts to be where the sensors show them.
+//! Homing moves in an order proven clear, and places parts where the sensors show them.
 
 use super::Shop;
 use crate::handling::ledger::{Kind, Ledger};

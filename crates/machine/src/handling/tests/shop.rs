@@ -1,4 +1,4 @@
-//! A rig with sensors set by hand, to test step machines without modules.
+//! A rig with given sensor states, to test step machines without modules.
 
 use super::wiring;
 use crate::dut::em_relay::points::{self, AnalogIn, Counter, Points};
