@@ -1,8 +1,8 @@
 //! Acts, of which a test stage is made: each is a few transactions of one line, or one wait.
 //!
-//! A stage lists its acts before it begins; [`Runner`] carries them out and keeps the readings. So the order of a test
-//! can be read, printed and replayed, and no stage ever occupies the bus. Acts name wired points and know nothing of
-//! the device; the wiring turns them into transactions.
+//! A stage lists its acts before it begins; [`Runner`] carries them out and stores the readings. So the order of a
+//! test can be read, printed and replayed, and no stage ever occupies the bus. Acts name wired points and are
+//! independent of the device; the wiring turns them into transactions.
 
 use super::readings::{Readings, Unread};
 use crate::rig::image::Image;
@@ -10,9 +10,9 @@ use crate::rig::point::{AnalogInput, AnalogOutput, DigitalInput, DigitalOutput, 
 use std::sync::Arc;
 use units::{RigTime, Span, Volt};
 
-/// Longest normal time from the last look that does not show an awaited event to the end of the write after it: a
-/// poll, a reading, the write. When a retry or a slow line delays the ramp, it ends later by the same delay; a ramp
-/// that reverses has run on meanwhile, and needs as long again to return.
+/// Longest normal time from the last poll without an awaited event to the end of the write after it: a poll, a
+/// reading, the write. When a retry or a slow line delays the ramp, the ramp ends later by that delay; a ramp that
+/// reverses has run on meanwhile, and needs as long again to return.
 const PROMPT: Span = Span::ms(13);
 
 /// Digital inputs read together and kept as one signal: bit n is input n.
@@ -82,11 +82,11 @@ pub enum Act {
     Wait(Span),
     /// Waits as [`Act::WaitSinceMark`] does, for a conversion that began after the mark.
     ConvertSinceMark(Span),
-    /// Reads a word until the point is active or the time is over; keeps which of the two happened.
+    /// Reads a word until the point is active or the time is over; records which of the two happened.
     Until {
         /// The awaited input.
         point: DigitalInput,
-        /// Inputs kept from the last look.
+        /// Inputs recorded at the last poll.
         word: Arc<Word>,
         /// Longest wait.
         within: Span,
@@ -117,7 +117,7 @@ pub struct JobDone {
     pub trouble: Option<String>,
 }
 
-/// What the runner needs next from its caller.
+/// Request of the runner to its caller.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Doing {
     /// Start this job; report it with [`JobDone`].
@@ -206,7 +206,7 @@ impl Runner {
         self.current.is_none() && !self.pending
     }
 
-    /// Makes a runner that begins now and takes over the mark of the runner `before`: a mark outlives its stage.
+    /// Makes a runner that begins now with the mark of the runner `before`: a mark remains valid across stages.
     pub fn after(acts: Vec<Act>, now: RigTime, before: &Runner) -> Self {
         let mut runner = Self::new(acts, now);
         runner.mark = before.mark;
@@ -327,7 +327,7 @@ impl Runner {
         self.began = self.since;
     }
 
-    /// Keeps the readings of the finished job, and moves on unless it still awaits a condition.
+    /// Stores the readings of the finished job, and moves on unless it still awaits a condition.
     fn keep(&mut self, image: &Image, now: RigTime) -> Result<(), Unread> {
         match self.current.clone() {
             Some(Act::Read(read)) => self.readings.take(&read, image, (now, self.since))?,

@@ -11,7 +11,7 @@ fn done(at: RigTime) -> JobDone {
     JobDone { at, trouble: None }
 }
 
-/// A test shop that has read every point once, analog and counters included.
+/// Returns a test rig that has read every point once, analog and counters included.
 fn read_once() -> Shop {
     let mut shop = Shop::at_rest();
     for (point, volts) in [
@@ -27,7 +27,7 @@ fn read_once() -> Shop {
     shop
 }
 
-/// Writes one word to the board.
+/// Returns the write of one word to the board.
 fn armed(shop: &Shop) -> Act {
     Act::Set(vec![(shop.points.output(DigitalOut::Arm), true)])
 }
