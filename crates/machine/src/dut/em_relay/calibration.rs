@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn the_coarse_ramp_corrects_the_fine_overshoot_of_a_part() {
+    fn the_coarse_ramp_corrects_a_parts_fine_overshoot() {
         let overshoot = Overshoot {
             fine_v: Factor::new(0.028, 0.0),
             at_v: 7.88,

@@ -92,7 +92,7 @@ mod tests {
     };
 
     #[test]
-    fn twenty_degrees_instead_of_twenty_three_is_minus_1_17_percent() {
+    fn three_kelvin_change_the_coil_by_1_17_percent() {
         let factor = to_reference(Celsius(23.0), Celsius(20.0));
         assert!((factor - 254.5 / 257.5).abs() < 1e-15);
     }

@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn four_readings_remove_what_drifts_evenly_and_two_do_not() {
+    fn only_four_readings_remove_linear_drift() {
         // 1 mV of drift per reading, and a longer pause at each reversal.
         let read = [(0.9, 0.0), (-0.9, 3.0), (-0.9, 4.0), (0.9, 7.0)];
         let read = read.map(|(drop, time)| Volt(drop + 0.001 * time));
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn a_zero_that_later_closures_share_is_not_averaged_away() {
+    fn a_shared_zero_is_not_averaged_away() {
         let half = |readings, later| u_with_later_v(readings, later, 1.0, 0.0).powi(2);
         for later in [0, 1, 3, 100] {
             assert!((half(2, later) - 0.5).abs() < 1e-12, "{later}");

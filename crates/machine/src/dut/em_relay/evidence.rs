@@ -148,7 +148,7 @@ mod tests {
     const BETWEEN: f64 = 0.0;
 
     #[test]
-    fn a_ramp_without_make_bounds_the_operate_voltage_by_its_top() {
+    fn the_top_of_a_ramp_bounds_the_operate_voltage() {
         let curves = [
             curve("supply_level", &[(0, 5.0)]),
             curve("supply_coarse", &[(20, 6.0), (200, 0.0)]),
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn a_contact_that_makes_bounds_by_what_came_before() {
+    fn a_make_bounds_by_the_voltage_before_it() {
         let curves = [
             curve("supply_level", &[(0, 5.0), (50, 7.0), (100, 9.0)]),
             curve("coil_drive", &[(5, 1.0)]),
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_that_moves_as_it_should_is_bound_by_no_time_beyond_its_own() {
+    fn a_good_part_is_bounded_by_its_own_times() {
         let curves = [
             curve("supply_level", &[(0, 12.0)]),
             curve("coil_drive", &[(10, 1.0), (60, 0.0)]),

@@ -53,7 +53,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_the_pins_get_less_is_lost_in_the_force_wires() {
+    fn the_voltage_drop_gives_the_series_resistance() {
         // 2 ohm in series with 400 ohm: the coil gets 400/402 of 5 V.
         let ohm = in_series(Volt(5.0), Volt(5.0 * 400.0 / 402.0), Ohm(400.0));
         assert!((ohm.0 - 2.0).abs() < 1e-12);
@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn the_mean_follows_a_step_within_some_dozens_of_parts_and_not_one_part() {
+    fn the_mean_follows_a_step_over_many_parts() {
         let mut trend = Trend::default();
         assert!(trend.mean().is_none());
         trend.add(Ohm(0.0));

@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn one_closure_far_from_the_limit_is_enough_and_one_near_it_is_not() {
+    fn only_closures_near_the_limit_repeat() {
         let films_of_10 = sampling(10);
         assert!(films_of_10.is_clear(&[18.0], 0.05, &LIMIT));
         // 3 x 10 % of 80 is 24 mOhm: the true mean may exceed 100.
@@ -129,14 +129,14 @@ mod tests {
     }
 
     #[test]
-    fn closures_that_agree_narrow_the_band_by_the_root_of_their_number() {
+    fn agreeing_closures_narrow_the_band() {
         let films_of_10 = sampling(10);
         assert!(!films_of_10.is_clear(&[86.0; 3], 0.05, &LIMIT), "3 x 5.0");
         assert!(films_of_10.is_clear(&[86.0; 4], 0.05, &LIMIT), "3 x 4.3");
     }
 
     #[test]
-    fn closures_that_disagree_are_believed_more_than_the_recipe() {
+    fn disagreeing_closures_widen_the_expected_scatter() {
         assert!(sampling(1).is_clear(&[50.0, 51.0], 0.05, &LIMIT));
         assert!(!sampling(1).is_clear(&[20.0, 80.0], 0.05, &LIMIT));
     }
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_read_is_clear_of_nothing_and_without_a_limit_all_is() {
+    fn no_closure_is_unclear_and_no_limit_is_clear() {
         assert!(!sampling(10).is_clear(&[], 0.0, &LIMIT));
         assert!(!sampling(10).is_clear(&[f64::NAN], 0.0, &LIMIT));
         let open = Limit {
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn signs_add_up_to_nothing_and_so_do_signs_times_time() {
+    fn polarity_signs_cancel_offset_and_drift() {
         for polarities in [Polarities::PlusMinus, Polarities::PlusMinusMinusPlus] {
             assert_eq!(polarities.signs().iter().sum::<f64>(), 0.0);
         }

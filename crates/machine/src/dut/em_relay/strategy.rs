@@ -124,14 +124,14 @@ mod tests {
     }
 
     #[test]
-    fn the_growth_time_comes_out_of_two_lags() {
+    fn two_overshoots_give_the_growth_time() {
         let rates = [96.0, 1.5];
         let growth = growth_s(rates.map(|rate| seen(rate) - 7.88), rates);
         assert!((growth - 0.002_483).abs() < 1e-12);
     }
 
     #[test]
-    fn a_straight_line_through_two_rates_leaves_the_logarithm_behind() {
+    fn linear_extrapolation_leaves_the_logarithmic_term() {
         let straight = 2.0 * seen(12.0) - seen(24.0);
         let left = 24.0 * 0.002_483 * 2f64.ln();
         assert!((straight - 7.88 - left).abs() < 1e-9);

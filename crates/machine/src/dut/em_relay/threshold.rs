@@ -106,7 +106,7 @@ mod tests {
     use crate::dut::em_relay::overshoot::OvershootModel;
 
     #[test]
-    fn a_rising_ramp_indicates_start_plus_window_plus_slope_times_gate() {
+    fn a_ramp_indicates_start_plus_window_plus_slope() {
         let seen = indicated(Volt(7.8), 1.5, Second(0.04), Direction::Rising);
         assert!((seen.0 - 7.91).abs() < 1e-12);
         let seen = indicated(Volt(2.5), 1.5, Second(0.04), Direction::Falling);
@@ -143,12 +143,12 @@ mod tests {
     }
 
     #[test]
-    fn one_kelvin_is_thirty_millivolts_of_an_operate_voltage() {
+    fn one_kelvin_is_30_millivolts_of_operate_voltage() {
         assert!((doubted(0.0, 1.0) - 0.0306).abs() < 1e-4);
     }
 
     #[test]
-    fn one_ohm_at_the_probes_is_twenty_millivolts_of_an_operate_voltage() {
+    fn one_ohm_at_the_probes_is_20_millivolts() {
         assert!((doubted(1.0 / 400.0, 0.0) - 0.0197).abs() < 1e-4);
     }
 }

@@ -74,14 +74,14 @@ mod tests {
     }
 
     #[test]
-    fn a_gate_of_236_counts_is_4_72_ms_less_the_gate_delay() {
+    fn a_gate_time_excludes_the_gate_delay() {
         let time = gate_ms(236, Factor::new(10.0, 2.0), CLOCK);
         assert!((time.value - 4.71).abs() < 1e-12);
         assert!(time.expanded() < 0.02);
     }
 
     #[test]
-    fn bounce_is_what_the_raw_gate_counts_more_than_the_latched_one() {
+    fn bounce_is_the_difference_of_both_gates() {
         let delays = [Factor::new(10.0, 1.0), Factor::new(-5.0, 1.0)];
         let bounce = bounce_ms(236, 252, delays, CLOCK);
         assert!((bounce.value - 0.335).abs() < 1e-12);

@@ -140,7 +140,7 @@ fn the_pusher_starts_only_into_a_free_nest() {
 }
 
 #[test]
-fn the_ledger_keeps_a_second_part_out_of_the_nest() {
+fn the_ledger_allows_one_part_per_nest() {
     let (feed, mut shop) = ready();
     shop.ledger.enter_nest(NestId::FIRST, None);
     shop.ledger.enter_pocket();

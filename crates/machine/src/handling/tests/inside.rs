@@ -67,7 +67,7 @@ fn the_report_names_the_place_of_the_part() {
 }
 
 #[test]
-fn a_released_part_is_reported_unless_the_fingers_hold_it() {
+fn a_released_part_is_reported_unless_still_held() {
     let falling = Inside {
         falling: Some(bins::COIL),
         ..left(0b010)

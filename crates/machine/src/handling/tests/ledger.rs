@@ -66,7 +66,7 @@ fn a_lost_part_never_counts_as_binned() {
 }
 
 #[test]
-fn nothing_lands_and_nothing_is_lost_when_nothing_falls() {
+fn without_a_fall_no_part_lands() {
     let mut ledger = with_part_in_gripper();
     assert_eq!((ledger.land(), ledger.lose(Place::Falling)), (None, false));
     assert_eq!((ledger.went_out, ledger.lost, ledger.inside()), (0, 0, 1));
@@ -109,7 +109,7 @@ fn the_nest_takes_no_second_part() {
 
 #[test]
 #[should_panic(expected = "no part to take from the nest")]
-fn an_empty_nest_hands_nothing_over() {
+fn an_empty_nest_hands_over_no_part() {
     Ledger::default().lift(NestId::FIRST);
 }
 

@@ -110,7 +110,7 @@ fn pins() -> NestJob {
 }
 
 #[test]
-fn an_empty_nest_asks_for_nothing() {
+fn an_empty_nest_requests_nothing() {
     let mut nest = Nest::loaded(None);
     nest.shop.ledger = Default::default();
     let state = nest.step(NestState::Empty, None);

@@ -6,7 +6,7 @@ use crate::dut::em_relay::points::{AnalogOut, DigitalOut, Points};
 use crate::handling::tests::Shop;
 
 #[test]
-fn a_poll_that_changes_nothing_takes_two_looks() {
+fn a_poll_without_changes_keeps_two_samples() {
     let mut trace = Trace::default();
     for at in 0..100 {
         let made = at >= 90;

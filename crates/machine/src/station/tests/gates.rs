@@ -41,7 +41,7 @@ fn read(part: &ReferencePart, off: Parameter, deviations: f64) -> TestRecord {
 }
 
 #[test]
-fn a_golden_part_agrees_with_its_certificate_within_three_standard_deviations() {
+fn a_reference_part_agrees_within_three_standard_deviations() {
     let part = &golden_parts()[0];
     for parameter in [
         Parameter::CoilResistance,
@@ -104,7 +104,7 @@ fn kinds(machine: &mut Machine) -> Vec<String> {
 }
 
 #[test]
-fn nothing_but_a_golden_part_is_judged_after_a_check_that_failed() {
+fn after_a_failed_check_only_reference_parts_run() {
     let mut machine = checked(after_parts(2), true);
     assert_eq!(kinds(&mut machine), ["1", "2", "golden"]);
     assert_eq!(machine.station.outer(), State::Held);
@@ -115,13 +115,13 @@ fn nothing_but_a_golden_part_is_judged_after_a_check_that_failed() {
 }
 
 #[test]
-fn without_a_person_a_check_that_failed_ends_the_run() {
+fn a_failed_check_ends_an_unattended_run() {
     let mut machine = checked(after_parts(2), false);
     assert_eq!(machine.run().record.ending, Some(Ending::Alarm));
 }
 
 #[test]
-fn a_check_at_the_start_comes_before_the_first_part() {
+fn a_start_check_precedes_the_first_part() {
     let settings = CheckSettings {
         at_start: true,
         ..CheckSettings::default()
@@ -131,7 +131,7 @@ fn a_check_at_the_start_comes_before_the_first_part() {
 }
 
 #[test]
-fn after_so_many_hours_the_line_holds_and_asks_for_the_golden_part() {
+fn a_check_due_by_time_holds_the_line() {
     let settings = CheckSettings {
         after_h: Some(2.0 / 3600.0),
         ..CheckSettings::default()
@@ -152,7 +152,7 @@ fn after_so_many_hours_the_line_holds_and_asks_for_the_golden_part() {
 }
 
 #[test]
-fn a_golden_part_that_was_interrupted_has_said_nothing() {
+fn an_interrupted_reference_check_begins_again() {
     let mut machine = checked(after_parts(1), true);
     while machine
         .station
@@ -178,7 +178,7 @@ fn a_golden_part_that_was_interrupted_has_said_nothing() {
 }
 
 #[test]
-fn the_reject_rate_limit_alarms_once_at_the_first_excess() {
+fn the_reject_rate_limit_alarms_once() {
     let lot = LotSettings {
         reject_rate_limit_pct: Some(34.0),
         ..LotSettings::default()
@@ -223,7 +223,7 @@ fn wear_of_earlier_runs_counts() {
 }
 
 #[test]
-fn a_calibration_that_runs_out_stops_the_lot_and_the_next_start_calibrates() {
+fn an_expired_calibration_stops_the_lot() {
     let mut machine = Machine::of_lot(Some(6), vec![BAD; 6], LotSettings::default(), true);
     while machine.landed.is_empty() {
         machine.turn();

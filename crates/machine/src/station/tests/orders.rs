@@ -82,7 +82,7 @@ fn a_held_line_keeps_its_parts_and_goes_on() {
 }
 
 #[test]
-fn after_an_emergency_stop_the_part_inside_goes_to_retest_and_the_lot_goes_on() {
+fn an_emergency_stop_sends_the_part_to_retest() {
     let mut machine = attended(3);
     testing(&mut machine);
     machine.shop.set(DigitalIn::EmergencyStopOk, false);
@@ -107,7 +107,7 @@ fn after_an_emergency_stop_the_part_inside_goes_to_retest_and_the_lot_goes_on() 
 }
 
 #[test]
-fn a_part_that_the_fingers_did_not_let_go_goes_to_retest_and_its_one_row_says_so() {
+fn a_stuck_part_goes_to_retest_with_one_row() {
     let mut machine = Machine::attended(Some(1), vec![Specimen::StuckNo]);
     while machine.station.ledger().fall().is_none() {
         machine.turn();
@@ -133,7 +133,7 @@ fn a_part_that_the_fingers_did_not_let_go_goes_to_retest_and_its_one_row_says_so
 }
 
 #[test]
-fn every_command_is_taken_or_refused_with_a_reason_in_both_languages() {
+fn every_refused_command_has_a_bilingual_reason() {
     let mut machine = attended(4);
     testing(&mut machine);
     for command in Command::ALL {
@@ -218,7 +218,7 @@ fn a_lamp_test_lights_everything_and_ends() {
 }
 
 #[test]
-fn a_beam_that_counts_wrong_holds_the_line_until_a_person_says_go_on() {
+fn a_miscount_holds_the_line_until_unhold() {
     let mut machine = attended(4);
     testing(&mut machine);
     machine.bus = Some(Alarm::beam(Bin::PASS, 0));
@@ -229,7 +229,7 @@ fn a_beam_that_counts_wrong_holds_the_line_until_a_person_says_go_on() {
 }
 
 #[test]
-fn an_empty_magazine_suspends_the_line_until_there_are_parts_again() {
+fn an_empty_magazine_suspends_the_line() {
     let mut machine = Machine::attended(Some(2), vec![Specimen::MissingPin]);
     until(&mut machine, State::Suspended);
     for _ in 0..500 {
@@ -242,7 +242,7 @@ fn an_empty_magazine_suspends_the_line_until_there_are_parts_again() {
 }
 
 #[test]
-fn between_lots_nothing_begins_by_itself_and_there_is_nothing_to_start() {
+fn between_lots_nothing_starts() {
     let mut machine = Machine::between_lots();
     for _ in 0..500 {
         assert!(machine.turn().rig.motions.is_empty(), "nobody asked for it");
@@ -260,7 +260,7 @@ fn between_lots_nothing_begins_by_itself_and_there_is_nothing_to_start() {
 }
 
 #[test]
-fn a_lot_is_left_while_the_machine_rests_and_at_no_other_time() {
+fn a_lot_is_left_only_at_rest() {
     let mut machine = attended(3);
     testing(&mut machine);
     let why = machine.order(Order::Leave).unwrap_err();
@@ -290,7 +290,7 @@ fn a_lot_is_left_while_the_machine_rests_and_at_no_other_time() {
 }
 
 #[test]
-fn a_lot_that_is_closed_finishes_the_parts_inside_and_is_complete() {
+fn a_closed_lot_finishes_the_parts_inside() {
     let mut machine = attended(9);
     testing(&mut machine);
     assert_eq!(machine.order(Order::Close), Ok(()));
@@ -302,7 +302,7 @@ fn a_lot_that_is_closed_finishes_the_parts_inside_and_is_complete() {
 }
 
 #[test]
-fn a_lot_that_is_closed_at_rest_is_complete_at_once() {
+fn a_lot_closed_at_rest_completes_immediately() {
     let mut machine = attended(9);
     testing(&mut machine);
     give(&mut machine, Command::Stop);

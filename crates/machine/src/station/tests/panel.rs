@@ -61,7 +61,7 @@ fn stop_reset_and_start_are_orders_of_the_panel() {
 }
 
 #[test]
-fn after_an_abort_the_reset_button_clears_once_the_cause_is_gone() {
+fn the_reset_button_clears_an_abort_without_cause() {
     let mut machine = Machine::attended(None, vec![Specimen::MissingPin; 50]);
     turns(&mut machine, 2_000);
     machine.shop.set(DigitalIn::DoorClosed, false);
@@ -79,7 +79,7 @@ fn after_an_abort_the_reset_button_clears_once_the_cause_is_gone() {
 }
 
 #[test]
-fn a_bouncing_contact_orders_once_and_a_twitch_not_at_all() {
+fn a_bouncing_contact_orders_once() {
     let mut machine = stopped();
     for down in [true, false, true, false] {
         machine.shop.set(DigitalIn::ButtonReset, down);
@@ -90,7 +90,7 @@ fn a_bouncing_contact_orders_once_and_a_twitch_not_at_all() {
 }
 
 #[test]
-fn a_held_button_orders_once_and_is_told_until_it_is_let_go() {
+fn a_held_button_orders_once_and_raises_an_alarm() {
     let mut machine = stopped();
     machine.shop.set(DigitalIn::ButtonStart, true);
     let pressed = turns(&mut machine, 6_000);
@@ -110,7 +110,7 @@ fn a_held_button_orders_once_and_is_told_until_it_is_let_go() {
 }
 
 #[test]
-fn a_button_that_is_down_at_the_start_orders_nothing_until_it_was_let_go() {
+fn a_button_down_at_start_orders_nothing() {
     let mut machine = Machine::attended(None, vec![Specimen::MissingPin; 50]);
     machine.shop.set(DigitalIn::ButtonStop, true);
     assert!(turns(&mut machine, 1_000).is_empty());
@@ -129,7 +129,7 @@ fn stop_and_start_at_once_is_stop() {
 }
 
 #[test]
-fn with_nobody_at_a_screen_the_stop_button_ends_the_run() {
+fn the_stop_button_ends_an_unattended_run() {
     let mut machine = Machine::new(None, vec![Specimen::MissingPin; 50]);
     turns(&mut machine, 2_000);
     machine.shop.set(DigitalIn::ButtonStop, true);

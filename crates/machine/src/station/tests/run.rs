@@ -13,7 +13,7 @@ const MIXED: [Specimen; 4] = [
 ];
 
 #[test]
-fn every_part_of_a_lot_lands_in_its_bin_in_order_and_the_run_is_complete() {
+fn every_part_lands_in_its_bin_in_order() {
     let mut machine = Machine::new(Some(4), MIXED.to_vec());
     let ended = machine.run();
     assert_eq!(ended.record.ending, Some(Ending::Complete));
@@ -24,7 +24,7 @@ fn every_part_of_a_lot_lands_in_its_bin_in_order_and_the_run_is_complete() {
 }
 
 #[test]
-fn the_next_part_waits_in_the_pocket_while_one_is_tested() {
+fn the_next_part_waits_in_the_pocket() {
     let mut machine = Machine::new(Some(4), MIXED.to_vec());
     let mut most = 0;
     for _ in 0..10_000 {
@@ -53,7 +53,7 @@ fn an_order_to_stop_finishes_the_parts_inside() {
 }
 
 #[test]
-fn a_second_order_to_stop_waits_for_nobody_at_any_instant_of_a_cycle() {
+fn a_second_stop_ends_the_run_at_once() {
     for turns in (0..600).step_by(23) {
         let mut machine = Machine::new(None, vec![Specimen::MissingPin; 50]);
         while machine.landed.is_empty() {

@@ -34,7 +34,7 @@ fn assert_safe(wants: &Wants, code: &str) {
 }
 
 #[test]
-fn an_open_safety_input_makes_everything_safe_and_voids_the_part_inside() {
+fn an_open_safety_input_voids_the_part_inside() {
     for (point, code) in [
         (DigitalIn::EmergencyStopOk, "emergency_stop"),
         (DigitalIn::DoorClosed, "door_open"),
@@ -56,7 +56,7 @@ fn an_open_safety_input_makes_everything_safe_and_voids_the_part_inside() {
 }
 
 #[test]
-fn after_the_end_the_station_wants_nothing_whatever_happens() {
+fn after_the_end_the_station_commands_nothing() {
     let mut machine = under_test();
     machine.shop.set(DigitalIn::EmergencyStopOk, false);
     machine.turn();
@@ -68,7 +68,7 @@ fn after_the_end_the_station_wants_nothing_whatever_happens() {
 }
 
 #[test]
-fn trouble_of_a_line_ends_the_run_like_an_emergency_stop() {
+fn line_trouble_ends_the_run() {
     let mut machine = under_test();
     machine.bus = Some(Alarm::bus("line motion is silent"));
     let wants = machine.turn();
@@ -77,7 +77,7 @@ fn trouble_of_a_line_ends_the_run_like_an_emergency_stop() {
 }
 
 #[test]
-fn a_part_that_is_on_its_way_to_its_bin_when_the_run_ends_is_told() {
+fn a_part_falling_at_the_end_is_reported() {
     let mut machine = Machine::new(Some(2), vec![Specimen::StuckNo; 2]);
     while machine.station.ledger().fall().is_none() {
         machine.turn();
@@ -134,7 +134,7 @@ fn safety_inputs_that_are_no_longer_read_are_trouble() {
 }
 
 #[test]
-fn before_the_first_scan_the_station_waits_but_not_for_ever() {
+fn the_station_waits_briefly_for_the_first_scan() {
     let mut machine = Machine::new(Some(1), Vec::new());
     machine.shop = super::Shop::unread();
     let wants = machine.turn_without_scan();
@@ -149,7 +149,7 @@ fn before_the_first_scan_the_station_waits_but_not_for_ever() {
 }
 
 #[test]
-fn an_actuator_that_sticks_ends_the_run_under_its_name() {
+fn a_sticking_actuator_ends_the_run_by_name() {
     let mut machine = Machine::new(Some(1), vec![Specimen::MissingPin]);
     machine.sticking = Some("pusher");
     let ended = machine.run();
@@ -161,7 +161,7 @@ fn an_actuator_that_sticks_ends_the_run_under_its_name() {
 }
 
 #[test]
-fn an_empty_magazine_that_nobody_fills_ends_the_run_after_a_minute() {
+fn an_empty_magazine_ends_the_run_after_a_minute() {
     let mut machine = Machine::new(Some(2), vec![Specimen::MissingPin]);
     let mut told = Vec::new();
     let start = machine.shop.now;
@@ -198,7 +198,7 @@ fn told(machine: &mut Machine, ms: u64) -> Vec<String> {
 }
 
 #[test]
-fn an_emergency_stop_that_vents_the_air_is_one_alarm() {
+fn venting_by_emergency_stop_raises_one_alarm() {
     let mut machine = Machine::attended(None, vec![Specimen::MissingPin; 50]);
     told(&mut machine, 2_000);
     machine.shop.set(DigitalIn::EmergencyStopOk, false);
@@ -211,7 +211,7 @@ fn an_emergency_stop_that_vents_the_air_is_one_alarm() {
 }
 
 #[test]
-fn air_that_stays_away_after_an_emergency_stop_is_told() {
+fn missing_air_after_an_emergency_stop_is_reported() {
     let mut machine = Machine::attended(None, vec![Specimen::MissingPin; 50]);
     told(&mut machine, 2_000);
     machine.shop.set(DigitalIn::EmergencyStopOk, false);

@@ -59,7 +59,7 @@ fn the_level_steps_and_the_other_outputs_ramp() {
 }
 
 #[test]
-fn readings_are_put_together_as_the_stage_has_asked_for_them() {
+fn readings_follow_the_order_of_their_acts() {
     let mut shop = Shop::at_rest();
     let reads = [Read::Board, Read::Gates, Read::Coil, Read::Gate, Read::Coil];
     let acts = shop.points.wired(reads.map(Act::Read).to_vec(), &FINE);

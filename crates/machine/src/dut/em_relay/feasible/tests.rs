@@ -106,7 +106,7 @@ fn a_rig_without_a_bin_for_relays_is_refused() {
 }
 
 #[test]
-fn a_ramp_on_an_output_without_slew_code_is_refused_and_steps_are_not() {
+fn only_ramps_need_a_slew_code() {
     for name in ["ao_coarse", "ao_fine"] {
         let steps = |wiring: &mut Wiring| {
             let code_0 = module(wiring, "ao_level").slew;
@@ -157,7 +157,7 @@ fn a_masked_contact_channel_hinders_every_strategy() {
 }
 
 #[test]
-fn a_converter_out_of_fast_mode_is_refused_unless_nobody_counts_on_it() {
+fn a_converter_must_convert_as_fast_as_promised() {
     for name in ["contact_ai", "coil_ai"] {
         let slow = |wiring: &mut Wiring| module(wiring, name).fast = false;
         assert_eq!(hindered(slow), Strategy::ALL);
@@ -174,7 +174,7 @@ fn a_converter_out_of_fast_mode_is_refused_unless_nobody_counts_on_it() {
 }
 
 #[test]
-fn closures_cannot_stop_early_where_no_limit_says_when() {
+fn an_early_stop_needs_a_limit() {
     let (wiring, accuracy) = plant();
     let mut recipe = recipe(Strategy::CoarseFine);
     let DeviceRecipe::EmRelay(relay) = &mut recipe.device else {
@@ -189,7 +189,7 @@ fn closures_cannot_stop_early_where_no_limit_says_when() {
 }
 
 #[test]
-fn outputs_refreshed_every_two_milliseconds_ramp_and_slower_ones_only_step() {
+fn ramps_need_a_refresh_every_two_milliseconds() {
     let (wiring, mut accuracy) = plant();
     accuracy.ao_refresh_ms = 2.0;
     assert_eq!(
@@ -206,7 +206,7 @@ fn outputs_refreshed_every_two_milliseconds_ramp_and_slower_ones_only_step() {
 }
 
 #[test]
-fn limits_that_the_guard_bands_fill_are_refused_with_what_they_leave() {
+fn limits_narrower_than_the_guard_bands_are_refused() {
     let (wiring, accuracy) = plant();
     let around = |nominal: f64, width: f64| {
         let table = format!(

@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn an_event_after_the_end_of_the_ramp_tells_time_not_volts() {
+    fn an_event_beyond_the_ramp_yields_its_end() {
         assert_eq!(
             stopped_at(Volt(7.8), Volt(0.1), Volt(7.95)),
             Some(Volt(7.8 + 0.1))
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn after_nothing_the_next_interval_begins_where_the_last_ended() {
+    fn after_no_event_the_next_interval_adjoins() {
         let beyond = NARROW.next(Direction::Rising, false);
         assert!((beyond.centre.0 - beyond.half_width.0 - 7.93).abs() < 1e-12);
         let below = NARROW.next(Direction::Falling, false);
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn after_an_early_event_the_next_interval_begins_earlier_and_ends_where_the_last_did() {
+    fn an_early_event_extends_the_interval_towards_the_start() {
         let again = NARROW.next(Direction::Rising, true);
         assert!((again.centre.0 + again.half_width.0 - 7.93).abs() < 1e-12);
         assert!((again.centre.0 - again.half_width.0 - 7.75).abs() < 1e-12);

@@ -42,7 +42,7 @@ fn run_of(operate_mv: &[f64], release_mv: f64) -> ReferenceRun {
 }
 
 #[test]
-fn the_fine_lag_is_the_mean_shift_from_the_certificates() {
+fn the_fine_overshoot_is_the_mean_shift() {
     let run = run_of(&[12.0, 15.0, 13.0, 14.0, 16.0], -9.0);
     let overshoots = run
         .overshoots(&golden_parts(), &context().accuracy, untaught())
@@ -54,7 +54,7 @@ fn the_fine_lag_is_the_mean_shift_from_the_certificates() {
 }
 
 #[test]
-fn a_warm_golden_part_is_compared_with_its_certificate_at_its_own_temperature() {
+fn certificates_are_compared_at_the_parts_temperature() {
     let parts = golden_parts();
     let mut run = ReferenceRun::default();
     let warm = Celsius(28.0);
@@ -80,7 +80,7 @@ fn a_warm_golden_part_is_compared_with_its_certificate_at_its_own_temperature() 
 }
 
 #[test]
-fn a_part_that_does_not_fit_the_others_is_named() {
+fn an_outlier_is_named() {
     let run = run_of(&[12.0, 15.0, 130.0, 14.0, 16.0], -9.0);
     let why = run
         .overshoots(&golden_parts(), &context().accuracy, untaught())
@@ -90,7 +90,7 @@ fn a_part_that_does_not_fit_the_others_is_named() {
 }
 
 #[test]
-fn fewer_than_three_golden_parts_teach_no_lag() {
+fn fewer_than_three_reference_parts_teach_no_overshoot() {
     for (n, usable) in [(0, false), (1, false), (2, false), (3, true), (5, true)] {
         let run = run_of(&vec![14.0; n], -9.0);
         let overshoots = run.overshoots(&golden_parts(), &context().accuracy, untaught());
@@ -99,7 +99,7 @@ fn fewer_than_three_golden_parts_teach_no_lag() {
 }
 
 #[test]
-fn more_golden_parts_make_the_lag_surer() {
+fn more_reference_parts_reduce_the_overshoot_uncertainty() {
     let u = |n: usize| {
         let run = run_of(&vec![14.0; n], -9.0);
         let overshoots = run.overshoots(&golden_parts(), &context().accuracy, untaught());
@@ -109,7 +109,7 @@ fn more_golden_parts_make_the_lag_surer() {
 }
 
 #[test]
-fn a_golden_part_that_was_not_fully_measured_is_refused_by_name() {
+fn an_incomplete_reference_part_is_refused_by_name() {
     let part = golden_parts()[1].clone();
     let good = || tested(&part, 0.014, -0.009, 0.0);
     let spoilt = |spoil: fn(&mut TestRecord)| {
@@ -139,7 +139,7 @@ fn a_golden_part_that_was_not_fully_measured_is_refused_by_name() {
 }
 
 #[test]
-fn while_golden_parts_run_the_fine_lag_proves_nothing() {
+fn an_interim_overshoot_proves_nothing() {
     let overshoot = interim(untaught().0, 0.0);
     assert_eq!(
         (overshoot.fine_v.value, overshoot.fine_v.u),

@@ -35,7 +35,7 @@ fn near(a: Volt, b: f64) -> bool {
 }
 
 #[test]
-fn a_step_makes_the_sum_what_was_asked_wherever_the_ramps_stand() {
+fn a_step_sets_the_sum_at_any_ramp_voltage() {
     let mut supply = Supply::new(&crooked());
     for (coarse, fine, total) in [
         (0.0, 0.0, 5.0),
@@ -56,7 +56,7 @@ fn a_step_makes_the_sum_what_was_asked_wherever_the_ramps_stand() {
 }
 
 #[test]
-fn a_ramp_moves_the_sum_by_its_own_way_and_leaves_the_other_outputs() {
+fn a_ramp_leaves_the_other_outputs() {
     let mut supply = Supply::new(&crooked());
     supply.step_to(Volt(5.0));
     let (before, fine) = (supply.total(), supply.fine());
@@ -72,7 +72,7 @@ fn a_ramp_moves_the_sum_by_its_own_way_and_leaves_the_other_outputs() {
 }
 
 #[test]
-fn no_output_is_ever_asked_to_go_below_zero() {
+fn no_output_is_commanded_below_zero() {
     for calibration in [crooked(), (*context().calibration).clone()] {
         let mut supply = Supply::new(&calibration);
         let (coarse, _) = supply.ramp_coarse(Volt(-1.0));
@@ -89,7 +89,7 @@ fn no_output_is_ever_asked_to_go_below_zero() {
 }
 
 #[test]
-fn a_ramp_that_stands_already_takes_no_more_than_settling() {
+fn a_ramp_without_distance_only_settles() {
     let mut supply = Supply::new(&crooked());
     supply.ramp_coarse(Volt(6.0));
     let (_, again) = supply.ramp_coarse(Volt(6.0));

@@ -95,7 +95,7 @@ fn a_resistor_near_its_limit_is_read_again() {
 }
 
 #[test]
-fn open_and_short_fail_into_the_bin_of_the_coil() {
+fn open_and_short_fail_into_the_coil_bin() {
     for (ohm, finding) in [(Some(1e7), Finding::Open), (None, Finding::Short)] {
         let (test, _) = tested(LIMITS, ohm);
         let verdict = test.verdict();

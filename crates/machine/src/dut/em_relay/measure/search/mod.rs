@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn a_staircase_finds_a_threshold_to_half_a_step_and_never_steps_back() {
+    fn a_staircase_resolves_half_a_step() {
         for (direction, threshold) in [(Direction::Rising, 7.913), (Direction::Falling, 2.377)] {
             let (tried, next) = run(Strategy::Staircase, direction, threshold);
             let Next::Found(volts, step) = next else {
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn seven_halvings_leave_a_hundred_and_twenty_eighth_of_the_interval() {
+    fn seven_halvings_leave_1_128_of_the_interval() {
         let (tried, next) = run(Strategy::Bisection, Direction::Rising, 7.913);
         let Next::Found(volts, step) = next else {
             panic!("{next:?}")
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn a_threshold_outside_the_interval_is_no_number() {
+    fn a_threshold_outside_the_interval_needs_ramps() {
         for strategy in [Strategy::Staircase, Strategy::Bisection] {
             assert_eq!(run(strategy, Direction::Rising, 9.5).1, Next::Ramp);
             assert_eq!(run(strategy, Direction::Rising, 5.0).1, Next::Ramp);
@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pulse_inside_the_limit_proves_or_leaves_it_to_ramps() {
+    fn a_pulse_proves_the_limit_or_needs_ramps() {
         let (tried, next) = run(Strategy::Pulse, Direction::Rising, 7.9);
         assert_eq!((tried.len(), next), (1, Next::Proven));
         assert!(tried[0] < Volt(9.0), "{}", tried[0]);

@@ -39,7 +39,7 @@ fn until_armed(acts: &[Act]) -> Span {
 }
 
 #[test]
-fn an_operate_ramp_is_not_armed_while_the_release_ramp_before_it_still_falls() {
+fn an_operate_ramp_waits_for_the_release_ramp() {
     for (sd_v, gate_ms) in [(0.008, 75.0), (0.025, 75.0), (0.06, 80.0)] {
         let context = context();
         let mut state = at_23_c();
@@ -63,7 +63,7 @@ fn an_operate_ramp_is_not_armed_while_the_release_ramp_before_it_still_falls() {
 }
 
 #[test]
-fn a_search_seals_no_part_on_top_of_a_release_ramp_that_still_falls() {
+fn a_search_seals_after_the_release_ramp_ends() {
     let context = context();
     let mut state = at_23_c();
     state
@@ -81,7 +81,7 @@ fn a_search_seals_no_part_on_top_of_a_release_ramp_that_still_falls() {
 }
 
 #[test]
-fn a_release_ramp_turns_the_one_before_it_round_and_prolongs_an_operate_ramp() {
+fn a_release_ramp_waits_for_the_ramp_before() {
     let wait_ms = |rising: bool| {
         let context = context();
         let mut state = at_23_c();
@@ -117,7 +117,7 @@ fn a_release_ramp_turns_the_one_before_it_round_and_prolongs_an_operate_ramp() {
 }
 
 #[test]
-fn a_golden_part_that_teaches_is_looked_for_where_its_certificate_says() {
+fn certificates_place_the_ramps_of_reference_parts() {
     let mut context = context();
     let learned = context.overshoot(Direction::Rising);
     let mut half_width = |coarse: OvershootModel| {
@@ -143,13 +143,13 @@ fn a_golden_part_that_teaches_is_looked_for_where_its_certificate_says() {
 }
 
 #[test]
-fn a_part_of_the_lot_has_no_certificate_to_be_looked_for_at() {
+fn parts_of_the_lot_have_no_certificate() {
     let found = Expected::certified(&context(), Celsius(23.0), Direction::Falling);
     assert_eq!(found, None);
 }
 
 #[test]
-fn a_slow_armature_gets_more_time_and_a_longer_run_up() {
+fn a_slow_armature_gets_longer_waits() {
     let of = |operate_ms: f64| {
         let mut state = at_23_c();
         let reading = Reading {

@@ -43,7 +43,7 @@ fn directions(acts: &[Act]) -> Vec<bool> {
 }
 
 #[test]
-fn a_contact_is_read_in_the_directions_of_its_recipe() {
+fn contacts_are_read_in_the_recipes_polarities() {
     let four = with(|it| it.contact.polarities = Polarities::PlusMinusMinusPlus);
     for stage in [Stage::NcContact, Stage::TimedOperate] {
         assert_eq!(directions(&acts_of(stage, &context())), [false, true]);
@@ -61,7 +61,7 @@ fn a_contact_is_read_in_the_directions_of_its_recipe() {
 }
 
 #[test]
-fn a_coil_is_scanned_as_often_as_its_recipe_says_and_the_mean_is_less_in_doubt() {
+fn more_coil_scans_reduce_the_uncertainty() {
     let four = with(|it| it.coil.scans = 4);
     let scans = |context: &Context| {
         let acts = acts_of(Stage::Coil, context);
@@ -108,7 +108,7 @@ fn after(context: Context, closures: usize, mohm: f64) -> Test {
 }
 
 #[test]
-fn closures_are_added_up_to_the_number_of_the_recipe() {
+fn closures_repeat_up_to_the_recipes_number() {
     let pair = [Stage::TimedOperate, Stage::TimedRelease];
     for (asked, had, more) in [(1, 1, false), (3, 1, true), (3, 2, true), (3, 3, false)] {
         let mut test = after(with(|it| it.contact.closures = asked), had, 18.0);
@@ -119,7 +119,7 @@ fn closures_are_added_up_to_the_number_of_the_recipe() {
 }
 
 #[test]
-fn with_an_early_stop_only_contacts_near_their_limit_get_more_closures() {
+fn an_early_stop_repeats_only_marginal_contacts() {
     let early = || {
         with(|it| {
             it.contact.closures = 8;
@@ -134,7 +134,7 @@ fn with_an_early_stop_only_contacts_near_their_limit_get_more_closures() {
 }
 
 #[test]
-fn a_further_closure_begins_with_the_source_off_and_forward() {
+fn a_further_closure_begins_with_the_source_off() {
     let first = acts_of(Stage::TimedOperate, &context());
     let words = first.iter().filter_map(|act| match act {
         Act::Board(outputs) => Some(outputs),

@@ -65,7 +65,7 @@ fn conditioning_operates_before_the_first_measurement() {
 }
 
 #[test]
-fn the_card_has_its_steps_in_the_order_of_the_test() {
+fn the_card_follows_the_order_of_the_test() {
     let entered = stages_of_a_good_part().into_iter();
     let entered = entered.map(|(stage, ..)| stage.card_step().name());
     let mut firsts: Vec<&str> = Vec::new();
@@ -87,7 +87,7 @@ fn all_acts() -> Vec<(Stage, Vec<Act>)> {
 }
 
 #[test]
-fn each_stage_says_how_it_leaves_the_board() {
+fn each_stage_returns_the_state_of_the_board() {
     let left = stages_of_a_good_part().into_iter();
     let left: Vec<_> = left.map(|(stage, _, armature)| (stage, armature)).collect();
     let expected = [
@@ -106,7 +106,7 @@ fn each_stage_says_how_it_leaves_the_board() {
 }
 
 #[test]
-fn a_stage_that_was_given_up_leaves_nothing_to_build_on() {
+fn an_aborted_stage_leaves_the_board_unknown() {
     let mut test = Test::begin(context(), Shop::at_rest().now);
     test.state.board.armature = Armature::Released;
     test.abandon("module answers ?AA".into());
@@ -154,7 +154,7 @@ fn waits_after(acts: &[Act]) -> Span {
 }
 
 #[test]
-fn whoever_switches_under_a_live_source_waits_for_the_board_to_take_it_off_first() {
+fn switching_waits_until_the_source_is_off() {
     let watched = [
         DigitalOut::CoilDrive,
         DigitalOut::SelectNo,
@@ -178,7 +178,7 @@ fn whoever_switches_under_a_live_source_waits_for_the_board_to_take_it_off_first
 }
 
 #[test]
-fn nothing_is_timed_within_two_milliseconds_of_a_live_source() {
+fn timing_keeps_2_ms_from_a_live_source() {
     // At least one transaction, 3 ms at the highest baud rate, lies between the writes that take the source off and
     // drop the drive: source and selection have switched by then.
     let (_, acts) = all_acts()
@@ -203,7 +203,7 @@ fn nothing_is_timed_within_two_milliseconds_of_a_live_source() {
 }
 
 #[test]
-fn between_two_events_the_counters_are_read_and_before_a_timed_one_both() {
+fn counters_are_read_between_events() {
     let (mut one, mut both) = (false, false);
     for (stage, acts) in all_acts() {
         for act in acts {
@@ -230,7 +230,7 @@ fn no_stage_of_a_part_changes_the_channel_mask() {
 }
 
 #[test]
-fn every_supply_output_asked_for_is_one_that_it_can_give() {
+fn every_commanded_voltage_is_within_its_output() {
     for (stage, acts) in all_acts() {
         for act in acts {
             if let Act::Supply(outputs) = act {
@@ -293,7 +293,7 @@ fn a_rig_in_trouble_has_proven_no_part_bad() {
 }
 
 #[test]
-fn the_level_is_written_anew_after_a_test_that_ended_early() {
+fn an_early_end_rewrites_the_level() {
     let context = context();
     let writes = |ends: fn(&mut TestRecord)| {
         let mut state = TestState::new(&context);
@@ -313,7 +313,7 @@ fn the_level_is_written_anew_after_a_test_that_ended_early() {
 }
 
 #[test]
-fn a_refused_reply_or_a_restarted_module_in_the_middle_voids_the_part() {
+fn refused_replies_and_restarted_modules_void_the_part() {
     // No Kelvin bit is set, so the test goes from the pins straight to off.
     let test = fails_at(&board());
     let why = Verdict::Void(vec![Reason::rig_trouble("module answers ?AA")]);
@@ -362,7 +362,7 @@ const GOOD: [(Parameter, f64); 9] = [
 ];
 
 #[test]
-fn a_part_passes_with_all_nine_results_and_is_void_without_one() {
+fn a_part_needs_all_nine_results_to_pass() {
     assert_eq!(GOOD.len(), parameter::Parameter::ALL.len());
     assert_eq!(measured(&GOOD).verdict(), Verdict::Pass);
     for missing in 0..GOOD.len() {
@@ -375,7 +375,7 @@ fn a_part_passes_with_all_nine_results_and_is_void_without_one() {
 }
 
 #[test]
-fn only_results_inside_the_guard_band_are_measured_again_and_only_once() {
+fn only_results_inside_the_guard_band_repeat_once() {
     let slow = |value: f64| {
         let mut values = GOOD;
         values[1].1 = value;
