@@ -22,12 +22,12 @@ pub mod ledger;
 pub mod mechanism;
 pub mod moves;
 pub mod nest;
+pub mod output;
 pub mod place;
 pub mod recovery;
 pub mod sort;
 pub mod trouble;
 pub mod turn;
-pub mod wants;
 mod watch;
 pub mod wear;
 

@@ -8,11 +8,11 @@
 
 use super::ledger::Kind;
 use super::moves::Move;
+use super::output::{Judged, NestDone, NestExit, NestJob};
 use super::place::{NestId, Place};
 use super::sort::Sort;
 use super::trouble::Trouble;
 use super::turn::Turn;
-use super::wants::{Judged, NestDone, NestExit, NestJob};
 use crate::dut::Device;
 use crate::dut::device::TestOrder;
 use crate::dut::procedure::{Procedure, Progress};

@@ -11,10 +11,10 @@
 
 use super::ledger::Ledger;
 use super::moves::Move;
+use super::output::Landed;
 use super::place::Place;
 use super::trouble::Trouble;
 use super::turn::Turn;
-use super::wants::Landed;
 use crate::rig::axis::{AxisStation, AxisTable};
 use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;

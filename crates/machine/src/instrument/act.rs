@@ -32,9 +32,9 @@ pub enum Read {
     /// Single points.
     Points {
         /// Points to read.
-        asked: Vec<Point>,
+        read: Vec<Point>,
         /// Points kept with their last values.
-        beside: Vec<Point>,
+        retained: Vec<Point>,
     },
     /// Restart check: asks each module with outputs whether it has restarted since the last such check; a restart
     /// raises an alarm.
@@ -43,17 +43,17 @@ pub enum Read {
 
 impl Read {
     /// Reads these points and keeps no others.
-    pub fn points(asked: impl IntoIterator<Item = Point>) -> Self {
+    pub fn points(read: impl IntoIterator<Item = Point>) -> Self {
         Self::Points {
-            asked: asked.into_iter().collect(),
-            beside: Vec::new(),
+            read: read.into_iter().collect(),
+            retained: Vec::new(),
         }
     }
 
     fn job(&self) -> Job {
         match self {
             Self::Word(word) => Job::Read(word.inputs.iter().copied().map(Point::Input).collect()),
-            Self::Points { asked, .. } => Job::Read(asked.clone()),
+            Self::Points { read, .. } => Job::Read(read.clone()),
             Self::Restarts => Job::Restarts,
         }
     }
@@ -230,16 +230,16 @@ impl Runner {
         }
         while let Some(act) = &self.current {
             match act {
-                Act::Set(outputs) => return self.ask(Job::Set(outputs.clone())),
+                Act::Set(outputs) => return self.request(Job::Set(outputs.clone())),
                 Act::Level(outputs) | Act::Ramp(outputs) => {
-                    return self.ask(Job::Level(outputs.clone()));
+                    return self.request(Job::Level(outputs.clone()));
                 }
-                Act::Read(read) => return self.ask(read.job()),
-                Act::Mask(inputs) => return self.ask(Job::Mask(inputs.clone())),
+                Act::Read(read) => return self.request(read.job()),
+                Act::Mask(inputs) => return self.request(Job::Mask(inputs.clone())),
                 Act::Until { point, word, .. } => {
                     let word = word.inputs.iter().copied();
                     let inputs = std::iter::once(*point).chain(word);
-                    return self.ask(Job::Read(inputs.map(Point::Input).collect()));
+                    return self.request(Job::Read(inputs.map(Point::Input).collect()));
                 }
                 Act::Mark => {
                     self.mark = self.since;
@@ -276,7 +276,7 @@ impl Runner {
         Doing::Done
     }
 
-    fn ask(&mut self, job: Job) -> Doing {
+    fn request(&mut self, job: Job) -> Doing {
         self.pending = true;
         Doing::Job(job)
     }
@@ -354,11 +354,11 @@ impl Runner {
             }
             Some(Act::Level(outputs)) => {
                 let wiring = image.wiring();
-                self.readings.trace.asked(wiring, &outputs, self.since);
+                self.readings.trace.commanded(wiring, &outputs, self.since);
             }
             Some(Act::Ramp(outputs)) => {
                 let wiring = image.wiring();
-                self.readings.trace.asked(wiring, &outputs, self.since);
+                self.readings.trace.commanded(wiring, &outputs, self.since);
                 let after = self.since.since(self.marked_from);
                 self.late = self.late.max(Span(after.0.saturating_sub(PROMPT.0)));
             }

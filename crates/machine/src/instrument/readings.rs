@@ -74,8 +74,8 @@ impl Readings {
                 self.trace.word(word.name, &states, at.1);
                 self.keep_word(word, &states);
             }
-            Read::Points { asked, beside } => {
-                for point in asked.iter().chain(beside) {
+            Read::Points { read, retained } => {
+                for point in read.iter().chain(retained) {
                     self.take_point(*point, image, at.0)?;
                 }
             }

@@ -99,7 +99,7 @@ impl Trace {
     }
 
     /// Adds the values commanded to sources, at the time of their answer.
-    pub(super) fn asked(&mut self, wiring: &Wiring, to: &[(AnalogOutput, Volt)], at: RigTime) {
+    pub(super) fn commanded(&mut self, wiring: &Wiring, to: &[(AnalogOutput, Volt)], at: RigTime) {
         for (output, volts) in to {
             let signal = Signal::source(wiring.source_name(*output));
             self.add(signal, at, volts.0);

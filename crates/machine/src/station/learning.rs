@@ -4,7 +4,7 @@
 use super::Station;
 use super::gates::Outcome;
 use super::trouble::Alarm;
-use super::wants::Wants;
+use super::turn::TurnOutput;
 use crate::dut::device::{CalibrationFault, Made};
 use crate::dut::{Calibration, Verdict};
 use crate::handling::Place;
@@ -32,7 +32,7 @@ impl Station {
     pub(super) fn recalibrate(&mut self) {
         self.plan.calibrated = false;
         self.referenced = false;
-        let all: VecDeque<String> = self.plan.golden.iter().cloned().collect();
+        let all: VecDeque<String> = self.plan.reference_serials.iter().cloned().collect();
         self.lot.reference_planned +=
             all.len().saturating_sub(self.lot.reference_left.len()) as u64;
         self.lot.reference_left = all;
@@ -40,9 +40,9 @@ impl Station {
     }
 
     /// Learns from the parts judged in this turn, and applies the gates to them.
-    pub(super) fn learn(&mut self, wants: &mut Wants) {
+    pub(super) fn learn(&mut self, output: &mut TurnOutput) {
         let mut outcome = Outcome::default();
-        for judged in &wants.record.parts.judged {
+        for judged in &output.record.parts.judged {
             match &judged.part.kind {
                 Kind::Reference(serial) if self.lot.gates.is_checking() => {
                     self.check(judged, serial, &mut outcome);
@@ -51,7 +51,7 @@ impl Station {
                 Kind::Reference(serial) => {
                     let last = self.lot.reference_left.is_empty();
                     let learned = self.device.learn_reference(serial, &judged.record, last);
-                    calibrated(learned, &mut wants.record.calibrated, &mut outcome);
+                    calibrated(learned, &mut output.record.calibrated, &mut outcome);
                 }
                 Kind::Lot(_) => {
                     self.count_rejects(judged, &mut outcome);
@@ -60,8 +60,8 @@ impl Station {
                 }
             }
         }
-        wants.notes.trouble.extend(outcome.trouble);
-        wants.record.checked = outcome.checked;
+        output.notes.trouble.extend(outcome.trouble);
+        output.record.checked = outcome.checked;
     }
 
     /// Returns the serial number of the reference part in the nest, unless it serves a check.
@@ -73,12 +73,12 @@ impl Station {
     }
 
     /// Completes the calibration without the last reference part, whose test was interrupted.
-    pub(super) fn end_reference_run(&mut self, wants: &mut Wants) {
+    pub(super) fn end_reference_run(&mut self, output: &mut TurnOutput) {
         if self.referenced && self.lot.reference_left.is_empty() && self.is_calibrating() {
             let mut outcome = Outcome::default();
             let complete = self.device.conclude_reference_parts().map(Some);
-            calibrated(complete, &mut wants.record.calibrated, &mut outcome);
-            wants.notes.trouble.extend(outcome.trouble);
+            calibrated(complete, &mut output.record.calibrated, &mut outcome);
+            output.notes.trouble.extend(outcome.trouble);
         }
     }
 }

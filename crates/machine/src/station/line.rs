@@ -1,6 +1,6 @@
 //! The line: feeder, mechanism, part ledger, and waiting motions.
 
-use super::wants::{Inputs, Wants};
+use super::turn::{Inputs, TurnOutput};
 use crate::guard::Situation;
 use crate::handling::mechanism::DEBOUNCE;
 use crate::handling::recovery::Recovery;
@@ -47,12 +47,12 @@ impl Line {
         &'a mut self,
         now: RigTime,
         inputs: &'a Inputs,
-        wants: &'a mut Wants,
-        golden: &'a mut VecDeque<String>,
+        output: &'a mut TurnOutput,
+        reference_serials: &'a mut VecDeque<String>,
         resting: bool,
     ) -> (&'a mut Feeder, &'a mut Recovery, Turn<'a>) {
         assert!(
-            wants.notes.feeder.is_empty(),
+            output.notes.feeder.is_empty(),
             "trouble of the turn before is left"
         );
         let turn = Turn {
@@ -60,10 +60,10 @@ impl Line {
             image: inputs.image,
             mechanism: &self.mechanism,
             ledger: &mut self.ledger,
-            rig: &mut wants.rig,
-            parts: &mut wants.record.parts,
-            trouble: &mut wants.notes.feeder,
-            golden,
+            rig: &mut output.rig,
+            parts: &mut output.record.parts,
+            trouble: &mut output.notes.feeder,
+            reference_serials,
             recorded: inputs.recorded,
             resting,
         };
@@ -102,14 +102,14 @@ impl Line {
     }
 
     /// Holds motions back until every end sensor is debounced: for an undecided one the guard assumes the whole stroke.
-    pub fn postpone(&mut self, now: RigTime, wants: &mut Wants) {
-        self.postponed.append(&mut wants.rig.motions);
+    pub fn postpone(&mut self, now: RigTime, output: &mut TurnOutput) {
+        self.postponed.append(&mut output.rig.motions);
         if self.mechanism.is_in_doubt() {
             let soon = now + DEBOUNCE;
-            let wake_at = &mut wants.rig.wake_at;
+            let wake_at = &mut output.rig.wake_at;
             *wake_at = Some(wake_at.map_or(soon, |at| at.min(soon)));
         } else {
-            wants.rig.motions.append(&mut self.postponed);
+            output.rig.motions.append(&mut self.postponed);
         }
         let waiting = self.stepwise.iter().chain(&self.postponed).copied();
         self.mechanism.keep_waiting(&waiting.collect::<Vec<_>>());
@@ -123,11 +123,11 @@ impl Line {
     }
 
     /// Returns true when no part is inside and every row is durable; without `pocket` a part may wait there.
-    pub fn is_finished(&self, pocket: bool, recorded: u64, wants: &Wants) -> bool {
+    pub fn is_finished(&self, pocket: bool, recorded: u64, output: &TurnOutput) -> bool {
         let ledger = &self.ledger;
         let empty = ledger.each().all(|(place, _)| place == Place::Pocket);
         let waiting = ledger.holds(Place::Pocket) && (pocket || ledger.is_pocket_found());
-        let mut judged = wants.record.parts.judged.iter();
+        let mut judged = output.record.parts.judged.iter();
         let durable = judged.all(|judged| judged.part.ordinal <= recorded);
         empty && !waiting && durable && self.feeder.moves_no_part()
     }

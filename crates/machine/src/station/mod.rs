@@ -1,9 +1,9 @@
 //! The station: the sequence as a specification.
 //!
-//! `Station::step(now, inputs) -> Wants` is a function of its state and arguments: no clock, no I/O, no `async`. The
+//! `Station::step(now, inputs) -> TurnOutput` is a function of its state and arguments: no clock, no I/O, no `async`. The
 //! caller may call it at any time; the states hold the deadlines.
 //!
-//! The outer machine is [`packml`]; `states` performs each state, `asked` answers orders.
+//! The outer machine is [`packml`]; `states` performs each state, `answers` answers orders.
 //! 1. `Resetting`: [`crate::handling::recovery`] brings every actuator to its rest end and discharges what is found inside;
 //! 2. `Starting`: without a valid calibration probes up in the empty nest, measurements of the references;
 //! 3. `Execute`: reference parts when there is no calibration, then the lot behind its [`gates`], through the
@@ -18,10 +18,10 @@
 //! an alarm that needs a person ends the run, too, and the station resets and starts a lot by itself. Between lots
 //! ([`Plan::between_lots`]) it acts only on orders.
 
+mod activity;
 pub mod annunciator;
-mod asked;
+mod answers;
 pub mod catalogue;
-mod doing;
 pub mod gates;
 mod lamps;
 mod learning;
@@ -35,7 +35,7 @@ mod safety;
 mod states;
 mod timeouts;
 pub mod trouble;
-pub mod wants;
+pub mod turn;
 
 use crate::dut::Device;
 use crate::guard::{Motion, Situation};
@@ -45,8 +45,8 @@ use crate::handling::{Feeder, Ledger, Mechanism, Move};
 use crate::instrument::act::Runner;
 use crate::rig::axis::AxisTable;
 use crate::rig::image::Image;
+pub use activity::Activity;
 use annunciator::Annunciator;
-pub use doing::Doing;
 use gates::{Gates, LotSettings};
 use lamps::Lamps;
 use line::Line;
@@ -55,8 +55,8 @@ use packml::{Mode, State};
 use panel::Panel;
 use std::collections::VecDeque;
 use timeouts::Timeouts;
+use turn::{Inputs, TurnOutput};
 use units::RigTime;
-use wants::{Inputs, Wants};
 
 /// Plan of a run.
 #[derive(Debug, Clone)]
@@ -64,7 +64,7 @@ pub struct Plan {
     /// Number of parts of the lot; `None` for an endless lot.
     pub count: Option<u64>,
     /// Serial numbers of the reference parts at the head of the magazine, used without a calibration.
-    pub golden: Vec<String>,
+    pub reference_serials: Vec<String>,
     /// True with a valid calibration: the run measures neither references nor reference parts.
     pub calibrated: bool,
     /// Life of a calibration, microseconds.
@@ -154,7 +154,7 @@ impl Station {
         let reference_left = if plan.calibrated {
             VecDeque::new()
         } else {
-            plan.golden.iter().cloned().collect()
+            plan.reference_serials.iter().cloned().collect()
         };
         let ledger = Ledger::after(plan.left);
         let mut station = Self {
@@ -172,7 +172,7 @@ impl Station {
             start: Start::Begin,
             referenced: false,
         };
-        if station.plan.calibrated && station.plan.lot.golden_check.at_start {
+        if station.plan.calibrated && station.plan.lot.reference_check.at_start {
             station.begin_check();
         }
         station
@@ -224,17 +224,17 @@ impl Station {
     }
 
     /// Returns the activity of the station.
-    pub fn doing(&self) -> Doing {
+    pub fn activity(&self) -> Activity {
         match self.machine.state {
-            _ if self.machine.ended => Doing::Ended,
-            State::Resetting if !self.alarms.sensed => Doing::WaitingForSensors,
-            State::Resetting if !self.line.homed => Doing::Homing,
-            State::Resetting => Doing::Discharging,
-            State::Starting => Doing::Calibrating,
+            _ if self.machine.ended => Activity::Ended,
+            State::Resetting if !self.alarms.sensed => Activity::WaitingForSensors,
+            State::Resetting if !self.line.homed => Activity::Homing,
+            State::Resetting => Activity::Discharging,
+            State::Starting => Activity::Calibrating,
             State::Execute | State::Completing => match self.line.feeder.test() {
-                Some(test) => Doing::Testing(test.stage()),
-                None if self.lot.began || self.lot.reference_left.is_empty() => Doing::Running,
-                None => Doing::ReferenceParts,
+                Some(test) => Activity::Testing(test.stage()),
+                None if self.lot.began || self.lot.reference_left.is_empty() => Activity::Running,
+                None => Activity::ReferenceParts,
             },
             state @ (State::Stopped
             | State::Idle
@@ -248,15 +248,15 @@ impl Station {
             | State::Stopping
             | State::Aborting
             | State::Aborted
-            | State::Clearing) => Doing::Resting(state),
+            | State::Clearing) => Activity::Resting(state),
         }
     }
 
     /// Performs one turn.
-    pub fn step(&mut self, now: RigTime, mut inputs: Inputs) -> Wants {
-        let mut wants = Wants::default();
+    pub fn step(&mut self, now: RigTime, mut inputs: Inputs) -> TurnOutput {
+        let mut output = TurnOutput::default();
         if self.machine.ended {
-            return wants;
+            return output;
         }
         self.machine.turn(now);
         let ordered = inputs.orders.len();
@@ -266,36 +266,36 @@ impl Station {
         }
         self.machine.began.get_or_insert(now);
         for order in std::mem::take(&mut inputs.orders) {
-            let answer = self.order(order, now, &mut wants);
-            wants.answers.push(answer);
+            let answer = self.order(order, now, &mut output);
+            output.answers.push(answer);
         }
-        let stuck = self.pressed(now, inputs.image, &mut wants);
-        self.by_itself(now, &inputs, &mut wants);
+        let stuck = self.pressed(now, inputs.image, &mut output);
+        self.by_itself(now, &inputs, &mut output);
         if self.machine.ended {
-            return wants;
+            return output;
         }
-        self.look(now, &inputs, stuck, &mut wants);
-        self.raise_all(now, &mut wants);
-        if !wants.rig.safe && !self.machine.ended {
-            self.act(now, inputs, &mut wants);
-            self.raise_all(now, &mut wants);
+        self.look(now, &inputs, stuck, &mut output);
+        self.raise_all(now, &mut output);
+        if !output.rig.safe && !self.machine.ended {
+            self.act(now, inputs, &mut output);
+            self.raise_all(now, &mut output);
         }
-        self.line.postpone(now, &mut wants);
+        self.line.postpone(now, &mut output);
         self.alarms.annunciator.unshelve(now);
-        wants.record.alarms_changed |= self.alarms.annunciator.take_changed();
+        output.record.alarms_changed |= self.alarms.annunciator.take_changed();
         let stack = self.alarms.lamps.show(
             now,
             self.machine.state,
             self.alarms.annunciator.standing(),
-            wants.rig.safe,
+            output.rig.safe,
         );
-        wants.rig.outputs.extend(stack);
+        output.rig.outputs.extend(stack);
         self.line.check();
         self.lot.check();
-        wants.check(now, ordered);
-        let ends = wants.record.ending.is_some();
+        output.check(now, ordered);
+        let ends = output.record.ending.is_some();
         assert_eq!(ends, self.machine.ended, "the end and its event differ");
-        wants
+        output
     }
 
     /// Records a motion that the guard has cleared and the rig has driven.

@@ -32,8 +32,8 @@ pub enum Order {
 }
 
 /// Returns the shelving time in minutes: 1 to 480, 30 when the order names none.
-pub fn shelf_minutes(asked: Option<u32>) -> u32 {
-    asked.unwrap_or(30).clamp(1, 480)
+pub fn shelf_minutes(requested: Option<u32>) -> u32 {
+    requested.unwrap_or(30).clamp(1, 480)
 }
 
 /// Reason of a refused order.

@@ -38,7 +38,7 @@ impl OrderRequest {
     }
 
     /// Sends the answer; does nothing after the page has disconnected.
-    pub fn say(self, answer: Answer) {
+    pub fn answer(self, answer: Answer) {
         (self.way_back)(answer);
     }
 }

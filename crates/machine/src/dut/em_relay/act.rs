@@ -109,8 +109,8 @@ impl Points {
             Read::Drop => act::Read::points([analog(AnalogIn::ContactDrop)]),
             Read::Gates => act::Read::points([Counter::Gate0, Counter::Gate1].map(count)),
             Read::Gate => act::Read::Points {
-                asked: vec![count(Counter::Gate0)],
-                beside: vec![count(Counter::Gate1)],
+                read: vec![count(Counter::Gate0)],
+                retained: vec![count(Counter::Gate1)],
             },
             Read::Track => act::Read::points([Point::Temperature(self.track)]),
             Read::Resets => act::Read::Restarts,

@@ -45,13 +45,13 @@ impl OutputLine {
     };
 
     /// Returns the voltage to command so that the coil gets `wanted`.
-    pub fn ask_for(&self, wanted: Volt) -> Volt {
+    pub fn command_for(&self, wanted: Volt) -> Volt {
         Volt((wanted.0 - self.offset_v.value) / self.gain.value)
     }
 
-    /// Returns the voltage at the coil for the command `asked`.
-    pub fn delivers(&self, asked: Volt) -> Volt {
-        Volt(self.offset_v.value + self.gain.value * asked.0)
+    /// Returns the voltage at the coil for the command `command`.
+    pub fn delivers(&self, command: Volt) -> Volt {
+        Volt(self.offset_v.value + self.gain.value * command.0)
     }
 }
 
@@ -223,8 +223,8 @@ mod tests {
             gain: Factor::new(1.0004, 0.0),
             offset_v: Factor::new(-0.0021, 0.0),
         };
-        let asked = line.ask_for(Volt(7.9));
-        assert!((line.delivers(asked).0 - 7.9).abs() < 1e-12);
+        let command = line.command_for(Volt(7.9));
+        assert!((line.delivers(command).0 - 7.9).abs() < 1e-12);
     }
 
     #[test]

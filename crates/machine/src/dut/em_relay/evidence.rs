@@ -40,7 +40,7 @@ pub fn at_least(curves: &[Curve], parameter: Parameter, nominal_v: f64) -> Optio
 /// One event of the curves.
 enum Event {
     /// Command of a supply output, by its index in [`SUPPLY`], volts.
-    Asked(usize, f64),
+    Command(usize, f64),
     /// Drive on or off.
     Drive(bool),
     /// Contacts closed.
@@ -63,16 +63,16 @@ const SUPPLY: [AnalogOut; 3] = [
 impl Bounds {
     fn of(curves: &[Curve], nominal_v: f64) -> Self {
         let mut seen = Self::default();
-        let mut asked = [0.0; SUPPLY.len()];
+        let mut commands = [0.0; SUPPLY.len()];
         let (mut driven, mut since_us) = (false, None);
         let mut open = false;
         for (at_us, event) in events(curves) {
-            let total: f64 = asked.iter().sum();
+            let total: f64 = commands.iter().sum();
             match event {
-                Event::Asked(output, volts) => {
+                Event::Command(output, volts) => {
                     seen.unmoved(driven && open, total);
                     open = false;
-                    asked[output] = volts;
+                    commands[output] = volts;
                 }
                 Event::Drive(on) if on != driven => {
                     seen.unmoved(driven && open, total);
@@ -96,7 +96,7 @@ impl Bounds {
                 }
             }
         }
-        seen.unmoved(driven && open, asked.iter().sum());
+        seen.unmoved(driven && open, commands.iter().sum());
         seen
     }
 
@@ -115,7 +115,7 @@ fn events(curves: &[Curve]) -> Vec<(i64, Event)> {
         for (at, value) in samples {
             let bit = |n: u32| value as u64 >> n & 1 == 1;
             if let Some(output) = supply {
-                events.push((at, Event::Asked(output, value)));
+                events.push((at, Event::Command(output, value)));
             } else if curve.signal == DigitalOut::CoilDrive.name() {
                 events.push((at, Event::Drive(bit(0))));
             } else if curve.signal == BOARD {

@@ -17,9 +17,9 @@ use units::{Ohm, Volt};
 /// Parts before the mean counts as a trend; from then on each new part has the weight 1/16.
 const ENOUGH: u32 = 16;
 
-/// Returns the resistance of both force contacts: `coil` gets `at_pins` at the command `asked`.
-pub fn in_series(asked: Volt, at_pins: Volt, coil: Ohm) -> Ohm {
-    Ohm(coil.0 * (asked.0 / at_pins.0 - 1.0))
+/// Returns the resistance of both force contacts: `coil` gets `at_pins` at the command `command`.
+pub fn in_series(command: Volt, at_pins: Volt, coil: Ohm) -> Ohm {
+    Ohm(coil.0 * (command.0 / at_pins.0 - 1.0))
 }
 
 /// Mean over the parts of a run, weighted towards the latest: after sixteen parts a weight has fallen to 0.37.

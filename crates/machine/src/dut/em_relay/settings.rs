@@ -33,7 +33,8 @@ pub struct CalibrationSettings {
     /// Age at which the rig refuses a lot, hours.
     pub valid_h: f64,
     /// File of the reference parts, next to `rig.toml`; `None` when no recipe needs them.
-    pub golden: Option<String>,
+    #[serde(rename = "golden")]
+    pub reference_file: Option<String>,
 }
 
 /// A certified value.

@@ -70,32 +70,32 @@ impl Supply {
     /// Returns the act that steps the level so that the sum becomes `total`; the ramps stay.
     pub fn step_to(&mut self, total: Volt) -> Act {
         let wanted = total - self.coarse_at - self.fine_at;
-        let asked = Volt(self.level.ask_for(wanted).0.max(0.0));
-        self.level_at = self.level.delivers(asked);
+        let command = Volt(self.level.command_for(wanted).0.max(0.0));
+        self.level_at = self.level.delivers(command);
         let over = self.total() - total;
         assert!(
-            asked == Volt(0.0) || over < ROUNDING,
+            command == Volt(0.0) || over < ROUNDING,
             "{over:?} over {total:?}"
         );
-        Act::Supply(vec![(AnalogOut::SupplyLevel, asked)])
+        Act::Supply(vec![(AnalogOut::SupplyLevel, command)])
     }
 
     /// Returns the act that starts the coarse ramp towards `volts`, and the duration of the ramp.
     pub fn ramp_coarse(&mut self, volts: Volt) -> (Act, Span) {
-        let asked = Volt(self.coarse.ask_for(volts).0.max(0.0));
-        let way = self.coarse.delivers(asked) - self.coarse_at;
+        let command = Volt(self.coarse.command_for(volts).0.max(0.0));
+        let way = self.coarse.delivers(command) - self.coarse_at;
         self.coarse_at = self.coarse_at + way;
         let takes = Span::seconds(way.0.abs() / self.coarse_v_per_s) + RAMP_MARGIN;
-        (Act::Supply(vec![(AnalogOut::SupplyCoarse, asked)]), takes)
+        (Act::Supply(vec![(AnalogOut::SupplyCoarse, command)]), takes)
     }
 
     /// Returns the act that starts the fine ramp towards `volts`, and the duration of the ramp.
     pub fn ramp_fine(&mut self, volts: Volt) -> (Act, Span) {
-        let asked = Volt(self.fine.ask_for(volts).0.max(0.0));
-        let way = self.fine.delivers(asked) - self.fine_at;
+        let command = Volt(self.fine.command_for(volts).0.max(0.0));
+        let way = self.fine.delivers(command) - self.fine_at;
         self.fine_at = self.fine_at + way;
         let takes = Span::seconds(way.0.abs() / self.fine_v_per_s) + RAMP_MARGIN;
-        (Act::Supply(vec![(AnalogOut::SupplyFine, asked)]), takes)
+        (Act::Supply(vec![(AnalogOut::SupplyFine, command)]), takes)
     }
 }
 

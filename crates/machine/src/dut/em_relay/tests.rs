@@ -55,11 +55,11 @@ pub fn device() -> dut::Device {
 
 /// A device of this context.
 pub fn device_of(context: Context) -> dut::Device {
-    dut::Device::EmRelay(Box::new(Device::of(context, 1.6, golden_parts())))
+    dut::Device::EmRelay(Box::new(Device::of(context, 1.6, reference_parts())))
 }
 
 /// The reference parts of 12 V.
-pub fn golden_parts() -> Vec<ReferencePart> {
+pub fn reference_parts() -> Vec<ReferencePart> {
     let set: ReferenceSet =
         toml::from_str(include_str!("../../../../../config/golden.toml")).unwrap();
     set.of_nominal(12.0).cloned().collect()

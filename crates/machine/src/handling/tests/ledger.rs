@@ -42,9 +42,9 @@ fn parts_are_numbered_in_order_of_entering_the_nest() {
         (Some("G-12-2"), Kind::Reference("G-12-2".into())),
         (None, Kind::Lot(2)),
     ];
-    for (ordinal, (golden, kind)) in (1..).zip(expected) {
+    for (ordinal, (reference, kind)) in (1..).zip(expected) {
         ledger.enter_pocket();
-        ledger.enter_nest(NestId::FIRST, golden.map(String::from));
+        ledger.enter_nest(NestId::FIRST, reference.map(String::from));
         let part = ledger.part(Place::NEST).cloned().unwrap();
         assert_eq!((part.ordinal, part.kind), (ordinal, kind));
         assert_eq!((part.bin, part.test, part.probed_at), (None, None, None));
@@ -136,8 +136,8 @@ fn a_part_is_always_in_exactly_one_place() {
 fn filled(sockets: u16) -> Ledger {
     let mut ledger = Ledger::default();
     for socket in 0..sockets {
-        let golden = (socket == 0).then(|| "G-12-1".to_owned());
-        ledger.fill_socket(socket, golden);
+        let reference = (socket == 0).then(|| "G-12-1".to_owned());
+        ledger.fill_socket(socket, reference);
     }
     ledger
 }

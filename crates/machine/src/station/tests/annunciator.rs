@@ -89,12 +89,12 @@ fn the_first_alarm_is_first_out_and_repeats_count() {
     list.raise(&jam(), RigTime(1));
     list.raise(&door(), RigTime(2));
     assert!(!list.raise(&jam(), RigTime(3)), "it stands already");
-    let told: Vec<_> = list
+    let listed: Vec<_> = list
         .standing()
         .iter()
         .map(|one| (one.first_out, one.count))
         .collect();
-    assert_eq!(told, [(true, 2), (false, 1)]);
+    assert_eq!(listed, [(true, 2), (false, 1)]);
     list.cleared();
     assert!(list.raise(&jam(), RigTime(4)), "it came again");
     assert!(!list.standing()[0].first_out, "the door was open before");

@@ -1,7 +1,7 @@
 //! Events that open and close the gates of a lot.
 
-use super::golden_parts;
 use super::machine::{Machine, Specimen};
+use super::reference_parts;
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::measure::TestRecord;
 use crate::dut::em_relay::reference_part::check;
@@ -11,12 +11,12 @@ use crate::handling::ledger::Kind;
 use crate::handling::place::Place;
 use crate::handling::wear::Uses;
 use crate::rig::sample::Sample;
-use crate::station::Doing;
+use crate::station::Activity;
 use crate::station::catalogue::AlarmCode;
 use crate::station::gates::{CheckSettings, LotSettings, WearSettings};
 use crate::station::orders::Order;
 use crate::station::packml::{Command, State};
-use crate::station::wants::Ending;
+use crate::station::turn::Ending;
 
 const BAD: Specimen = Specimen::OpenCoil;
 
@@ -42,7 +42,7 @@ fn read(part: &ReferencePart, off: Parameter, deviations: f64) -> TestRecord {
 
 #[test]
 fn a_reference_part_agrees_within_three_standard_deviations() {
-    let part = &golden_parts()[0];
+    let part = &reference_parts()[0];
     for parameter in [
         Parameter::CoilResistance,
         Parameter::OperateVoltage,
@@ -67,7 +67,7 @@ fn a_reference_part_agrees_within_three_standard_deviations() {
 /// A machine whose parts, the reference part included, all have an open coil, so that every check fails.
 fn checked(settings: CheckSettings, attended: bool) -> Machine {
     let lot = LotSettings {
-        golden_check: settings,
+        reference_check: settings,
         ..LotSettings::default()
     };
     Machine::of_lot(Some(6), vec![BAD; 9], lot, attended)
@@ -83,9 +83,9 @@ fn after_parts(parts: u64) -> CheckSettings {
 fn kinds(machine: &mut Machine) -> Vec<String> {
     let mut kinds = Vec::new();
     for _ in 0..20_000 {
-        let wants = machine.turn();
+        let output = machine.turn();
         kinds.extend(
-            wants
+            output
                 .record
                 .parts
                 .judged
@@ -96,7 +96,7 @@ fn kinds(machine: &mut Machine) -> Vec<String> {
                 }),
         );
         let rests = machine.station.outer() == State::Held;
-        if wants.record.ending.is_some() || rests {
+        if output.record.ending.is_some() || rests {
             break;
         }
     }
@@ -205,21 +205,21 @@ fn wear_of_earlier_runs_counts() {
     };
     let mut machine = Machine::of_lot(Some(3), vec![BAD; 3], lot, false);
     machine.wore(worn);
-    let mut told = Vec::new();
+    let mut codes = Vec::new();
     loop {
-        let wants = machine.turn();
-        told.extend(
-            wants
+        let output = machine.turn();
+        codes.extend(
+            output
                 .record
                 .alarms
                 .iter()
                 .map(|alarm| (alarm.code.name(), machine.station.uses().probe_touches)),
         );
-        if wants.record.ending.is_some() {
+        if output.record.ending.is_some() {
             break;
         }
     }
-    assert_eq!(told, [("probes_worn".to_owned(), 2)]);
+    assert_eq!(codes, [("probes_worn".to_owned(), 2)]);
 }
 
 #[test]
@@ -229,19 +229,19 @@ fn an_expired_calibration_stops_the_lot() {
         machine.turn();
     }
     machine.calibration_runs_out();
-    let told: Vec<String> = machine
+    let codes: Vec<String> = machine
         .turn()
         .record
         .alarms
         .into_iter()
         .map(|alarm| alarm.code.name())
         .collect();
-    assert_eq!(told, ["calibration_overdue"]);
+    assert_eq!(codes, ["calibration_overdue"]);
     for command in [Command::Clear, Command::Reset, Command::Start] {
         while machine.station.may(command).is_err() {
             machine.turn();
         }
         machine.order(Order::Command(command)).unwrap();
     }
-    assert_eq!(machine.station.doing(), Doing::Calibrating);
+    assert_eq!(machine.station.activity(), Activity::Calibrating);
 }

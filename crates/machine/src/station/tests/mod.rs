@@ -11,4 +11,4 @@ mod run;
 mod safety;
 mod trouble;
 
-pub(crate) use crate::handling::tests::{Shop, context, device, device_of, golden_parts};
+pub(crate) use crate::handling::tests::{MockRig, context, device, device_of, reference_parts};

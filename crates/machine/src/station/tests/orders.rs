@@ -6,7 +6,7 @@ use crate::rig::point::{DigitalIn, DigitalOut};
 use crate::station::orders::Order;
 use crate::station::packml::{Command, Mode, State};
 use crate::station::trouble::Alarm;
-use crate::station::wants::Ending;
+use crate::station::turn::Ending;
 use texts::Lang;
 
 fn said(why: &crate::station::orders::Refused) -> String {
@@ -37,7 +37,7 @@ fn until(machine: &mut Machine, state: State) {
 
 fn testing(machine: &mut Machine) {
     for _ in 0..6000 {
-        if machine.station.doing().stage().is_some() {
+        if machine.station.activity().stage().is_some() {
             return;
         }
         machine.turn();
@@ -85,13 +85,13 @@ fn a_held_line_keeps_its_parts_and_goes_on() {
 fn an_emergency_stop_sends_the_part_to_retest() {
     let mut machine = attended(3);
     testing(&mut machine);
-    machine.shop.set(DigitalIn::EmergencyStopOk, false);
-    let wants = machine.turn();
-    assert!(wants.rig.safe && wants.rig.motions.is_empty());
+    machine.mock.set(DigitalIn::EmergencyStopOk, false);
+    let output = machine.turn();
+    assert!(output.rig.safe && output.rig.motions.is_empty());
     until(&mut machine, State::Aborted);
     let early = machine.order(Order::Command(Command::Clear)).unwrap_err();
     assert!(said(&early).contains("still there"), "{}", said(&early));
-    machine.shop.set(DigitalIn::EmergencyStopOk, true);
+    machine.mock.set(DigitalIn::EmergencyStopOk, true);
     machine.turn();
     give(&mut machine, Command::Clear);
     until(&mut machine, State::Stopped);
@@ -121,15 +121,19 @@ fn a_stuck_part_goes_to_retest_with_one_row() {
     give(&mut machine, Command::Reset);
     until(&mut machine, State::Idle);
     assert_eq!(machine.landed, [(1, Bin::RETEST)]);
-    let told = |what: &str| {
+    let turns_with = |what: &str| {
         machine
-            .told
+            .turns
             .iter()
-            .filter(|it| it.wants.contains(what))
+            .filter(|it| it.output.contains(what))
             .count()
     };
-    assert_eq!(told("Interrupted { ordinal: 1"), 1, "its row is corrected");
-    assert_eq!(told("judged: [Judged"), 1, "it was judged once");
+    assert_eq!(
+        turns_with("Interrupted { ordinal: 1"),
+        1,
+        "its row is corrected"
+    );
+    assert_eq!(turns_with("judged: [Judged"), 1, "it was judged once");
 }
 
 #[test]
@@ -211,8 +215,8 @@ fn a_lamp_test_lights_everything_and_ends() {
     assert!(lit.iter().any(|(point, _)| *point == DigitalOut::LampRed));
     let mut dark = false;
     for _ in 0..800 {
-        let wants = machine.turn();
-        dark |= wants.rig.outputs.contains(&(DigitalOut::LampRed, false));
+        let output = machine.turn();
+        dark |= output.rig.outputs.contains(&(DigitalOut::LampRed, false));
     }
     assert!(dark);
 }
@@ -245,7 +249,10 @@ fn an_empty_magazine_suspends_the_line() {
 fn between_lots_nothing_starts() {
     let mut machine = Machine::between_lots();
     for _ in 0..500 {
-        assert!(machine.turn().rig.motions.is_empty(), "nobody asked for it");
+        assert!(
+            machine.turn().rig.motions.is_empty(),
+            "no motion without an order"
+        );
     }
     assert_eq!(machine.station.outer(), State::Stopped);
     give(&mut machine, Command::Reset);
@@ -265,9 +272,9 @@ fn a_lot_is_left_only_at_rest() {
     testing(&mut machine);
     let why = machine.order(Order::Leave).unwrap_err();
     assert!(said(&why).contains("stop it first"), "{}", said(&why));
-    machine.shop.set(DigitalIn::DoorClosed, false);
+    machine.mock.set(DigitalIn::DoorClosed, false);
     until(&mut machine, State::Aborted);
-    machine.shop.set(DigitalIn::DoorClosed, true);
+    machine.mock.set(DigitalIn::DoorClosed, true);
     let why = machine.order(Order::Leave).unwrap_err();
     assert!(said(&why).contains("clear it first"), "{}", said(&why));
     give(&mut machine, Command::Clear);

@@ -5,7 +5,7 @@ use crate::rig::point::DigitalIn;
 use crate::station::catalogue::AlarmCode;
 use crate::station::orders::Refused;
 use crate::station::packml::{Command, State};
-use crate::station::wants::Ending;
+use crate::station::turn::Ending;
 use units::Span;
 
 type Pressed = Vec<(Command, Result<(), Refused>)>;
@@ -25,9 +25,9 @@ fn stopped() -> Machine {
 }
 
 fn turns(machine: &mut Machine, ms: u64) -> Pressed {
-    let end = machine.shop.now + Span::ms(ms);
+    let end = machine.mock.now + Span::ms(ms);
     let mut pressed = Vec::new();
-    while machine.shop.now < end {
+    while machine.mock.now < end {
         pressed.extend(machine.turn().pressed);
     }
     pressed
@@ -35,9 +35,9 @@ fn turns(machine: &mut Machine, ms: u64) -> Pressed {
 
 /// Holds a button down for `ms`, then releases it until it settles.
 fn hold(machine: &mut Machine, button: DigitalIn, ms: u64) -> Pressed {
-    machine.shop.set(button, true);
+    machine.mock.set(button, true);
     let mut pressed = turns(machine, ms);
-    machine.shop.set(button, false);
+    machine.mock.set(button, false);
     pressed.extend(turns(machine, 100));
     pressed
 }
@@ -64,7 +64,7 @@ fn stop_reset_and_start_are_orders_of_the_panel() {
 fn the_reset_button_clears_an_abort_without_cause() {
     let mut machine = Machine::attended(None, vec![Specimen::MissingPin; 50]);
     turns(&mut machine, 2_000);
-    machine.shop.set(DigitalIn::DoorClosed, false);
+    machine.mock.set(DigitalIn::DoorClosed, false);
     turns(&mut machine, 500);
     assert_eq!(machine.station.outer(), State::Aborted);
     let early = hold(&mut machine, DigitalIn::ButtonReset, 100);
@@ -72,7 +72,7 @@ fn the_reset_button_clears_an_abort_without_cause() {
         matches!(&early[..], [(Command::Clear, Err(_))]),
         "{early:?}"
     );
-    machine.shop.set(DigitalIn::DoorClosed, true);
+    machine.mock.set(DigitalIn::DoorClosed, true);
     turns(&mut machine, 100);
     let clear = hold(&mut machine, DigitalIn::ButtonReset, 100);
     assert_eq!(clear, [(Command::Clear, Ok(()))]);
@@ -82,7 +82,7 @@ fn the_reset_button_clears_an_abort_without_cause() {
 fn a_bouncing_contact_orders_once() {
     let mut machine = stopped();
     for down in [true, false, true, false] {
-        machine.shop.set(DigitalIn::ButtonReset, down);
+        machine.mock.set(DigitalIn::ButtonReset, down);
         assert!(turns(&mut machine, 12).is_empty(), "a twitch");
     }
     let pressed = hold(&mut machine, DigitalIn::ButtonReset, 400);
@@ -92,7 +92,7 @@ fn a_bouncing_contact_orders_once() {
 #[test]
 fn a_held_button_orders_once_and_raises_an_alarm() {
     let mut machine = stopped();
-    machine.shop.set(DigitalIn::ButtonStart, true);
+    machine.mock.set(DigitalIn::ButtonStart, true);
     let pressed = turns(&mut machine, 6_000);
     assert_eq!(pressed.len(), 1, "{pressed:?}");
     let active = |machine: &Machine| {
@@ -104,7 +104,7 @@ fn a_held_button_orders_once_and_raises_an_alarm() {
     };
     assert!(active(&machine));
     assert_eq!(machine.station.outer(), State::Stopped, "it stops nothing");
-    machine.shop.set(DigitalIn::ButtonStart, false);
+    machine.mock.set(DigitalIn::ButtonStart, false);
     turns(&mut machine, 100);
     assert!(!active(&machine));
 }
@@ -112,9 +112,9 @@ fn a_held_button_orders_once_and_raises_an_alarm() {
 #[test]
 fn a_button_down_at_start_orders_nothing() {
     let mut machine = Machine::attended(None, vec![Specimen::MissingPin; 50]);
-    machine.shop.set(DigitalIn::ButtonStop, true);
+    machine.mock.set(DigitalIn::ButtonStop, true);
     assert!(turns(&mut machine, 1_000).is_empty());
-    machine.shop.set(DigitalIn::ButtonStop, false);
+    machine.mock.set(DigitalIn::ButtonStop, false);
     assert!(turns(&mut machine, 100).is_empty());
     assert_eq!(hold(&mut machine, DigitalIn::ButtonStop, 100).len(), 1);
 }
@@ -122,7 +122,7 @@ fn a_button_down_at_start_orders_nothing() {
 #[test]
 fn stop_and_start_at_once_is_stop() {
     let mut machine = stopped();
-    machine.shop.set(DigitalIn::ButtonStart, true);
+    machine.mock.set(DigitalIn::ButtonStart, true);
     let pressed = hold(&mut machine, DigitalIn::ButtonStop, 100);
     let commands: Vec<Command> = pressed.iter().map(|(command, _)| *command).collect();
     assert_eq!(commands, [Command::Stop]);
@@ -132,7 +132,7 @@ fn stop_and_start_at_once_is_stop() {
 fn the_stop_button_ends_an_unattended_run() {
     let mut machine = Machine::new(None, vec![Specimen::MissingPin; 50]);
     turns(&mut machine, 2_000);
-    machine.shop.set(DigitalIn::ButtonStop, true);
+    machine.mock.set(DigitalIn::ButtonStop, true);
     let ending = (0..6_000).find_map(|_| machine.turn().record.ending);
     assert_eq!(ending, Some(Ending::Stopped));
     assert!(machine.station.ledger().balances());

@@ -3,7 +3,7 @@
 use super::machine::{Machine, Specimen, quiet, station};
 use crate::handling::moves::Move;
 use crate::handling::place::Place;
-use crate::station::wants::{Ending, Inputs};
+use crate::station::turn::{Ending, Inputs};
 
 const MIXED: [Specimen; 4] = [
     Specimen::MissingPin,
@@ -63,11 +63,11 @@ fn a_second_stop_ends_the_run_at_once() {
         machine.stop = true;
         assert_eq!(machine.turn().record.ending, None, "{turns} turns");
         machine.abort = true;
-        let wants = machine.turn();
-        assert_eq!(wants.record.ending, Some(Ending::Stopped), "{turns} turns");
+        let output = machine.turn();
+        assert_eq!(output.record.ending, Some(Ending::Stopped), "{turns} turns");
         assert!(
-            wants.rig.safe && wants.rig.motions.is_empty(),
-            "{turns}: {wants:?}"
+            output.rig.safe && output.rig.motions.is_empty(),
+            "{turns}: {output:?}"
         );
     }
 }
@@ -82,8 +82,8 @@ fn more_turns_than_needed_change_nothing() {
     }
     assert_eq!(once.landed, twice.landed);
     let driven = |machine: &Machine| -> Vec<Move> {
-        let told = machine.told.iter();
-        told.flat_map(|told| told.driven.clone()).collect()
+        let turns = machine.turns.iter();
+        turns.flat_map(|turn| turn.driven.clone()).collect()
     };
     assert_eq!(driven(&once).len(), driven(&twice).len());
 }
@@ -92,21 +92,21 @@ fn more_turns_than_needed_change_nothing() {
 fn the_same_inputs_give_the_same_wants() {
     let mut machine = Machine::new(Some(4), MIXED.to_vec());
     machine.run();
-    let mut again = station(Some(4), &machine.shop);
-    for told in &machine.told {
+    let mut again = station(Some(4), &machine.mock);
+    for turn in &machine.turns {
         let inputs = Inputs {
-            image: &told.image,
-            job: told.job.clone(),
-            recorded: told.recorded,
-            bus: told.bus.clone(),
-            stop: told.stop,
-            ..quiet(&told.image)
+            image: &turn.image,
+            job: turn.job.clone(),
+            recorded: turn.recorded,
+            bus: turn.bus.clone(),
+            stop: turn.stop,
+            ..quiet(&turn.image)
         };
-        let wants = again.step(told.now, inputs);
-        assert_eq!(format!("{wants:?}"), told.wants, "at {:?}", told.now);
-        for movement in &told.driven {
-            again.driven(*movement, told.now, &told.image);
+        let output = again.step(turn.now, inputs);
+        assert_eq!(format!("{output:?}"), turn.output, "at {:?}", turn.now);
+        for movement in &turn.driven {
+            again.driven(*movement, turn.now, &turn.image);
         }
     }
-    assert!(machine.told.len() > 500);
+    assert!(machine.turns.len() > 500);
 }

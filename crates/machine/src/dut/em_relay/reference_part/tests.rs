@@ -8,7 +8,7 @@ use crate::dut::em_relay::overshoot::Shown;
 use crate::dut::em_relay::reference_part::{ReferenceRun, interim};
 use crate::dut::em_relay::settings::ReferencePart;
 use crate::dut::em_relay::tests::context;
-use crate::dut::em_relay::tests::golden_parts;
+use crate::dut::em_relay::tests::reference_parts;
 use crate::dut::em_relay::threshold::Direction;
 use crate::gauge::budget::{Budget, Reading};
 use crate::rig::sample::Sample;
@@ -34,7 +34,7 @@ fn tested(part: &ReferencePart, operate_v: f64, release_v: f64, coil_off_ohm: f6
 
 fn run_of(operate_mv: &[f64], release_mv: f64) -> ReferenceRun {
     let mut run = ReferenceRun::default();
-    for (part, mv) in golden_parts().iter().zip(operate_mv) {
+    for (part, mv) in reference_parts().iter().zip(operate_mv) {
         let record = tested(part, mv / 1e3, release_mv / 1e3, 0.0);
         run.learn(part, REFERENCE, &record, &record.own).unwrap();
     }
@@ -45,7 +45,7 @@ fn run_of(operate_mv: &[f64], release_mv: f64) -> ReferenceRun {
 fn the_fine_overshoot_is_the_mean_shift() {
     let run = run_of(&[12.0, 15.0, 13.0, 14.0, 16.0], -9.0);
     let overshoots = run
-        .overshoots(&golden_parts(), &context().accuracy, untaught())
+        .overshoots(&reference_parts(), &context().accuracy, untaught())
         .unwrap();
     assert!((overshoots.operate.fine_v.value - 0.014).abs() < 1e-9);
     assert!((overshoots.release.fine_v.value + 0.009).abs() < 1e-9);
@@ -55,7 +55,7 @@ fn the_fine_overshoot_is_the_mean_shift() {
 
 #[test]
 fn certificates_are_compared_at_the_parts_temperature() {
-    let parts = golden_parts();
+    let parts = reference_parts();
     let mut run = ReferenceRun::default();
     let warm = Celsius(28.0);
     for part in &parts {
@@ -83,7 +83,7 @@ fn certificates_are_compared_at_the_parts_temperature() {
 fn an_outlier_is_named() {
     let run = run_of(&[12.0, 15.0, 130.0, 14.0, 16.0], -9.0);
     let why = run
-        .overshoots(&golden_parts(), &context().accuracy, untaught())
+        .overshoots(&reference_parts(), &context().accuracy, untaught())
         .unwrap_err();
     let why = why.to_string();
     assert!(why.contains("G-12-3"), "{why}");
@@ -93,7 +93,7 @@ fn an_outlier_is_named() {
 fn fewer_than_three_reference_parts_teach_no_overshoot() {
     for (n, usable) in [(0, false), (1, false), (2, false), (3, true), (5, true)] {
         let run = run_of(&vec![14.0; n], -9.0);
-        let overshoots = run.overshoots(&golden_parts(), &context().accuracy, untaught());
+        let overshoots = run.overshoots(&reference_parts(), &context().accuracy, untaught());
         assert_eq!(overshoots.is_ok(), usable, "{n} parts");
     }
 }
@@ -102,7 +102,7 @@ fn fewer_than_three_reference_parts_teach_no_overshoot() {
 fn more_reference_parts_reduce_the_overshoot_uncertainty() {
     let u = |n: usize| {
         let run = run_of(&vec![14.0; n], -9.0);
-        let overshoots = run.overshoots(&golden_parts(), &context().accuracy, untaught());
+        let overshoots = run.overshoots(&reference_parts(), &context().accuracy, untaught());
         overshoots.unwrap().operate.fine_v.u
     };
     assert!((u(3) / u(5) - (5f64 / 3.0).sqrt()).abs() < 1e-9);
@@ -110,7 +110,7 @@ fn more_reference_parts_reduce_the_overshoot_uncertainty() {
 
 #[test]
 fn an_incomplete_reference_part_is_refused_by_name() {
-    let part = golden_parts()[1].clone();
+    let part = reference_parts()[1].clone();
     let good = || tested(&part, 0.014, -0.009, 0.0);
     let spoilt = |spoil: fn(&mut TestRecord)| {
         let mut record = good();

@@ -23,7 +23,7 @@ fn crooked() -> Calibration {
     }
 }
 
-fn asked(act: &Act) -> (AnalogOut, Volt) {
+fn commanded(act: &Act) -> (AnalogOut, Volt) {
     match act {
         Act::Supply(outputs) => outputs[0],
         other => panic!("{other:?} is no supply act"),
@@ -48,7 +48,7 @@ fn a_step_sets_the_sum_at_any_ramp_voltage() {
         supply.ramp_fine(Volt(fine));
         let act = supply.step_to(Volt(total));
         assert!(near(supply.total(), total), "{total} V: {}", supply.total());
-        let (point, level) = asked(&act);
+        let (point, level) = commanded(&act);
         assert_eq!(point, AnalogOut::SupplyLevel);
         let delivered = crooked().level.delivers(level) + supply.coarse() + supply.fine();
         assert!(near(delivered, total), "{total} V: {delivered}");
@@ -61,12 +61,12 @@ fn a_ramp_leaves_the_other_outputs() {
     supply.step_to(Volt(5.0));
     let (before, fine) = (supply.total(), supply.fine());
     let (act, takes) = supply.ramp_coarse(Volt(6.0));
-    assert_eq!(asked(&act).0, AnalogOut::SupplyCoarse);
+    assert_eq!(commanded(&act).0, AnalogOut::SupplyCoarse);
     assert!(near(supply.coarse(), 6.0) && supply.fine() == fine);
     assert!(near(supply.total() - before, 6.0));
     assert!(takes >= Span::seconds(6.0 / 96.0));
     let (act, takes) = supply.ramp_fine(Volt(0.15));
-    assert_eq!(asked(&act).0, AnalogOut::SupplyFine);
+    assert_eq!(commanded(&act).0, AnalogOut::SupplyFine);
     assert!(near(supply.fine(), 0.15));
     assert!(takes >= Span::ms(100) && takes < Span::ms(110));
 }
@@ -79,10 +79,10 @@ fn no_output_is_commanded_below_zero() {
         let (fine, _) = supply.ramp_fine(Volt(-0.5));
         let below = supply.step_to(Volt(-2.0));
         for act in [coarse, fine, below] {
-            assert!(asked(&act).1.0 >= 0.0, "{act:?}");
+            assert!(commanded(&act).1.0 >= 0.0, "{act:?}");
         }
         supply.ramp_coarse(Volt(6.0));
-        assert!(asked(&supply.step_to(Volt(2.0))).1.0 == 0.0);
+        assert!(commanded(&supply.step_to(Volt(2.0))).1.0 == 0.0);
         let least = calibration.level.offset_v.value + supply.coarse().0 + supply.fine().0;
         assert!(near(supply.total(), least), "the sum stays true");
     }

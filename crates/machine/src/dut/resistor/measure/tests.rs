@@ -5,7 +5,7 @@ use super::*;
 use crate::dut::reason::{Code, Reason};
 use crate::dut::recipe::DeviceRecipe;
 use crate::gauge::Side;
-use crate::handling::tests::{Shop, wiring};
+use crate::handling::tests::{MockRig, wiring};
 use crate::rig::bin::Bin;
 
 const LEVEL_V: f64 = 3.9;
@@ -40,30 +40,30 @@ fn device(limits: &str) -> Device {
 
 /// Tests a part of `ohm`; `None` reads over range. Returns the test and the number of readings.
 fn tested(limits: &str, ohm: Option<f64>) -> (Test, usize) {
-    let mut shop = Shop::at_rest();
+    let mut mock = MockRig::at_rest();
     let device = device(limits);
     let order = TestOrder {
         thorough: false,
         teaching: None,
         number: 1,
     };
-    let mut test = device.begin(&order, shop.now);
+    let mut test = device.begin(&order, mock.now);
     let (mut done, mut reads) = (None, 0);
     loop {
-        match test.step(shop.now, done.take().as_ref(), &shop.image) {
+        match test.step(mock.now, done.take().as_ref(), &mock.image) {
             Progress::Judged => return (test, reads),
-            Progress::Doing(Doing::Wait(until)) => shop.now = until,
+            Progress::Doing(Doing::Wait(until)) => mock.now = until,
             Progress::Doing(Doing::Job(job)) => {
                 if matches!(job, crate::instrument::act::Job::Read(_)) {
                     reads += 1;
                     // Volts at the terminal: full scale reads as over range.
-                    shop.volts_at(
+                    mock.volts_at(
                         device.points.current,
                         ohm.map_or(10.0, |ohm| LEVEL_V / ohm * device.promise.volt_per_ampere),
                     );
                 }
                 done = Some(JobDone {
-                    at: shop.now,
+                    at: mock.now,
                     trouble: None,
                 });
             }

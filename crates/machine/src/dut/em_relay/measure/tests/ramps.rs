@@ -11,7 +11,7 @@ use crate::dut::em_relay::overshoot::{OvershootModel, Shown};
 use crate::dut::em_relay::points::DigitalOut;
 use crate::dut::em_relay::reference_part::interim;
 
-use crate::dut::em_relay::tests::golden_parts;
+use crate::dut::em_relay::tests::reference_parts;
 use crate::dut::em_relay::threshold::Direction;
 use crate::gauge::budget::{Budget, Reading};
 use crate::rig::sample::CountSample;
@@ -121,7 +121,7 @@ fn certificates_place_the_ramps_of_reference_parts() {
     let mut context = context();
     let learned = context.overshoot(Direction::Rising);
     let mut half_width = |coarse: OvershootModel| {
-        context.teaching = golden_parts().into_iter().next();
+        context.teaching = reference_parts().into_iter().next();
         let overshoot = interim(coarse, 0.03);
         let overshoots = Overshoots {
             operate: overshoot,

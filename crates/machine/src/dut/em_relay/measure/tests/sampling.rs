@@ -10,7 +10,7 @@ use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::recipe::Strategies;
 use crate::dut::em_relay::sampling::Polarities;
 use crate::gauge::budget::{Budget, Reading};
-use crate::handling::tests::Shop;
+use crate::handling::tests::MockRig;
 use crate::rig::sample::Sample;
 use std::sync::Arc;
 use units::{Unit, Volt};
@@ -87,7 +87,7 @@ fn more_coil_scans_reduce_the_uncertainty() {
 /// A test at its end, after `closures` closures of NO and NC.
 fn after(context: Context, closures: usize, mohm: f64) -> Test {
     let per_v = context.calibration.contact_mohm_per_v.value;
-    let mut test = Test::begin(context, Shop::at_rest().now);
+    let mut test = Test::begin(context, MockRig::at_rest().now);
     test.stages.clear();
     for parameter in [
         Parameter::ContactResistanceNo,
@@ -110,11 +110,11 @@ fn after(context: Context, closures: usize, mohm: f64) -> Test {
 #[test]
 fn closures_repeat_up_to_the_recipes_number() {
     let pair = [Stage::TimedOperate, Stage::TimedRelease];
-    for (asked, had, more) in [(1, 1, false), (3, 1, true), (3, 2, true), (3, 3, false)] {
-        let mut test = after(with(|it| it.contact.closures = asked), had, 18.0);
+    for (closures, had, more) in [(1, 1, false), (3, 1, true), (3, 2, true), (3, 3, false)] {
+        let mut test = after(with(|it| it.contact.closures = closures), had, 18.0);
         test.add_closure();
         let expected: &[Stage] = if more { &pair } else { &[] };
-        assert_eq!(test.stages, expected, "{had} of {asked}");
+        assert_eq!(test.stages, expected, "{had} of {closures}");
     }
 }
 

@@ -13,7 +13,7 @@ use crate::dut::em_relay::{Parameter, parameter};
 use crate::dut::reason::{Code, Reason};
 use crate::dut::verdict::{Bin, Verdict};
 use crate::gauge::budget::{Budget, Reading};
-use crate::handling::tests::Shop;
+use crate::handling::tests::MockRig;
 use crate::instrument::act::{Doing, Job, JobDone};
 use crate::rig::point::Point;
 use crate::rig::sample::Sample;
@@ -107,7 +107,7 @@ fn each_stage_returns_the_state_of_the_board() {
 
 #[test]
 fn an_aborted_stage_leaves_the_board_unknown() {
-    let mut test = Test::begin(context(), Shop::at_rest().now);
+    let mut test = Test::begin(context(), MockRig::at_rest().now);
     test.state.board.armature = Armature::Released;
     test.abandon("module answers ?AA".into());
     assert_eq!(test.state.board.armature, Armature::Unknown);
@@ -245,29 +245,29 @@ fn every_commanded_voltage_is_within_its_output() {
 
 /// The job that reads the board.
 fn board() -> Job {
-    let inputs = Shop::unread().points.board.inputs.clone();
+    let inputs = MockRig::unread().points.board.inputs.clone();
     Job::Read(inputs.into_iter().map(Point::Input).collect())
 }
 
 /// Steps a test through good replies up to `job`, then fails that job.
 fn fails_at(job: &Job) -> Test {
-    let mut shop = Shop::at_rest();
-    shop.track(23.0);
-    let mut test = Test::begin(context(), shop.now);
+    let mut mock = MockRig::at_rest();
+    mock.track(23.0);
+    let mut test = Test::begin(context(), mock.now);
     let mut done = None;
     for _ in 0..200 {
-        match test.step(shop.now, done.take().as_ref(), &shop.image) {
-            Progress::Doing(Doing::Job(asked)) => {
-                shop.after(4);
-                let trouble = (asked == *job).then(|| "module answers ?AA".to_string());
+        match test.step(mock.now, done.take().as_ref(), &mock.image) {
+            Progress::Doing(Doing::Job(requested)) => {
+                mock.after(4);
+                let trouble = (requested == *job).then(|| "module answers ?AA".to_string());
                 done = Some(JobDone {
-                    at: shop.now,
+                    at: mock.now,
                     trouble,
                 });
             }
             Progress::Doing(Doing::Wait(until)) => {
-                shop.now = until;
-                shop.scan();
+                mock.now = until;
+                mock.scan();
             }
             Progress::Doing(other) => panic!("{other:?}"),
             Progress::Judged => return test,
@@ -329,14 +329,14 @@ fn the_first_cause_of_an_early_end_stays() {
     let mut record = TestRecord::default();
     record.stop(Finding::CoilOpen);
     record.stop(Finding::CoilCurrentRemains);
-    let mut test = Test::begin(context(), Shop::at_rest().now);
+    let mut test = Test::begin(context(), MockRig::at_rest().now);
     test.state.record = record;
     let reason = Finding::CoilOpen.into();
     assert_eq!(test.verdict(), Verdict::Fail(vec![reason]));
 }
 
 fn measured(values: &[(Parameter, f64)]) -> Test {
-    let mut test = Test::begin(context(), Shop::at_rest().now);
+    let mut test = Test::begin(context(), MockRig::at_rest().now);
     for (parameter, value) in values {
         let reading = Reading {
             value: *value,

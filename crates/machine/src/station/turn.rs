@@ -4,8 +4,8 @@ use super::orders::{Order, Refused};
 use super::packml::Command;
 use super::trouble::Alarm;
 use crate::dut::Calibration;
+use crate::handling::output::{Commands, NestDone, PartEvents};
 use crate::handling::trouble::Trouble;
-use crate::handling::wants::{Commands, NestDone, PartEvents};
 use crate::rig::image::Image;
 use units::RigTime;
 
@@ -24,7 +24,7 @@ pub struct Inputs<'a> {
     pub stop: bool,
     /// True when the operator ends the lot at once (Ctrl-C, twice).
     pub abort: bool,
-    /// Orders of screens in order of arrival; [`Wants::answers`] has the answer to each.
+    /// Orders of screens in order of arrival; [`TurnOutput::answers`] has the answer to each.
     pub orders: Vec<Order>,
     /// True when every output has confirmed its command.
     pub settled: bool,
@@ -105,7 +105,7 @@ impl Notes {
 
 /// Outputs of a turn.
 #[derive(Debug, Default)]
-pub struct Wants {
+pub struct TurnOutput {
     /// Commands to the rig.
     pub rig: Commands,
     /// Events for the record.
@@ -117,7 +117,7 @@ pub struct Wants {
     pub(super) notes: Notes,
 }
 
-impl Wants {
+impl TurnOutput {
     /// Panics when an invariant of the outputs is broken; `orders` is the number of orders in the turn.
     pub(super) fn check(&self, now: RigTime, orders: usize) {
         let rig = &self.rig;

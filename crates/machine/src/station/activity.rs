@@ -4,7 +4,7 @@ use super::packml::State;
 
 /// Activity of the station.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Doing {
+pub enum Activity {
     /// The run is over.
     Ended,
     /// Waits for the first reading of the safety inputs.
@@ -25,7 +25,7 @@ pub enum Doing {
     Resting(State),
 }
 
-impl Doing {
+impl Activity {
     /// Returns the code: the key of its text in the family `state`.
     pub fn code(self) -> String {
         let code = match self {
@@ -76,20 +76,20 @@ mod tests {
     fn every_state_and_stage_has_a_text() {
         let known: Vec<&str> = texts::plain().map(|it| it.id).collect();
         let inner = [
-            Doing::Ended,
-            Doing::WaitingForSensors,
-            Doing::Homing,
-            Doing::Discharging,
-            Doing::Calibrating,
-            Doing::Testing("Off"),
-            Doing::Running,
-            Doing::ReferenceParts,
+            Activity::Ended,
+            Activity::WaitingForSensors,
+            Activity::Homing,
+            Activity::Discharging,
+            Activity::Calibrating,
+            Activity::Testing("Off"),
+            Activity::Running,
+            Activity::ReferenceParts,
         ];
-        let outer = State::ALL.iter().map(|state| Doing::Resting(*state));
-        for doing in inner.into_iter().chain(outer) {
+        let outer = State::ALL.iter().map(|state| Activity::Resting(*state));
+        for activity in inner.into_iter().chain(outer) {
             assert!(
-                known.contains(&format!("state-{}", doing.code()).as_str()),
-                "{doing:?}"
+                known.contains(&format!("state-{}", activity.code()).as_str()),
+                "{activity:?}"
             );
         }
         for stage in Kind::ALL.into_iter().flat_map(Kind::stages) {
@@ -102,8 +102,8 @@ mod tests {
 
     #[test]
     fn a_view_names_the_stage_behind_the_state() {
-        assert_eq!(Doing::Testing("Coil").name(), "testing: Coil");
-        assert_eq!(Doing::WaitingForSensors.name(), "waiting for sensors");
-        assert_eq!(Doing::Resting(State::Held).name(), "held");
+        assert_eq!(Activity::Testing("Coil").name(), "testing: Coil");
+        assert_eq!(Activity::WaitingForSensors.name(), "waiting for sensors");
+        assert_eq!(Activity::Resting(State::Held).name(), "held");
     }
 }

@@ -4,9 +4,9 @@ use super::Station;
 use super::orders::{Order, Refused, shelf_minutes};
 use super::packml::{self, Command, Mode, On, State};
 use super::trouble::Alarm;
-use super::wants::{Ending, Wants};
+use super::turn::{Ending, TurnOutput};
 use crate::handling::Place;
-use crate::handling::wants::Jog;
+use crate::handling::output::Jog;
 use crate::rig::image::Image;
 use units::{RigTime, Span};
 
@@ -16,7 +16,7 @@ impl Station {
         &mut self,
         order: Order,
         now: RigTime,
-        wants: &mut Wants,
+        output: &mut TurnOutput,
     ) -> Result<(), Refused> {
         if self.machine.ended {
             return Err(Refused::RunEnded);
@@ -24,7 +24,7 @@ impl Station {
         match order {
             Order::Command(command) => {
                 self.may(command)?;
-                self.command(command, now, wants);
+                self.command(command, now, output);
             }
             Order::Mode(mode) => {
                 self.may_change_mode()?;
@@ -32,24 +32,24 @@ impl Station {
             }
             Order::Jog(movement) => {
                 self.may_jog()?;
-                let answer = wants.answers.len();
-                wants.rig.jog = Some(Jog { movement, answer });
+                let answer = output.answers.len();
+                output.rig.jog = Some(Jog { movement, answer });
             }
             Order::Step => {
                 self.may_step()?;
-                wants.rig.motions.extend(self.line.stepwise.pop_front());
+                output.rig.motions.extend(self.line.stepwise.pop_front());
             }
             Order::LampTest => self.alarms.lamps.test(now),
             Order::Leave => {
                 self.may_leave()?;
-                self.leave(Ending::Stopped, now, wants);
+                self.leave(Ending::Stopped, now, output);
             }
             Order::Close => {
                 self.may_close()?;
                 if self.may(Command::Complete).is_ok() {
-                    self.command(Command::Complete, now, wants);
+                    self.command(Command::Complete, now, output);
                 } else {
-                    self.leave(Ending::Complete, now, wants);
+                    self.leave(Ending::Complete, now, output);
                 }
             }
             Order::Acknowledge(code) => {
@@ -70,13 +70,18 @@ impl Station {
     }
 
     /// Answers the orders of the push buttons; returns the alarms of stuck buttons.
-    pub(super) fn pressed(&mut self, now: RigTime, image: &Image, wants: &mut Wants) -> Vec<Alarm> {
+    pub(super) fn pressed(
+        &mut self,
+        now: RigTime,
+        image: &Image,
+        output: &mut TurnOutput,
+    ) -> Vec<Alarm> {
         let (commands, stuck) = self.alarms.panel.look(now, image, self.machine.state);
         for command in commands {
-            let answer = self.order(Order::Command(command), now, wants);
+            let answer = self.order(Order::Command(command), now, output);
             // No person can restart an unattended machine.
             self.machine.stopping |= command == Command::Stop && !self.plan.attended;
-            wants.pressed.push((command, answer));
+            output.pressed.push((command, answer));
         }
         stuck
     }
@@ -221,15 +226,15 @@ impl Station {
         self.line.homed = false;
     }
 
-    fn leave(&mut self, ending: Ending, now: RigTime, wants: &mut Wants) {
-        self.make_safe("stopped", now, wants);
-        self.end(ending, now, wants);
+    fn leave(&mut self, ending: Ending, now: RigTime, output: &mut TurnOutput) {
+        self.make_safe("stopped", now, output);
+        self.end(ending, now, output);
     }
 
-    fn command(&mut self, command: Command, now: RigTime, wants: &mut Wants) {
+    fn command(&mut self, command: Command, now: RigTime, output: &mut TurnOutput) {
         self.machine.fresh = false;
         match command {
-            Command::Abort => return self.abort("abort_ordered", now, wants),
+            Command::Abort => return self.abort("abort_ordered", now, output),
             Command::Clear | Command::Unhold | Command::Reset => self.alarms.annunciator.cleared(),
             Command::Suspend => self.machine.suspended_by_order = true,
             Command::Start
@@ -238,6 +243,6 @@ impl Station {
             | Command::Unsuspend
             | Command::Complete => {}
         }
-        self.enter(command, now, wants);
+        self.enter(command, now, output);
     }
 }
