@@ -73,7 +73,7 @@ fn check(dir: &Path) -> anyhow::Result<String> {
         dir.join("scene.toml").display(),
         plant.scene.elements.len()
     ));
-    if let Some(file) = &plant.calibration.golden {
+    if let Some(file) = &plant.calibration.reference_file {
         let count = plant.golden.parts.len();
         lines.push(format!(
             "{}: {count} golden parts",

@@ -2,7 +2,7 @@
 
 use app::lot::Summary;
 use machine::dut::{Characteristic, Kind};
-use machine::handling::wants::Judged;
+use machine::handling::output::Judged;
 use quality::Spread;
 use std::collections::BTreeMap;
 use std::fmt::Write;

@@ -7,7 +7,7 @@ use app::lot::{LotEvent, LotProgress, Subscriber, part_json};
 use app::progress::progress;
 use indicatif::ProgressBar;
 use machine::handling::ledger::Kind;
-use machine::handling::wants::Judged;
+use machine::handling::output::Judged;
 use std::io::Write;
 use texts::Lang;
 

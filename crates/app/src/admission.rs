@@ -12,7 +12,7 @@ use history::{
 };
 use machine::dut::Recipe;
 use machine::station::trouble::Alarm;
-use machine::station::wants::Ending;
+use machine::station::turn::Ending;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use texts::{Lang, Message};
@@ -136,13 +136,13 @@ fn pass_gates(
     order: &LotOrder,
 ) -> Result<(), NotAdmitted> {
     if let Some(nominal_v) = recipe.rated_v()
-        && plant.lot.golden_check.any()
+        && plant.lot.reference_check.any()
         && plant.golden.of_nominal(nominal_v).next().is_none()
     {
         return Err(NotAdmitted::NoReferencePart {
             file: plant.dir.join("lot.toml"),
             nominal_v,
-            golden: plant.calibration.golden.clone().unwrap_or_default(),
+            golden: plant.calibration.reference_file.clone().unwrap_or_default(),
         });
     }
     let standing = match db.exists() {

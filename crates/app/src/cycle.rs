@@ -29,7 +29,7 @@ pub use event::Event;
 use machine::guard::Guard;
 use machine::handling::NestId;
 use machine::handling::inside::Inside;
-use machine::handling::wants::{NestDone, NestJob};
+use machine::handling::output::{NestDone, NestJob};
 use machine::instrument::act::{Job, JobDone};
 use machine::rig::drive::Outputs;
 use machine::rig::image::Image;
@@ -40,7 +40,7 @@ use machine::station::Station;
 use machine::station::catalogue::AlarmCode;
 use machine::station::packml;
 use machine::station::trouble::Alarm;
-use machine::station::wants::{Ending, Inputs, Wants};
+use machine::station::turn::{Ending, Inputs, TurnOutput};
 use machine::view::{self, OrderRequest, View};
 pub use orders::PANEL;
 pub use profile::Profile;
@@ -171,28 +171,28 @@ impl Cycle {
             self.profile.turns += 1;
             self.scan(now);
             lap(&mut self.profile.scan_s, &mut clock);
-            let mut wants = self.step(now);
+            let mut output = self.step(now);
             lap(&mut self.profile.step_s, &mut clock);
-            self.clear(now, &mut wants);
+            self.clear(now, &mut output);
             lap(&mut self.profile.clear_s, &mut clock);
-            self.apply(now, &mut wants);
+            self.apply(now, &mut output);
             lap(&mut self.profile.apply_s, &mut clock);
-            self.answer(&mut wants, now);
-            self.pressed(&mut wants, now);
-            self.record(now, &mut wants);
+            self.answer(&mut output, now);
+            self.pressed(&mut output, now);
+            self.record(now, &mut output);
             clock = Instant::now();
-            self.publish(now, wants.record.ending.is_some());
+            self.publish(now, output.record.ending.is_some());
             lap(&mut self.profile.publish_s, &mut clock);
-            if wants.rig.verify {
+            if output.rig.verify {
                 self.verify().await;
             }
-            if let Some(ending) = wants.record.ending.take() {
-                assert!(wants.rig.safe, "a run ends and outputs are on");
+            if let Some(ending) = output.record.ending.take() {
+                assert!(output.rig.safe, "a run ends and outputs are on");
                 self.make_safe().await;
                 return (ending, self.profile);
             }
-            if self.job_done.is_none() && wants.rig.wake_at.is_none_or(|at| at > now) {
-                self.wait(now, wants.rig.wake_at).await;
+            if self.job_done.is_none() && output.rig.wake_at.is_none_or(|at| at > now) {
+                self.wait(now, output.rig.wake_at).await;
             }
         }
     }
@@ -295,7 +295,7 @@ impl Cycle {
         }
     }
 
-    fn step(&mut self, now: RigTime) -> Wants {
+    fn step(&mut self, now: RigTime) -> TurnOutput {
         if self.links.history_lost.load(Ordering::Acquire) {
             self.bus_alarm.get_or_insert(AlarmCode::HistoryLost.into());
         }
@@ -325,16 +325,16 @@ impl Cycle {
     }
 
     /// Each wanted motion passes the guard, one after the other, and is driven or refused.
-    fn clear(&mut self, now: RigTime, wants: &mut Wants) {
-        let moves = !wants.rig.motions.is_empty() || wants.rig.jog.is_some();
-        assert!(!(wants.rig.safe && moves), "outputs go safe and one moves");
-        for movement in std::mem::take(&mut wants.rig.motions) {
+    fn clear(&mut self, now: RigTime, output: &mut TurnOutput) {
+        let moves = !output.rig.motions.is_empty() || output.rig.jog.is_some();
+        assert!(!(output.rig.safe && moves), "outputs go safe and one moves");
+        for movement in std::mem::take(&mut output.rig.motions) {
             let situation = self.station.situation(now, &self.image);
             match self.guard.clear(&self.station.motion(movement), &situation) {
                 Ok(cleared) => {
                     if let Err(cannot) = self.outputs.apply(cleared) {
                         self.station
-                            .refused(movement, &cannot.to_string(), now, wants);
+                            .refused(movement, &cannot.to_string(), now, output);
                         return;
                     }
                     self.station.driven(movement, now, &self.image);
@@ -343,36 +343,36 @@ impl Cycle {
                 Err(refusal) => {
                     self.refused = Some(self.shown_refused(movement, &situation, &refusal));
                     self.station
-                        .refused(movement, &refusal.to_string(), now, wants);
+                        .refused(movement, &refusal.to_string(), now, output);
                     return;
                 }
             }
         }
-        if let Some(jog) = wants.rig.jog.take() {
-            assert!(jog.answer < wants.answers.len(), "a jog without its order");
-            wants.answers[jog.answer] = self.jog(jog.movement, now);
+        if let Some(jog) = output.rig.jog.take() {
+            assert!(jog.answer < output.answers.len(), "a jog without its order");
+            output.answers[jog.answer] = self.jog(jog.movement, now);
         }
     }
 
     /// Outputs become commands; the measuring lines get their job.
-    fn apply(&mut self, now: RigTime, wants: &mut Wants) {
-        if wants.rig.safe {
+    fn apply(&mut self, now: RigTime, output: &mut TurnOutput) {
+        if output.rig.safe {
             self.outputs.everything_safe();
             for module in self.traffic.drop_all() {
                 self.outputs.confirmed(module);
             }
         }
-        for (point, on) in wants.rig.outputs.drain(..) {
+        for (point, on) in output.rig.outputs.drain(..) {
             if let Err(needs) = self.outputs.set(point, on) {
                 self.bus_alarm.get_or_insert(Alarm::bus(&needs.to_string()));
             }
         }
-        self.traffic.check_restarts(wants.rig.restart_check);
+        self.traffic.check_restarts(output.rig.restart_check);
         self.traffic
-            .watch_beam(wants.rig.beam.map(|beam| self.wiring.read_events(beam)));
-        let is_job = wants.rig.job.is_some();
-        if let Some(NestJob { nest, job }) = wants.rig.job.take() {
-            assert!(!wants.rig.safe, "outputs go safe and a job begins");
+            .watch_beam(output.rig.beam.map(|beam| self.wiring.read_events(beam)));
+        let is_job = output.rig.job.is_some();
+        if let Some(NestJob { nest, job }) = output.rig.job.take() {
+            assert!(!output.rig.safe, "outputs go safe and a job begins");
             assert!(self.job_done.is_none(), "the answer before was not heard");
             self.job_nest = nest;
             self.start(job);

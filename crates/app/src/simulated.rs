@@ -21,7 +21,7 @@ pub struct LiveRig {
 fn faults(plant: &Plant, source: &Simulated) -> Vec<String> {
     let mut faults = source.faults.clone();
     let asked = faults.iter().any(|it| it.starts_with("golden_every"));
-    let every = plant.lot.golden_check.after_parts.filter(|_| !asked);
+    let every = plant.lot.reference_check.after_parts.filter(|_| !asked);
     faults.extend(every.map(|every| format!("golden_every={every}")));
     faults
 }

@@ -61,7 +61,7 @@ impl Plant {
         let gauge: GaugeSections = rig.settings(keys::rig::FILE)?;
         let wiring =
             Wiring::resolve(&settings, dut::FIXTURES).map_err(|fault| rig.locate(&fault))?;
-        let golden = match &gauge.calibration.golden {
+        let golden = match &gauge.calibration.reference_file {
             Some(name) => load_reference_parts(&dir.join(name))?,
             None => ReferenceSet::default(),
         };

@@ -2,7 +2,7 @@
 
 use super::error::{Doing, Result};
 use super::store::RowIds;
-use machine::station::wants::Ending;
+use machine::station::turn::Ending;
 use rusqlite::{Transaction, params};
 
 /// The end of the open run of a lot.

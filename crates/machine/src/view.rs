@@ -1,4 +1,4 @@
-//! The state that pages show, as plain serialisable types, filled by the cycle and the recorder.
+//! The state that pages show, as plain serialisable types, filled by cycle and recorder.
 
 mod machine;
 mod mimic;
@@ -32,21 +32,21 @@ pub struct View {
     pub under_way: bool,
     /// Recipe of the lot.
     pub recipe: String,
-    /// What the station is doing, with the stage of a test behind it.
+    /// Activity of the station, with the stage of a test.
     pub state: String,
-    /// The same as a code; empty before the first turn.
+    /// Code of the activity; empty before the first turn.
     pub doing: String,
-    /// Stage of the test under way; null while there is none.
+    /// Stage of the test under way; null without a test.
     pub stage: Option<&'static str>,
     /// Parts of the lot judged so far.
     pub judged: u64,
-    /// Parts wanted; `None` for an endless lot.
+    /// Parts ordered; `None` for an endless lot.
     pub count: Option<u64>,
     /// Parts between pocket and beam.
     pub inside: u64,
-    /// Parts that entered, reference parts included.
+    /// Parts fed, reference parts included.
     pub came_in: u64,
-    /// Parts that a beam confirmed, reference parts included.
+    /// Parts confirmed by the beam of a bin, reference parts included.
     pub went_out: u64,
     /// Confirmed parts of the lot by bin.
     pub bins: BTreeMap<String, u64>,
@@ -66,20 +66,20 @@ pub struct View {
     pub lines: Vec<LineView>,
     /// Outer machine, buttons, mechanism, signals.
     pub machine: Machine,
-    /// How the run of a lot that ended last has ended; none before one has.
+    /// End of the last run of a lot; null before the first.
     pub last_run: Option<RunEnd>,
 }
 
-/// How a run of a lot ended.
+/// End of a run of a lot.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct RunEnd {
     /// The lot.
     pub lot: String,
     /// `complete`, `stopped` or `alarm`.
     pub ended: String,
-    /// Code of the trouble that ended it: an alarm, or why the program could not go on; none without trouble.
+    /// Code of the alarm or program fault that ended it; null without one.
     pub cause: Option<String>,
-    /// What happened, English.
+    /// Text of the cause, English.
     pub cause_text: Option<String>,
 }
 

@@ -159,7 +159,7 @@ async fn controller(
             | "replaced" => Ok(()),
             _other => Err(texts::Message::new("refusal", "run_ended")),
         };
-        asked.say(answer);
+        asked.answer(answer);
     }
 }
 

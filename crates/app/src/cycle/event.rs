@@ -2,12 +2,12 @@
 
 use machine::dut::Calibration;
 use machine::handling::inside::Inside;
-use machine::handling::wants::{Interrupted, Judged, Landed, NestExit};
+use machine::handling::output::{Interrupted, Judged, Landed, NestExit};
 use machine::handling::wear::Uses;
 use machine::station::annunciator::Standing;
 use machine::station::packml;
 use machine::station::trouble::Alarm;
-use machine::station::wants::Checked;
+use machine::station::turn::Checked;
 use machine::view::AnsweredOrder;
 use units::RigTime;
 

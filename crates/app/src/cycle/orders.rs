@@ -3,7 +3,7 @@
 use super::{Cycle, Event, publish};
 use machine::handling::moves::Move;
 use machine::station::orders::{Order, Refused};
-use machine::station::wants::Wants;
+use machine::station::turn::TurnOutput;
 use machine::view::{self, AnsweredOrder, By, OrderRequest};
 use texts::Lang;
 use units::RigTime;
@@ -35,18 +35,18 @@ impl Cycle {
         orders
     }
 
-    pub(super) fn answer(&mut self, wants: &mut Wants, now: RigTime) {
-        let (orders, answers) = (self.asked.len(), wants.answers.len());
+    pub(super) fn answer(&mut self, output: &mut TurnOutput, now: RigTime) {
+        let (orders, answers) = (self.asked.len(), output.answers.len());
         assert_eq!(orders, answers, "orders without their answers");
         let asked: Vec<_> = self.asked.drain(..).collect();
-        for (asked, answer) in asked.into_iter().zip(wants.answers.drain(..)) {
+        for (asked, answer) in asked.into_iter().zip(output.answers.drain(..)) {
             self.say(asked, answer, now);
         }
     }
 
     /// Buttons at the machine have no screen to answer to: the audit hears of them.
-    pub(super) fn pressed(&self, wants: &mut Wants, now: RigTime) {
-        for (command, answer) in wants.pressed.drain(..) {
+    pub(super) fn pressed(&self, output: &mut TurnOutput, now: RigTime) {
+        for (command, answer) in output.pressed.drain(..) {
             let answered = AnsweredOrder {
                 order: view::Order {
                     order: command.name().to_owned(),
@@ -71,7 +71,7 @@ impl Cycle {
             refused: said.as_ref().err().map(|why| why.say(Lang::En)),
         };
         self.tell(Event::Ordered(Box::new(answered), now));
-        asked.say(said);
+        asked.answer(said);
     }
 
     /// A motion by hand: refused is an answer to who asked, not an alarm.

@@ -79,10 +79,10 @@ impl Cycle {
         let at_us = jiff::Timestamp::now().as_microsecond();
         self.links.view.send_modify(|view| {
             view.at_us = at_us;
-            let doing = station.doing();
-            view.state = doing.name();
-            view.doing = doing.code();
-            view.stage = doing.stage();
+            let activity = station.activity();
+            view.state = activity.name();
+            view.doing = activity.code();
+            view.stage = activity.stage();
             view.inside = station.ledger().inside();
             // Between lots what the last one has come to stays on the screen.
             if !station.is_between_lots() {

@@ -60,7 +60,7 @@ pub(super) fn cycle(
         attended,
         between_lots: context.purpose.rests_in(),
         count: context.order.count,
-        golden: match context.purpose.rests_in() {
+        reference_serials: match context.purpose.rests_in() {
             Some(_) => Vec::new(),
             None => device.reference_serials(),
         },

@@ -4,7 +4,7 @@ use super::progress::{LotProgress, PartUnderWay};
 use super::summary::Summary;
 use crate::cycle::Event;
 use machine::dut::Calibration;
-use machine::handling::wants::Landed;
+use machine::handling::output::Landed;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 use tokio::sync::mpsc;

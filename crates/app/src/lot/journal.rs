@@ -11,7 +11,7 @@ use machine::station::annunciator::Standing;
 use machine::station::catalogue::AlarmCode;
 use machine::station::orders::shelf_minutes;
 use machine::station::trouble::Alarm;
-use machine::station::wants::{Checked, Ending};
+use machine::station::turn::{Checked, Ending};
 use machine::view::AnsweredOrder;
 use texts::Lang;
 

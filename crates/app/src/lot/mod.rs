@@ -35,7 +35,7 @@ use super::order_queue::OrderQueue;
 use super::traces::Traces;
 use crate::cycle::{CycleLinks, Event, Profile};
 use bus::{LineLog, Pace};
-use machine::station::wants::Ending;
+use machine::station::turn::Ending;
 use recorder::Recorder;
 use screen::Screen;
 use std::path::Path;

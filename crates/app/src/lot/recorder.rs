@@ -20,9 +20,9 @@ use history::{
 };
 use machine::dut::{Calibration, Reason};
 use machine::handling::inside::Inside;
-use machine::handling::wants::{Interrupted, Judged, Landed};
+use machine::handling::output::{Interrupted, Judged, Landed};
 use machine::handling::wear::Uses;
-use machine::station::wants::Ending;
+use machine::station::turn::Ending;
 use std::path::Path;
 use std::time::{Duration, Instant};
 

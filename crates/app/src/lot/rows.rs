@@ -5,7 +5,7 @@ use history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord};
 use machine::dut::{Characteristic, Judgement, Verdict};
 use machine::gauge::{Limit, Reading};
 use machine::handling::ledger::Kind;
-use machine::handling::wants::Judged;
+use machine::handling::output::Judged;
 use machine::instrument::trace::Trace;
 use serde_json::{Map, Value, json};
 use units::RigTime;

@@ -7,7 +7,7 @@ use super::{LotContext, rows};
 use crate::cycle::Event;
 use crate::traces::Traces;
 use machine::handling::ledger::Kind;
-use machine::handling::wants::Judged;
+use machine::handling::output::Judged;
 use machine::view::{LastPart, RecentPart, RunEnd, View};
 use tokio::sync::watch;
 

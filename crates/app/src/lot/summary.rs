@@ -5,7 +5,7 @@ use super::rows::rounded;
 use crate::cycle::Profile;
 use crate::exit::Cause;
 use bus::LineLog;
-use machine::station::wants::Ending;
+use machine::station::turn::Ending;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::Duration;

@@ -160,7 +160,7 @@ impl OrderRouter {
             None => replaced(&db, &order, &by, simulated),
         };
         match beside(write).await {
-            Ok(()) => asked.say(Ok(())),
+            Ok(()) => asked.answer(Ok(())),
             Err(why) => self.refuse(asked, why),
         }
     }
@@ -169,7 +169,7 @@ impl OrderRouter {
     fn refuse(&self, asked: OrderRequest, why: Message) {
         let (order, by) = (asked.order.clone(), asked.by.clone());
         self.pass(OrderRequest::denied(order, by, why.say(Lang::En)));
-        asked.say(Err(why));
+        asked.answer(Err(why));
     }
 
     /// To the run under way, whose answer goes back; whether it was taken.
@@ -180,7 +180,7 @@ impl OrderRouter {
         self.pass(OrderRequest::new(order, by, way_back));
         let answer = answered.await.unwrap_or_else(|_| Err(not_now()));
         let taken = answer.is_ok();
-        asked.say(answer);
+        asked.answer(answer);
         taken
     }
 
@@ -192,7 +192,7 @@ impl OrderRouter {
             None => Err(asked),
         };
         if let Err(asked) = given {
-            asked.say(Err(not_now()));
+            asked.answer(Err(not_now()));
         }
     }
 

@@ -7,7 +7,7 @@ use super::play::Refusal;
 use super::script::{Awaited, Line, Script};
 use crate::cycle::{Event, PANEL};
 use machine::handling::ledger::{Kind, Part};
-use machine::handling::wants::Landed;
+use machine::handling::output::Landed;
 use machine::rig::bin::Bin;
 use machine::station::annunciator::Standing;
 use machine::station::catalogue::AlarmCode;

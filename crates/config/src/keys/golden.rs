@@ -1,6 +1,6 @@
 //! Keys of `golden.toml`.
 
-use machine::dut::em_relay::keys::golden::PART;
+use machine::dut::em_relay::keys::reference_part::PART;
 use machine::form::{Form, Key, from_to, key};
 
 /// Keys of the whole file.

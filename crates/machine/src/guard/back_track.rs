@@ -1,7 +1,7 @@
 //! The last clear pose of a refused stroke, at which it may stop or to which it may return.
 //!
-//! Found by trial, as the remedy is: the guard clears every pose offered here. A pose that just reaches the margin is
-//! not clear, so the offer lies a little before it.
+//! The guard tries each pose before it offers it. A pose that just reaches the margin is not clear, so the offer lies
+//! a little before it.
 
 use super::judge::judge;
 use super::motion::Motion;

@@ -1,6 +1,6 @@
 //! The bodies that a stroke carries along, and the parts in the space during it.
 //!
-//! - A part in the pocket is in front of the pusher as soon as the pusher moves or may have moved.
+//! - A part in the pocket counts as in front of the pusher once the pusher moves or may have moved.
 //! - The pusher carries the part in front of it forward. Going back it leaves the part where it is: the part remains
 //!   an obstacle for all other bodies, but the pusher cannot hit the part that it leaves.
 //! - The gripper takes its part wherever its carriers go. A closed gripper that is down at the nest takes the part in

@@ -1,4 +1,4 @@
-//! Why the guard rejects a scene.
+//! Reasons for which the guard rejects a scene.
 
 use super::actuator::Actuator;
 use super::refusal::Refusal;

@@ -1,4 +1,4 @@
-//! The room of a body that may be anywhere in a span.
+//! Room of a body that may be anywhere in a span.
 //!
 //! A body B rides on actuators, each with a span of possible positions. Its offset then lies in the axis-parallel box
 //! S that holds the sum of the spans, and its room is B + S = { b + s }. The box bounds(piece) + S covers that room

@@ -1,4 +1,4 @@
-//! Why the guard refuses a motion, in numbers and in words for a mechanic.
+//! Refusals of motions, in numbers and in words for a mechanic.
 
 use super::actuator::Actuator;
 use super::motion::Stroke;

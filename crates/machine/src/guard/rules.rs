@@ -1,4 +1,4 @@
-//! The permission of each pair of bodies, as a table with one look-up per pair. The collision core defines the
+//! Permission of each pair of bodies, as a table with one look-up per pair. The collision core defines the
 //! permissions.
 
 use super::actuator::Actuator;

@@ -5,13 +5,13 @@ use super::actuator::{Actuator, Position};
 /// Places that hold a part now. A part belongs in one place only; two places mean two parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct PartPlaces {
-    /// Waits in the pocket.
+    /// In the pocket.
     pub pocket: bool,
-    /// Is in front of the pusher, between pocket and nest.
+    /// In front of the pusher, between pocket and nest.
     pub on_pusher: bool,
-    /// Is in the nest. A gripped part stays here, not in the gripper, until the jaws are open.
+    /// In the nest. A gripped part stays here, not in the gripper, until the jaws are open.
     pub nest: bool,
-    /// Hangs in the gripper.
+    /// In the gripper.
     pub gripper: bool,
 }
 
@@ -32,7 +32,7 @@ impl PartSize {
     }
 }
 
-/// Everything beside the scene that decides a motion.
+/// All inputs of a decision besides the scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Situation {
     positions: [Option<Position>; 8],

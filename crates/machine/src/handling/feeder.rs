@@ -6,10 +6,10 @@ use super::feed::Feed;
 use super::ledger::Ledger;
 use super::moves::Move;
 use super::nest::{self, Nest, NestContext, NestState, TestTerms};
+use super::output::NestDone;
 use super::place::{NestId, Place};
 use super::sort::{self, Sort};
 use super::turn::Turn;
-use super::wants::NestDone;
 use crate::dut::Procedure;
 use crate::guard::PartPlaces;
 use crate::rig::axis::AxisTable;
@@ -33,7 +33,7 @@ pub struct Feeder {
     feed: Feed,
     nests: Vec<Nest>,
     sort: Sort,
-    /// True when the escapement may have let a part through before the sequence was cut off.
+    /// True when a part may have passed the escapement before the sequence was cut off.
     releasing: bool,
     last_left: Option<RigTime>,
 }
@@ -86,12 +86,12 @@ impl Feeder {
         sort::confirm(turn, &self.table);
     }
 
-    /// Notes that a cleared motion was driven: opening fingers release their part.
+    /// Records that a cleared motion was driven: opening fingers release their part.
     pub fn driven(&mut self, movement: Move, ledger: &mut Ledger, now: RigTime) {
         self.sort = self.sort.driven(movement, ledger, now);
     }
 
-    /// Notes that every output is safe and every motion has ended.
+    /// Records that every output is safe and every motion has ended.
     pub fn cut_off(&mut self, ledger: &Ledger) {
         self.releasing |= matches!(self.feed, Feed::Releasing { .. } | Feed::Closing { .. });
         self.reset_states(ledger);
@@ -118,7 +118,7 @@ impl Feeder {
         self.sort = Sort::Returning;
     }
 
-    /// Returns true when the escapement may have let a part through before the sequence was cut off.
+    /// Returns true when a part may have passed the escapement before the sequence was cut off.
     pub fn is_releasing(&self) -> bool {
         self.releasing
     }

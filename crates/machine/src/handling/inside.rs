@@ -1,8 +1,8 @@
-//! Parts left inside by an earlier run, of whose end a killed program leaves no record.
+//! Parts left inside by an earlier run; a killed program leaves no record of its end.
 //!
-//! The next run looks for them at its first homing, with z up: a part left inside is in its old place or farther on,
-//! or the run reports it missing. It always reports a part that was released without a confirmation by its beam,
-//! unless the fingers still hold it. Only sensors decide where parts are; the earlier record never causes a motion.
+//! The next run looks for them during its first homing, with z up: a part left inside is in its old place or farther
+//! on, or the run reports it missing. It also reports a released part that no beam has confirmed, unless the fingers
+//! still hold it. Only sensors decide where parts are; the earlier record never causes a motion.
 
 use super::ledger::Ledger;
 use super::place::Place;
@@ -19,7 +19,7 @@ pub struct Inside {
     pub nest: bool,
     /// The gripper.
     pub gripper: bool,
-    /// Bin over which a part was released without a confirmation by its beam.
+    /// Bin of a released part that its beam has not confirmed.
     pub falling: Option<Bin>,
 }
 

@@ -94,7 +94,7 @@ impl Ledger {
         }
     }
 
-    /// Returns the parts that a new run has to look for.
+    /// Returns the parts that a new run must look for.
     pub fn parts_to_find(&self) -> Inside {
         if self.left == Inside::default() {
             Inside::of(self)
@@ -176,22 +176,22 @@ impl Ledger {
         self.put(Place::Pocket, Held::Unnumbered { found: false });
     }
 
-    /// Moves the part from the pocket to the nest and numbers it; `golden`: serial number of a reference part.
-    pub fn enter_nest(&mut self, nest: NestId, golden: Option<String>) {
+    /// Moves the part from the pocket to the nest and numbers it; `reference`: serial number of a reference part.
+    pub fn enter_nest(&mut self, nest: NestId, reference: Option<String>) {
         let found = self.is_pocket_found();
         assert!(
-            !(found && golden.is_some()),
+            !(found && reference.is_some()),
             "a found part cannot be a reference part"
         );
         self.take(Place::Pocket);
-        let part = self.number(golden, found.then(|| FOUND.to_owned()));
+        let part = self.number(reference, found.then(|| FOUND.to_owned()));
         self.put(Place::Nest(nest), Held::Numbered(part));
     }
 
-    /// Adds a part that a person put into an empty socket; `golden`: serial number of a reference part.
-    pub fn fill_socket(&mut self, socket: u16, golden: Option<String>) {
+    /// Adds a part that a person put into an empty socket; `reference`: serial number of a reference part.
+    pub fn fill_socket(&mut self, socket: u16, reference: Option<String>) {
         self.came_in += 1;
-        let part = self.number(golden, None);
+        let part = self.number(reference, None);
         self.put(Place::Socket(socket), Held::Numbered(part));
     }
 
@@ -256,7 +256,7 @@ impl Ledger {
         self.hand_over(Place::Gripper, Place::Falling);
     }
 
-    /// Moves the falling part back to the fingers: it sticks to them, or they never opened.
+    /// Moves the falling part back to the fingers: it sticks to them, or the fingers never opened.
     pub fn return_to_gripper(&mut self) {
         self.fall = None;
         self.hand_over(Place::Falling, Place::Gripper);
@@ -286,9 +286,9 @@ impl Ledger {
         self.lot_numbered
     }
 
-    fn number(&mut self, golden: Option<String>, interrupted: Option<String>) -> Part {
+    fn number(&mut self, reference: Option<String>, interrupted: Option<String>) -> Part {
         self.numbered += 1;
-        let kind = match golden {
+        let kind = match reference {
             Some(serial) => Kind::Reference(serial),
             None => {
                 self.lot_numbered += 1;

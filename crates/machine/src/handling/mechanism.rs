@@ -41,7 +41,7 @@ impl Underway {
     }
 }
 
-/// A failed work stroke under repetition: back to rest, then forth.
+/// A failed work stroke under repetition: back to rest, then out again.
 #[derive(Debug, Clone, Copy)]
 struct Again {
     movement: Move,
@@ -164,7 +164,7 @@ impl Mechanism {
         self.axis_at = None;
     }
 
-    /// Notes the reset of the axis drive, from which on the drive is watched.
+    /// Records the reset of the axis drive and begins to watch the drive.
     pub fn drive_reset(&mut self, at: RigTime) {
         self.watch.drive_reset(at);
     }
@@ -188,7 +188,7 @@ impl Mechanism {
         self.uses
     }
 
-    /// Notes that a motion was driven.
+    /// Records that a motion was driven.
     pub fn driven(&mut self, movement: Move, now: RigTime, image: &Image) {
         let from = self.positions(now, image);
         let key = movement.actuator_key();
@@ -220,7 +220,7 @@ impl Mechanism {
         }
     }
 
-    /// Notes arrivals; repeats a late stroke or reports it.
+    /// Records arrivals; repeats a late stroke or reports it.
     pub fn update(&mut self, now: RigTime, image: &Image) -> MechanismUpdate {
         let mut found = MechanismUpdate::default();
         for underway in std::mem::take(&mut self.underway) {
@@ -244,8 +244,8 @@ impl Mechanism {
             && self.sensed(underway.movement, now, image)
     }
 
-    /// Returns true when a sensor value requested after the time-out does not show the end. On a slow line the value
-    /// before it may be older than the stroke.
+    /// Returns true when a sensor value requested after the time-out does not show the end. On a slow line an earlier
+    /// value may be older than the stroke.
     fn is_late(&self, underway: &Underway, image: &Image) -> bool {
         let limit = self.timeout_of(underway.movement);
         underway.was_looked_at(underway.since + limit, image)

@@ -1,4 +1,4 @@
-//! Brings parts to the instruments and into bins.
+//! Handling: brings parts to the instruments and into bins.
 //!
 //! Signals: end sensors of every actuator, part sensors of pocket, nest and gripper, a beam in the chute of each bin.
 //! A sensor value is valid for [`mechanism::SENSOR_AGE`]; an unread one is unknown, never guessed.
@@ -22,12 +22,12 @@ pub mod ledger;
 pub mod mechanism;
 pub mod moves;
 pub mod nest;
+pub mod output;
 pub mod place;
 pub mod recovery;
 pub mod sort;
 pub mod trouble;
 pub mod turn;
-pub mod wants;
 mod watch;
 pub mod wear;
 

@@ -14,7 +14,7 @@ pub enum Move {
     EscapementHold,
     /// Pusher takes the part from the pocket to the nest.
     PusherExtend,
-    /// Pusher goes back.
+    /// Pusher returns.
     PusherRetract,
     /// Both jaws of the nest close.
     ClampClose,
@@ -139,8 +139,8 @@ impl Move {
         }
     }
 
-    /// Returns the stroke to rest that frees the actuator for a repetition; `None` for strokes to rest and where the
-    /// return would release a part in the wrong place.
+    /// Returns the stroke to rest that precedes a repetition; `None` for strokes to rest and for those whose return
+    /// would release a part in the wrong place.
     pub fn way_back(self) -> Option<Move> {
         match self {
             Move::EscapementRelease => Some(Move::EscapementHold),
@@ -197,7 +197,7 @@ impl Move {
         }
     }
 
-    /// What drives it.
+    /// Returns the actuator that performs it.
     pub const fn key(self) -> ActuatorKey {
         match self {
             Move::EscapementRelease | Move::EscapementHold => ActuatorKey::Escapement,
@@ -210,12 +210,12 @@ impl Move {
         }
     }
 
-    /// Key of the actuator's time-out in `config/rig.toml`.
+    /// Returns the key of the actuator's time-out in `config/rig.toml`.
     pub const fn actuator_key(self) -> &'static str {
         self.key().name()
     }
 
-    /// Its name in orders, views and alarms; the axis goes to a bin ([`Self::bin`]) as `axis_bin`.
+    /// Returns the name in orders, views and alarms; the axis goes to a bin ([`Self::bin`]) as `axis_bin`.
     pub fn code(self) -> &'static str {
         match self {
             Move::EscapementRelease => "escapement_release",
@@ -237,7 +237,7 @@ impl Move {
         }
     }
 
-    /// The bin that the axis goes to.
+    /// Returns the bin that the axis goes to.
     pub fn bin(self) -> Option<Bin> {
         match self.station()? {
             AxisStation::Bin(bin) => Some(bin),
@@ -246,16 +246,16 @@ impl Move {
     }
 }
 
-/// What a time-out, a retry and an alarm speak of; both jaws are one clamp.
+/// Actuator of a time-out, a retry or an alarm; both jaws are one clamp.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum ActuatorKey {
-    /// Lets parts into the pocket.
+    /// Escapement between track and pocket.
     Escapement,
-    /// From the pocket to the nest.
+    /// Pusher from the pocket to the nest.
     Pusher,
     /// Both jaws.
     Clamp,
-    /// Probes to the pins.
+    /// Lift of the probes.
     ProbeLift,
     /// Sort axis.
     Axis,
@@ -266,7 +266,7 @@ pub enum ActuatorKey {
 }
 
 impl ActuatorKey {
-    /// Every one.
+    /// Every key.
     pub const ALL: [Self; 7] = [
         Self::Escapement,
         Self::Pusher,
@@ -277,7 +277,7 @@ impl ActuatorKey {
         Self::Gripper,
     ];
 
-    /// The key in `config/rig.toml`, counters and alarms.
+    /// Returns the key in `config/rig.toml`, counters and alarms.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Escapement => "escapement",

@@ -8,11 +8,11 @@
 
 use super::ledger::Kind;
 use super::moves::Move;
+use super::output::{Judged, NestDone, NestExit, NestJob};
 use super::place::{NestId, Place};
 use super::sort::Sort;
 use super::trouble::Trouble;
 use super::turn::Turn;
-use super::wants::{Judged, NestDone, NestExit, NestJob};
 use crate::dut::Device;
 use crate::dut::device::TestOrder;
 use crate::dut::procedure::{Procedure, Progress};
@@ -21,8 +21,8 @@ use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
 use units::{RigTime, Second};
 
-/// Most tests of a void reference part. Its result affects every later part, and one lost reset status or one refused
-/// reply should not force a new calibration.
+/// Greatest number of tests of a void reference part: its result affects every later part, and one lost reply should
+/// not force a new calibration.
 const REFERENCE_TESTS: u8 = 3;
 
 /// State of a nest.
@@ -55,12 +55,12 @@ pub struct Nest {
     pub state: NestState,
 }
 
-/// Conditions of the test in a nest.
+/// Conditions of a test.
 #[derive(Debug, Clone, Copy)]
 pub struct TestTerms<'a> {
     /// Kind under test: recipe, calibration and the values learned from parts.
     pub device: &'a Device,
-    /// True when every result is a mean of confirmation measurements.
+    /// True when every result gets confirmation measurements.
     pub thorough: bool,
     /// Serial number of a reference part whose test calibrates.
     pub teaching: Option<&'a str>,
@@ -78,7 +78,7 @@ impl TestTerms<'_> {
     }
 }
 
-/// Inputs of a nest beside the turn.
+/// Inputs of a nest besides the turn.
 pub struct NestContext<'a> {
     /// Completion of the nest's job, once.
     pub done: Option<JobDone>,
@@ -159,7 +159,7 @@ impl Nest {
     }
 }
 
-/// Starts the test. An interrupted part goes to retest without one, with a row if it has none yet.
+/// Starts the test. An interrupted part goes to retest without one; it gets a row unless it has one already.
 fn clamped(id: NestId, turn: &mut Turn) -> NestState {
     let part = turn.ledger.part_mut(Place::Nest(id));
     let interrupted = part.as_ref().and_then(|part| part.interrupted.clone());

@@ -51,7 +51,7 @@ enum Stage {
 pub struct Recovery {
     stage: Stage,
     left: VecDeque<Move>,
-    asked: Option<Move>,
+    requested: Option<Move>,
     refused: usize,
 }
 
@@ -60,7 +60,7 @@ impl Default for Recovery {
         Self {
             stage: Stage::Looking,
             left: ORDER.into(),
-            asked: None,
+            requested: None,
             refused: 0,
         }
     }
@@ -77,13 +77,13 @@ impl Recovery {
                 }
             }
             Stage::Drive(since) => self.drive(turn, since),
-            Stage::Up if !turn.arrived(Move::SortUp) => self.ask(turn, Move::SortUp),
+            Stage::Up if !turn.arrived(Move::SortUp) => self.request(turn, Move::SortUp),
             Stage::Up => {
                 if let Some(seen) = SensedParts::of(turn) {
                     pushed(turn, &seen);
                     reconcile(turn.ledger, &seen, releasing, turn.trouble);
                     self.leave_gripped(turn.ledger);
-                    (self.stage, self.asked) = (Stage::Home, None);
+                    (self.stage, self.requested) = (Stage::Home, None);
                 }
             }
             Stage::Home => return self.home(turn),
@@ -98,12 +98,12 @@ impl Recovery {
 
     /// Defers a motion that the guard refused; returns false when no other motion is left to try first.
     pub fn refused(&mut self, movement: Move) -> bool {
-        if self.asked != Some(movement) || self.stage != Stage::Home {
+        if self.requested != Some(movement) || self.stage != Stage::Home {
             return false;
         }
         let first = self.left.front();
         assert_eq!(first, Some(&movement), "homing requested another motion");
-        self.asked = None;
+        self.requested = None;
         self.refused += 1;
         self.left.rotate_left(1);
         self.refused < self.left.len()
@@ -124,10 +124,10 @@ impl Recovery {
         }
     }
 
-    fn ask(&mut self, turn: &mut Turn, movement: Move) {
-        if self.asked != Some(movement) {
+    fn request(&mut self, turn: &mut Turn, movement: Move) {
+        if self.requested != Some(movement) {
             turn.drive(movement);
-            self.asked = Some(movement);
+            self.requested = Some(movement);
         }
     }
 
@@ -145,9 +145,9 @@ impl Recovery {
         };
         if turn.arrived(movement) {
             self.left.pop_front();
-            (self.asked, self.refused) = (None, 0);
+            (self.requested, self.refused) = (None, 0);
         } else {
-            self.ask(turn, movement);
+            self.request(turn, movement);
         }
         self.left.is_empty()
     }
@@ -179,11 +179,11 @@ impl SensedParts {
 fn pushed(turn: &mut Turn, seen: &SensedParts) {
     let gone = turn.ledger.holds(Place::Pocket) && !seen.pocket;
     if gone && !turn.ledger.holds(Place::NEST) && seen.nest {
-        let golden = match turn.ledger.is_pocket_found() {
+        let reference = match turn.ledger.is_pocket_found() {
             true => None,
             false => turn.next_reference_part(),
         };
-        turn.ledger.enter_nest(NestId::FIRST, golden);
+        turn.ledger.enter_nest(NestId::FIRST, reference);
     }
 }
 

@@ -4,17 +4,17 @@
 //! returning -> over nest -> lowering -> at part -> (nest closes fingers, lifts) -> carrying
 //!           -> over bin -> letting go -> opening -> returning
 //! ```
-//! Open fingers that still hold a part do not return, as they would set it down on the next one.
+//! The sorter does not return while open fingers still hold a part, which they would drop on the next one.
 //!
-//! Releases a part only when its rows are durable and the previous part has passed its beam. z comes down early,
-//! during the test, once the pusher has returned.
+//! It releases a part only when the part's rows are durable and the previous part has passed its beam. z comes down
+//! early, during the test, once the pusher has returned.
 
 use super::ledger::Ledger;
 use super::moves::Move;
+use super::output::Landed;
 use super::place::Place;
 use super::trouble::Trouble;
 use super::turn::Turn;
-use super::wants::Landed;
 use crate::rig::axis::{AxisStation, AxisTable};
 use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
@@ -46,7 +46,7 @@ pub enum Sort {
     Carrying(Bin),
     /// Over the bin since this time.
     OverBin(Bin, RigTime),
-    /// The opening of the fingers is requested; they own the part until it is driven. With the beam's count before.
+    /// Requests the opening of the fingers, which own the part until it is driven; with the beam's count before.
     LettingGo(Bin, u32),
     /// The fingers open.
     Opening,
@@ -99,7 +99,7 @@ impl Sort {
         *self == Sort::AtPart && turn.arrived(Move::SortDown) && turn.arrived(Move::GripperOpen)
     }
 
-    /// Notes that a cleared motion was driven: opening fingers release their part.
+    /// Records that a cleared motion was driven: opening fingers release their part.
     pub fn driven(self, movement: Move, ledger: &mut Ledger, now: RigTime) -> Sort {
         match (self, movement) {
             (Sort::LettingGo(bin, before), Move::GripperOpen) => {
@@ -175,7 +175,7 @@ pub fn confirm(turn: &mut Turn, table: &AxisTable) {
         .filter(|count| count.origin.at > since)
         .map(|count| (count.origin.at, count.count));
     match count.map(|(at, count)| (at, count.wrapping_sub(before) & 0xFFFF)) {
-        // A count from before the first one has no information about a second body.
+        // A count older than the first one carries no information about a second body.
         Some((at, 1)) if at.since(*falling.seen.get_or_insert(at)) >= SECOND_BODY => {
             landed(turn, bin);
         }

@@ -1,11 +1,11 @@
-//! Troubles of feeder and mechanism, as data; the station makes alarms of them, with texts.
+//! Troubles of feeder and mechanism, as data; the station turns them into alarms with texts.
 
 use super::moves::Move;
 use super::place::Place;
 use crate::rig::bin::Bin;
 use units::Span;
 
-/// A trouble and the things concerned.
+/// A trouble and what it concerns.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Trouble {
     /// A stroke missed its end within this time, at the repetition if there is one.

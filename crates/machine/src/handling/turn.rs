@@ -3,9 +3,9 @@
 use super::ledger::Ledger;
 use super::mechanism::{Mechanism, SENSOR_AGE};
 use super::moves::Move;
+use super::output::{Commands, PartEvents};
 use super::place::{NestId, Place};
 use super::trouble::Trouble;
-use super::wants::{Commands, PartEvents};
 use crate::rig::image::Image;
 use crate::rig::point::{DigitalIn, DigitalInput};
 use std::collections::VecDeque;
@@ -28,7 +28,7 @@ pub struct Turn<'a> {
     /// Troubles of this turn.
     pub trouble: &'a mut Vec<Trouble>,
     /// Serial numbers of the reference parts to come, in the order of the magazine.
-    pub golden: &'a mut VecDeque<String>,
+    pub reference_serials: &'a mut VecDeque<String>,
     /// Ordinal up to which parts are durably recorded.
     pub recorded: u64,
     /// True while the sequence goes to rest: no new action begins.
@@ -73,6 +73,6 @@ impl Turn<'_> {
 
     /// Takes the serial number of the next part, if it is a reference part.
     pub fn next_reference_part(&mut self) -> Option<String> {
-        self.golden.pop_front()
+        self.reference_serials.pop_front()
     }
 }

@@ -1,8 +1,8 @@
 //! Watches resting actuators: each must keep showing its end, and never both ends at once.
 //!
 //! A deviation shorter than [`DEBOUNCE`] is a bounce: counted, without consequence. While a deviation is undecided, no
-//! motion begins. An unread sensor is no trouble here; its line reports it. The drive of the axis is watched after its
-//! reset.
+//! A bounce (shorter than [`DEBOUNCE`]) is only counted. While a deviation is undecided, no motion begins. An unread
+//! sensor is no trouble here; its line reports it. The drive of the axis is watched after its reset.
 
 use super::mechanism::{DEBOUNCE, SENSOR_AGE};
 use super::moves::Move;
@@ -55,7 +55,7 @@ impl Watch {
         self.drive_reset = None;
     }
 
-    /// Notes the reset of the axis drive, from which on the drive is watched.
+    /// Records the reset of the axis drive and begins to watch the drive.
     pub fn drive_reset(&mut self, at: RigTime) {
         self.drive_reset = Some(at);
     }

@@ -27,7 +27,7 @@ impl Uses {
     }
 }
 
-/// What wears.
+/// Wearing part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Wearing {
     /// Probes, by touches.
@@ -37,10 +37,10 @@ pub enum Wearing {
 }
 
 impl Wearing {
-    /// Every one.
+    /// Every wearing part.
     pub const ALL: [Self; 2] = [Self::Probes, Self::Jaws];
 
-    /// The name in alarms.
+    /// Returns the name in alarms.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Probes => "probes",

@@ -1,8 +1,8 @@
 //! Acts, of which a test stage is made: each is a few transactions of one line, or one wait.
 //!
-//! A stage lists its acts before it begins; [`Runner`] carries them out and keeps the readings. So the order of a test
-//! can be read, printed and replayed, and no stage ever occupies the bus. Acts name wired points and know nothing of
-//! the device; the wiring turns them into transactions.
+//! A stage lists its acts before it begins; [`Runner`] carries them out and stores the readings. So the order of a
+//! test can be read, printed and replayed, and no stage ever occupies the bus. Acts name wired points and are
+//! independent of the device; the wiring turns them into transactions.
 
 use super::readings::{Readings, Unread};
 use crate::rig::image::Image;
@@ -10,9 +10,9 @@ use crate::rig::point::{AnalogInput, AnalogOutput, DigitalInput, DigitalOutput, 
 use std::sync::Arc;
 use units::{RigTime, Span, Volt};
 
-/// Longest normal time from the last look that does not show an awaited event to the end of the write after it: a
-/// poll, a reading, the write. When a retry or a slow line delays the ramp, it ends later by the same delay; a ramp
-/// that reverses has run on meanwhile, and needs as long again to return.
+/// Longest normal time from the last poll without an awaited event to the end of the write after it: a poll, a
+/// reading, the write. When a retry or a slow line delays the ramp, the ramp ends later by that delay; a ramp that
+/// reverses has run on meanwhile, and needs as long again to return.
 const PROMPT: Span = Span::ms(13);
 
 /// Digital inputs read together and kept as one signal: bit n is input n.
@@ -32,9 +32,9 @@ pub enum Read {
     /// Single points.
     Points {
         /// Points to read.
-        asked: Vec<Point>,
+        read: Vec<Point>,
         /// Points kept with their last values.
-        beside: Vec<Point>,
+        retained: Vec<Point>,
     },
     /// Restart check: asks each module with outputs whether it has restarted since the last such check; a restart
     /// raises an alarm.
@@ -43,17 +43,17 @@ pub enum Read {
 
 impl Read {
     /// Reads these points and keeps no others.
-    pub fn points(asked: impl IntoIterator<Item = Point>) -> Self {
+    pub fn points(read: impl IntoIterator<Item = Point>) -> Self {
         Self::Points {
-            asked: asked.into_iter().collect(),
-            beside: Vec::new(),
+            read: read.into_iter().collect(),
+            retained: Vec::new(),
         }
     }
 
     fn job(&self) -> Job {
         match self {
             Self::Word(word) => Job::Read(word.inputs.iter().copied().map(Point::Input).collect()),
-            Self::Points { asked, .. } => Job::Read(asked.clone()),
+            Self::Points { read, .. } => Job::Read(read.clone()),
             Self::Restarts => Job::Restarts,
         }
     }
@@ -82,11 +82,11 @@ pub enum Act {
     Wait(Span),
     /// Waits as [`Act::WaitSinceMark`] does, for a conversion that began after the mark.
     ConvertSinceMark(Span),
-    /// Reads a word until the point is active or the time is over; keeps which of the two happened.
+    /// Reads a word until the point is active or the time is over; records which of the two happened.
     Until {
         /// The awaited input.
         point: DigitalInput,
-        /// Inputs kept from the last look.
+        /// Inputs recorded at the last poll.
         word: Arc<Word>,
         /// Longest wait.
         within: Span,
@@ -117,7 +117,7 @@ pub struct JobDone {
     pub trouble: Option<String>,
 }
 
-/// What the runner needs next from its caller.
+/// Request of the runner to its caller.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Doing {
     /// Start this job; report it with [`JobDone`].
@@ -206,7 +206,7 @@ impl Runner {
         self.current.is_none() && !self.pending
     }
 
-    /// Makes a runner that begins now and takes over the mark of the runner `before`: a mark outlives its stage.
+    /// Makes a runner that begins now with the mark of the runner `before`: a mark remains valid across stages.
     pub fn after(acts: Vec<Act>, now: RigTime, before: &Runner) -> Self {
         let mut runner = Self::new(acts, now);
         runner.mark = before.mark;
@@ -230,16 +230,16 @@ impl Runner {
         }
         while let Some(act) = &self.current {
             match act {
-                Act::Set(outputs) => return self.ask(Job::Set(outputs.clone())),
+                Act::Set(outputs) => return self.request(Job::Set(outputs.clone())),
                 Act::Level(outputs) | Act::Ramp(outputs) => {
-                    return self.ask(Job::Level(outputs.clone()));
+                    return self.request(Job::Level(outputs.clone()));
                 }
-                Act::Read(read) => return self.ask(read.job()),
-                Act::Mask(inputs) => return self.ask(Job::Mask(inputs.clone())),
+                Act::Read(read) => return self.request(read.job()),
+                Act::Mask(inputs) => return self.request(Job::Mask(inputs.clone())),
                 Act::Until { point, word, .. } => {
                     let word = word.inputs.iter().copied();
                     let inputs = std::iter::once(*point).chain(word);
-                    return self.ask(Job::Read(inputs.map(Point::Input).collect()));
+                    return self.request(Job::Read(inputs.map(Point::Input).collect()));
                 }
                 Act::Mark => {
                     self.mark = self.since;
@@ -276,7 +276,7 @@ impl Runner {
         Doing::Done
     }
 
-    fn ask(&mut self, job: Job) -> Doing {
+    fn request(&mut self, job: Job) -> Doing {
         self.pending = true;
         Doing::Job(job)
     }
@@ -327,7 +327,7 @@ impl Runner {
         self.began = self.since;
     }
 
-    /// Keeps the readings of the finished job, and moves on unless it still awaits a condition.
+    /// Stores the readings of the finished job, and moves on unless it still awaits a condition.
     fn keep(&mut self, image: &Image, now: RigTime) -> Result<(), Unread> {
         match self.current.clone() {
             Some(Act::Read(read)) => self.readings.take(&read, image, (now, self.since))?,
@@ -354,11 +354,11 @@ impl Runner {
             }
             Some(Act::Level(outputs)) => {
                 let wiring = image.wiring();
-                self.readings.trace.asked(wiring, &outputs, self.since);
+                self.readings.trace.commanded(wiring, &outputs, self.since);
             }
             Some(Act::Ramp(outputs)) => {
                 let wiring = image.wiring();
-                self.readings.trace.asked(wiring, &outputs, self.since);
+                self.readings.trace.commanded(wiring, &outputs, self.since);
                 let after = self.since.since(self.marked_from);
                 self.late = self.late.max(Span(after.0.saturating_sub(PROMPT.0)));
             }

@@ -20,7 +20,7 @@ pub struct Readings {
     pub trace: Trace,
 }
 
-/// Why a finished job gives no reading.
+/// Reason why a finished job gives no reading.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub(super) enum Unread {
     /// A point has no value.
@@ -58,7 +58,7 @@ impl Readings {
         self.samples.iter().filter(move |it| it.point == point)
     }
 
-    /// Keeps the values of a finished job. `at`: the current time, and the time of its last reply.
+    /// Stores the values of a finished job. `at`: the current time, and the time of its last reply.
     ///
     /// # Errors
     /// Returns the name of a point that has no value.
@@ -74,8 +74,8 @@ impl Readings {
                 self.trace.word(word.name, &states, at.1);
                 self.keep_word(word, &states);
             }
-            Read::Points { asked, beside } => {
-                for point in asked.iter().chain(beside) {
+            Read::Points { read, retained } => {
+                for point in read.iter().chain(retained) {
                     self.take_point(*point, image, at.0)?;
                 }
             }

@@ -1,9 +1,9 @@
 //! The trace of a test, sample by sample: the evidence kept for a rejected part.
 //!
 //! Holds analog samples and counts as read, the values commanded to sources and to the traced outputs of a kind, and
-//! words of inputs. A bit signal has one sample at each change and one at the last look before it, so that a poll of
-//! many milliseconds takes two samples. A test keeps its first [`MAX_SAMPLES`] samples; one of the default recipe has
-//! some 150.
+//! words of inputs. A bit signal has one sample at each change and one at the last poll before it, so that polling for
+//! many milliseconds takes two samples. A test stores its first [`MAX_SAMPLES`] samples; a test of the default recipe
+//! has some 150.
 
 use crate::rig::point::{AnalogOutput, DigitalOutput, Quantity};
 use crate::rig::sample::{CountSample, Quality, Sample};
@@ -99,7 +99,7 @@ impl Trace {
     }
 
     /// Adds the values commanded to sources, at the time of their answer.
-    pub(super) fn asked(&mut self, wiring: &Wiring, to: &[(AnalogOutput, Volt)], at: RigTime) {
+    pub(super) fn commanded(&mut self, wiring: &Wiring, to: &[(AnalogOutput, Volt)], at: RigTime) {
         for (output, volts) in to {
             let signal = Signal::source(wiring.source_name(*output));
             self.add(signal, at, volts.0);

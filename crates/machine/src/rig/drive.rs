@@ -18,7 +18,7 @@ use std::sync::Arc;
 use thiserror::Error;
 use units::Volt;
 
-/// Why an output keeps its value.
+/// Reason why an output keeps its value.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum DriveError {
     /// The output moves something and needs a cleared motion.

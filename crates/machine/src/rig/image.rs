@@ -119,8 +119,18 @@ impl Image {
                 self.file_readings(arrival, |channel| readings.get(usize::from(channel.get())));
                 true
             }
-            (Command::AnalogIn(_, ReadOne { channel: asked, .. }), Reply::Reading(reading)) => {
-                self.file_readings(arrival, |channel| (channel == *asked).then_some(*reading));
+            (
+                Command::AnalogIn(
+                    _,
+                    ReadOne {
+                        channel: requested, ..
+                    },
+                ),
+                Reply::Reading(reading),
+            ) => {
+                self.file_readings(arrival, |channel| {
+                    (channel == *requested).then_some(*reading)
+                });
                 true
             }
             (Command::Digital(_, Digital::ReadPort | Digital::ReadAll), Reply::Bits(bits)) => {
@@ -270,8 +280,8 @@ impl Image {
 
     /// Returns the time at which the state of the emergency-stop contact expires without another read.
     pub fn emergency_stop_known_until(&self) -> Option<RigTime> {
-        let asked = self.input_at(DigitalIn::EmergencyStopOk)?;
-        Some(asked + self.wiring.emergency_stop_max_age())
+        let requested = self.input_at(DigitalIn::EmergencyStopOk)?;
+        Some(requested + self.wiring.emergency_stop_max_age())
     }
 
     /// Returns the time of the last request for a digital input.

@@ -23,7 +23,7 @@ impl Correction {
     };
 }
 
-/// Why an output cannot give a share of a supply.
+/// Reason why an output cannot give a share of a supply.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SupplyError {
     /// The module of this point has no analog output.

@@ -70,16 +70,16 @@ impl Wiring {
     /// Returns the transactions that read these points, in order, each with its line: one for all digital inputs of a
     /// module, one scan for several of its analog channels, one for each other point.
     pub fn reads(&self, points: &[Point]) -> Vec<(LineId, Command)> {
-        let mut asked: Vec<(ModuleId, Command)> = Vec::new();
+        let mut requests: Vec<(ModuleId, Command)> = Vec::new();
         for point in points {
             let one @ (module, command) = self.read(*point, points);
             let known = |it: &(ModuleId, Command)| it.0 == module && it.1 == command;
-            if !asked.iter().any(known) {
-                asked.push(one);
+            if !requests.iter().any(known) {
+                requests.push(one);
             }
         }
         let sent = |(module, command)| (self.module(module).line, command);
-        asked.into_iter().map(sent).collect()
+        requests.into_iter().map(sent).collect()
     }
 
     /// Returns the command that reads one point when the points `wanted` are read in the same job.

@@ -100,8 +100,8 @@ impl Wiring {
             self.digital_allowance()
         };
         let silence = self.wire(line, longest) + allowance;
-        let asked = self.answered(line, longest, allowance);
-        asked + asked + self.question(line) + silence
+        let failed = self.answered(line, longest, allowance);
+        failed + failed + self.question(line) + silence
     }
 
     /// Returns the time of a transaction answered at the last moment, with the rest after it.

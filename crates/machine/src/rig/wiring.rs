@@ -326,8 +326,8 @@ impl Wiring {
         self.digital_in(DigitalIn::EmergencyStopOk).module
     }
 
-    /// Returns the most tries of a repeatable command: one on the line of the emergency stop, where a repetition would
-    /// delay the next read of the contact; there the next scan is the repetition.
+    /// Returns the most tries of a repeatable command: one on the line of the emergency stop, where a repetition
+    /// delays the next read of the contact and the next scan repeats the command anyway.
     pub fn tries_on(&self, line: LineId) -> u8 {
         if self.module(self.emergency_stop_module()).line == line {
             1

@@ -7,8 +7,8 @@
 //! | returned | no | no |
 //! | shelved | either | hidden until its time is over |
 //!
-//! An acknowledged alarm without cause leaves the list. One that occurs again while it is listed raises its count. The
-//! first active alarm is the *first-out*, and remains so until no alarm is active. Acknowledging resets nothing.
+//! An acknowledged alarm without cause leaves the list. A listed alarm that occurs again raises its count. The first
+//! active alarm is the *first-out*, and remains so until no alarm is active. Acknowledging resets nothing.
 
 use super::catalogue::{ClearedBy, Entry, PER_PART, Reaction};
 use super::trouble::Alarm;
@@ -21,12 +21,12 @@ pub enum Condition {
     Unacknowledged,
     /// The cause is present, a person has acknowledged it.
     Acknowledged,
-    /// The cause has gone before the acknowledgement.
+    /// The cause went away before the acknowledgement.
     Returned,
 }
 
 impl Condition {
-    /// Every one.
+    /// Every condition.
     pub const ALL: [Self; 3] = [Self::Unacknowledged, Self::Acknowledged, Self::Returned];
 
     /// Returns the name in files and views.
@@ -87,7 +87,7 @@ impl Annunciator {
         std::mem::take(&mut self.changed)
     }
 
-    /// Lists an alarm that was not acknowledged when the program ended, as returned: this run detects the cause again. A
+    /// Lists an alarm that was unacknowledged when the program ended, as returned: this run detects the cause again. A
     /// shelved alarm stays shelved.
     pub fn inherit(&mut self, alarm: Alarm, count: u32, shelved_until: Option<RigTime>) {
         self.changed = true;
@@ -102,7 +102,7 @@ impl Annunciator {
         });
     }
 
-    /// Lists an alarm or raises its count; returns true when its cause is new, or when it concerns a part of its own.
+    /// Lists an alarm or raises its count; returns true when its cause is new, or when it concerns another part.
     pub fn raise(&mut self, alarm: &Alarm, now: RigTime) -> bool {
         let quiet = !self.standing.iter().any(Standing::is_active);
         let at_once = alarm.code.entry().cleared_by == ClearedBy::Itself;
@@ -147,7 +147,7 @@ impl Annunciator {
         again || PER_PART.contains(&known.alarm.code)
     }
 
-    /// Clears the alarms that a sensor clears and whose cause is not among `there`.
+    /// Clears the sensor-cleared alarms whose cause is not in `there`.
     pub fn sensed(&mut self, there: &[Alarm]) {
         self.gone(|one| {
             let by_sensor = one.entry().cleared_by == ClearedBy::Sensor;
@@ -155,7 +155,7 @@ impl Annunciator {
         });
     }
 
-    /// Clears the alarms that an order of the operator clears.
+    /// Clears the operator-cleared alarms.
     pub fn cleared(&mut self) {
         self.gone(|one| one.entry().cleared_by == ClearedBy::Operator);
     }
@@ -209,7 +209,7 @@ impl Annunciator {
         one.map(|one| one.shelved_until = Some(until)).is_some()
     }
 
-    /// Shows the alarms again whose time on the shelf is over.
+    /// Shows alarms again whose shelving time is over.
     pub fn unshelve(&mut self, now: RigTime) {
         for one in &mut self.standing {
             if one.shelved_until.is_some_and(|until| until <= now) {

@@ -1,6 +1,6 @@
 //! Every alarm by its code, with the reaction of the machine and what clears it.
 //!
-//! The catalogue of texts holds the words: cause, consequence and action are attributes of the code.
+//! The catalogue of texts holds cause, consequence and action as attributes of the code.
 
 use crate::handling::moves::ActuatorKey;
 use crate::handling::wear::Wearing;
@@ -12,22 +12,22 @@ use texts::{Args, Lang, Message};
 pub enum Reaction {
     /// Makes the outputs safe at once.
     Abort,
-    /// Rests at the next possible point and waits for an order.
+    /// Brings the line to rest at the next possible point and waits for an order.
     Hold,
-    /// Rests at the next possible point and resumes when the cause outside the machine has gone.
+    /// Brings the line to rest at the next possible point and resumes when the cause outside the machine has gone.
     Suspend,
     /// Shows the alarm only.
     Nothing,
 }
 
-/// What ends the cause of an alarm.
+/// How the cause of an alarm ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ClearedBy {
-    /// The sensor that has shown it.
+    /// The sensor that has shown the cause.
     Sensor,
     /// The order `clear`, `unhold` or `reset`.
     Operator,
-    /// The alarm itself: it reports one instant.
+    /// The alarm itself: it reports an instant.
     Itself,
 }
 
@@ -36,11 +36,11 @@ pub enum ClearedBy {
 pub struct Entry {
     /// Reaction of the machine.
     pub reaction: Reaction,
-    /// What ends the cause.
+    /// How the cause ends.
     pub cleared_by: ClearedBy,
 }
 
-/// Declares [`AlarmCode`], a row for each code: its subject if it has one, the id of its text, [`Reaction`], [`ClearedBy`].
+/// Declares [`AlarmCode`], a row per code: its subject if it has one, the id of its text, [`Reaction`], [`ClearedBy`].
 macro_rules! codes {
     ($($(#[$doc:meta])* $code:ident $(of $subject:ty)? = $id:literal, $reaction:ident, $by:ident;)+) => {
         /// Code of an alarm, stable over versions.
@@ -53,12 +53,12 @@ macro_rules! codes {
                 [$(each!($code $($subject)?)),+].concat().into_iter()
             }
 
-            /// Id in the catalogue of texts; codes of all actuators share one.
+            /// Returns the id in the catalogue of texts; the codes of all actuators share one.
             pub const fn text_id(self) -> &'static str {
                 match self { $(Self::$code { .. } => $id),+ }
             }
 
-            /// Reaction of the machine, and what clears the alarm.
+            /// Returns the reaction of the machine, and what clears the alarm.
             pub const fn entry(self) -> Entry {
                 match self {
                     $(Self::$code { .. } => Entry {
@@ -68,7 +68,7 @@ macro_rules! codes {
                 }
             }
 
-            /// Name of the actuator or of the wearing part that the code carries.
+            /// Returns the name of the actuator or of the wearing part that the code carries.
             fn subject(self) -> Option<&'static str> {
                 $($(if let Self::$code(subject) = self {
                     return Some(<$subject>::name(subject));
@@ -95,7 +95,7 @@ codes! {
     DoorOpen = "door_open", Abort, Sensor;
     /// Air pressure is below the switch point.
     AirLost = "air_lost", Abort, Sensor;
-    /// An actuator has not shown its end sensor within the stroke time.
+    /// An actuator misses its end sensor within the stroke time.
     NotReached of ActuatorKey = "not_reached", Abort, Operator;
     /// An actuator has left its end without a command.
     LeftEnd of ActuatorKey = "left_end", Abort, Operator;
@@ -117,9 +117,9 @@ codes! {
     CalibrationOverdue = "calibration_overdue", Abort, Operator;
     /// The pusher is extended but no part is in the nest.
     PartNotInNest = "part_not_in_nest", Abort, Operator;
-    /// A part has stayed in the nest or in the fingers.
+    /// A part sticks in the nest or in the fingers.
     PartStuck = "part_stuck", Abort, Operator;
-    /// The gripper has lost its part on the way.
+    /// The gripper has lost its part during the transfer.
     PartDropped = "part_dropped", Abort, Operator;
     /// The drive of the sort axis reports an alarm.
     AxisDrive = "axis_drive", Abort, Operator;
@@ -133,23 +133,23 @@ codes! {
     MagazineEmpty = "magazine_empty", Suspend, Sensor;
     /// The beam of a bin stays dark.
     BinFull = "bin_full", Suspend, Sensor;
-    /// A stroke has not reached its end; the machine repeats it once.
+    /// A stroke has missed its end; the machine repeats it once.
     Retried of ActuatorKey = "retried", Nothing, Itself;
     /// A push button stays down.
     ButtonStuck = "button_stuck", Nothing, Sensor;
     /// The host watchdog of a module has made its outputs safe.
     WatchdogTripped = "watchdog_tripped", Nothing, Itself;
-    /// The run before ended while it measured the references.
+    /// The previous run ended while it measured the references.
     CalibrationCutOff = "calibration_cut_off", Nothing, Itself;
     /// No sensor shows a part that was inside.
     PartLost = "part_lost", Nothing, Itself;
-    /// The run before ended while a part fell into its bin.
+    /// The previous run ended while a part fell into its bin.
     FallUnseen = "fall_unseen", Nothing, Itself;
     /// A sensor shows a part that the ledger does not have.
     PartFound = "part_found", Nothing, Itself;
     /// The last reference check is older than the lot allows.
     ReferenceCheckDue = "golden_check_due", Hold, Operator;
-    /// A reference part does not agree with its certificate.
+    /// A reference part disagrees with its certificate.
     ReferenceCheckFailed = "golden_check_failed", Hold, Operator;
     /// The test of a reference part was interrupted and begins again.
     ReferenceRepeated = "golden_repeated", Nothing, Operator;
@@ -163,20 +163,20 @@ codes! {
     CalibrationInvalid = "calibration_invalid", Abort, Operator;
 }
 
-/// Alarms after which the station measures nothing before a new calibration.
+/// Alarms after which the station tests nothing before a new calibration.
 pub const NEEDS_CALIBRATION: [AlarmCode; 2] =
     [AlarmCode::CalibrationFailed, AlarmCode::CalibrationOverdue];
 
-/// Alarms that each concern one part: the record gets every one, also while an earlier one is active.
+/// Alarms that each concern one part: the station records each, even while an earlier one is active.
 pub const PER_PART: [AlarmCode; 1] = [AlarmCode::BinBeam];
 
 impl AlarmCode {
-    /// Returns the code of this name; none for a name of another version.
+    /// Returns the code of this name; `None` for a name of another version.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::all().find(|code| code.name() == name)
     }
 
-    /// Name in rows, views and orders; it begins with the subject: `pusher_not_reached`.
+    /// Returns the name in rows, views and orders; it begins with the subject: `pusher_not_reached`.
     pub fn name(self) -> String {
         let id = self.text_id();
         let subject = self.subject();

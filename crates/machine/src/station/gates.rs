@@ -1,4 +1,4 @@
-//! Gates of a lot: conditions for judging the next part, in addition to those of the machine.
+//! Gates of a lot: conditions for the test of the next part, in addition to those of the machine.
 //!
 //! - *First article*: the first parts get confirmation measurements, every result a mean.
 //! - *Reference check*: compares a reference part, measured like a first article, with its certificate: at the start on a
@@ -13,11 +13,11 @@ use super::Station;
 use super::catalogue::AlarmCode;
 use super::packml::State;
 use super::trouble::Alarm;
-use super::wants::{Checked, Wants};
+use super::turn::{Checked, TurnOutput};
 use crate::dut::verdict::Verdict;
 use crate::handling::Place;
 use crate::handling::ledger::Kind;
-use crate::handling::wants::Judged;
+use crate::handling::output::Judged;
 use crate::handling::wear::{Uses, Wearing};
 use serde::Deserialize;
 use std::collections::VecDeque;
@@ -36,7 +36,8 @@ pub struct LotSettings {
     #[serde(rename = "discard_limit_pct")]
     pub reject_rate_limit_pct: Option<f64>,
     /// When a reference part is checked.
-    pub golden_check: CheckSettings,
+    #[serde(rename = "golden_check")]
+    pub reference_check: CheckSettings,
     /// Uses after which probes and jaws are worn.
     pub wear: WearSettings,
 }
@@ -75,17 +76,17 @@ pub struct WearSettings {
 /// State of the gates.
 #[derive(Debug, Default)]
 pub(super) struct Gates {
-    /// Only reference parts are judged, until one agrees with its certificate.
+    /// True while only reference parts are tested, until one agrees with its certificate.
     checking: bool,
     /// Time of the last good check, and number of parts of the lot in the nest until then.
     good: Option<(RigTime, u64)>,
     judged: u64,
     failed: u64,
-    /// The alarm of the reject-rate limit was raised.
+    /// True after the alarm of the reject-rate limit.
     reject_rate_reported: bool,
-    /// Counters whose alarm was raised.
+    /// Counters after their alarm.
     worn: Vec<Wearing>,
-    /// The probe contact exceeds its limit, and its alarm was raised.
+    /// True while the probe contact exceeds its limit, after its alarm.
     fouled: bool,
 }
 
@@ -95,7 +96,7 @@ impl Gates {
         self.checking
     }
 
-    /// Takes note that the rig agrees with a certificate.
+    /// Records a good check at `now`.
     pub(super) fn good(&mut self, now: RigTime, parts: u64) {
         let before = self.good.map_or(0, |(_, parts)| parts);
         assert!(parts >= before, "fewer parts of the lot than before");
@@ -137,7 +138,13 @@ impl Gates {
 impl Station {
     /// Plans a reference part next; only reference parts are judged until one agrees with its certificate.
     pub(super) fn begin_check(&mut self) {
-        let next: VecDeque<String> = self.plan.golden.first().cloned().into_iter().collect();
+        let next: VecDeque<String> = self
+            .plan
+            .reference_serials
+            .first()
+            .cloned()
+            .into_iter()
+            .collect();
         self.lot.reference_planned +=
             next.len().saturating_sub(self.lot.reference_left.len()) as u64;
         self.lot.gates.checking = !next.is_empty();
@@ -145,7 +152,7 @@ impl Station {
     }
 
     /// Begins a reference check that is due; raises an alarm for an expired calibration.
-    pub(super) fn look_for_check(&mut self, now: RigTime, wants: &mut Wants) {
+    pub(super) fn look_for_check(&mut self, now: RigTime, output: &mut TurnOutput) {
         let executes = self.machine.state == State::Execute;
         assert!(executes, "a reference check outside Execute");
         let at_us = self.plan.epoch_us + i64::try_from(now.0).unwrap_or(i64::MAX);
@@ -155,16 +162,16 @@ impl Station {
                 .due_at_us()
                 .is_some_and(|due_us| due_us <= at_us)
         {
-            return wants
+            return output
                 .notes
                 .trouble
                 .push(AlarmCode::CalibrationOverdue.into());
         }
-        let none = self.plan.golden.is_empty();
-        if none || self.lot.gates.checking || self.is_calibrating() || !self.wants_more() {
+        let none = self.plan.reference_serials.is_empty();
+        if none || self.lot.gates.checking || self.is_calibrating() || !self.expects_more() {
             return;
         }
-        let (parts, settings) = (self.line.ledger.lot_parts(), &self.plan.lot.golden_check);
+        let (parts, settings) = (self.line.ledger.lot_parts(), &self.plan.lot.reference_check);
         if self.lot.gates.good.is_none() {
             // The calibration or the check at the start counts as the first good check.
             self.lot.gates.good(now, parts);
@@ -172,7 +179,7 @@ impl Station {
             self.begin_check();
         } else if self.lot.gates.due_by_time(settings, now) {
             self.begin_check();
-            let trouble = &mut wants.notes.trouble;
+            let trouble = &mut output.notes.trouble;
             trouble.extend(self.next_serial().map(Alarm::reference_check_due));
         }
     }

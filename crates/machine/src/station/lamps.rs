@@ -2,8 +2,8 @@
 //!
 //! | light | when |
 //! |---|---|
-//! | green | the line makes or finishes parts |
-//! | yellow | waits: idle, held, suspended, complete, or on its way there |
+//! | green | the line feeds or finishes parts |
+//! | yellow | the line waits or comes to rest: idle, held, suspended, complete |
 //! | red | aborted, or an unacknowledged alarm with a reaction |
 //! | buzzer | the first [`CALL`] of a red light |
 

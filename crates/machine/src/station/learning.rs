@@ -1,10 +1,10 @@
-//! Learning before and during a lot: factors from the references, and corrections from reference parts and parts of the
-//! lot.
+//! Learning before and during a lot: factors from the references, and corrections from reference parts and parts of
+//! the lot.
 
 use super::Station;
 use super::gates::Outcome;
 use super::trouble::Alarm;
-use super::wants::Wants;
+use super::turn::TurnOutput;
 use crate::dut::device::{CalibrationFault, Made};
 use crate::dut::{Calibration, Verdict};
 use crate::handling::Place;
@@ -28,21 +28,21 @@ impl Station {
         self.device.conclude_references(&runner.readings, made)
     }
 
-    /// Discards the calibration: the next start measures references and reference parts again, which must lie in front.
+    /// Discards the calibration: the next start measures references and reference parts again.
     pub(super) fn recalibrate(&mut self) {
         self.plan.calibrated = false;
         self.referenced = false;
-        let all: VecDeque<String> = self.plan.golden.iter().cloned().collect();
+        let all: VecDeque<String> = self.plan.reference_serials.iter().cloned().collect();
         self.lot.reference_planned +=
             all.len().saturating_sub(self.lot.reference_left.len()) as u64;
         self.lot.reference_left = all;
         self.device.forget_calibration();
     }
 
-    /// Learns from the parts judged in this turn, and checks them against the gates.
-    pub(super) fn learn(&mut self, wants: &mut Wants) {
+    /// Learns from the parts judged in this turn, and applies the gates to them.
+    pub(super) fn learn(&mut self, output: &mut TurnOutput) {
         let mut outcome = Outcome::default();
-        for judged in &wants.record.parts.judged {
+        for judged in &output.record.parts.judged {
             match &judged.part.kind {
                 Kind::Reference(serial) if self.lot.gates.is_checking() => {
                     self.check(judged, serial, &mut outcome);
@@ -51,7 +51,7 @@ impl Station {
                 Kind::Reference(serial) => {
                     let last = self.lot.reference_left.is_empty();
                     let learned = self.device.learn_reference(serial, &judged.record, last);
-                    calibrated(learned, &mut wants.record.calibrated, &mut outcome);
+                    calibrated(learned, &mut output.record.calibrated, &mut outcome);
                 }
                 Kind::Lot(_) => {
                     self.count_rejects(judged, &mut outcome);
@@ -60,11 +60,11 @@ impl Station {
                 }
             }
         }
-        wants.notes.trouble.extend(outcome.trouble);
-        wants.record.checked = outcome.checked;
+        output.notes.trouble.extend(outcome.trouble);
+        output.record.checked = outcome.checked;
     }
 
-    /// Returns the serial number of the reference part in the nest, unless it is there for a check.
+    /// Returns the serial number of the reference part in the nest, unless it serves a check.
     pub(super) fn teaching(&self) -> Option<&str> {
         match self.line.ledger.part(Place::NEST).map(|part| &part.kind) {
             Some(Kind::Reference(serial)) if !self.lot.gates.is_checking() => Some(serial),
@@ -72,13 +72,13 @@ impl Station {
         }
     }
 
-    /// Completes the calibration without the last reference part, which was interrupted.
-    pub(super) fn end_reference_run(&mut self, wants: &mut Wants) {
+    /// Completes the calibration without the last reference part, whose test was interrupted.
+    pub(super) fn end_reference_run(&mut self, output: &mut TurnOutput) {
         if self.referenced && self.lot.reference_left.is_empty() && self.is_calibrating() {
             let mut outcome = Outcome::default();
             let complete = self.device.conclude_reference_parts().map(Some);
-            calibrated(complete, &mut wants.record.calibrated, &mut outcome);
-            wants.notes.trouble.extend(outcome.trouble);
+            calibrated(complete, &mut output.record.calibrated, &mut outcome);
+            output.notes.trouble.extend(outcome.trouble);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The line: feeder, mechanism, part ledger, and waiting motions.
 
-use super::wants::{Inputs, Wants};
+use super::turn::{Inputs, TurnOutput};
 use crate::guard::Situation;
 use crate::handling::mechanism::DEBOUNCE;
 use crate::handling::recovery::Recovery;
@@ -18,11 +18,11 @@ pub(super) struct Line {
     pub ledger: Ledger,
     pub mechanism: Mechanism,
     pub recovery: Recovery,
-    /// Every actuator is home, and no jog or safe state came since.
+    /// True while every actuator is homed; a jog and the safe state reset it.
     pub homed: bool,
-    /// Dark beams with the time since when.
+    /// Dark beams, each with the time since which it is dark.
     pub dark: Vec<(DigitalInput, RigTime)>,
-    /// Motions that wait for the order `step` in maintenance.
+    /// Motions that wait for the order `step`, in maintenance.
     pub stepwise: VecDeque<Move>,
     /// Motions that wait until every end sensor is debounced.
     pub postponed: Vec<Move>,
@@ -42,17 +42,17 @@ impl Line {
         }
     }
 
-    /// Returns feeder and recovery, and the context of a turn for either.
+    /// Returns feeder, recovery, and the context of a turn for both.
     pub fn at<'a>(
         &'a mut self,
         now: RigTime,
         inputs: &'a Inputs,
-        wants: &'a mut Wants,
-        golden: &'a mut VecDeque<String>,
+        output: &'a mut TurnOutput,
+        reference_serials: &'a mut VecDeque<String>,
         resting: bool,
     ) -> (&'a mut Feeder, &'a mut Recovery, Turn<'a>) {
         assert!(
-            wants.notes.feeder.is_empty(),
+            output.notes.feeder.is_empty(),
             "trouble of the turn before is left"
         );
         let turn = Turn {
@@ -60,10 +60,10 @@ impl Line {
             image: inputs.image,
             mechanism: &self.mechanism,
             ledger: &mut self.ledger,
-            rig: &mut wants.rig,
-            parts: &mut wants.record.parts,
-            trouble: &mut wants.notes.feeder,
-            golden,
+            rig: &mut output.rig,
+            parts: &mut output.record.parts,
+            trouble: &mut output.notes.feeder,
+            reference_serials,
             recorded: inputs.recorded,
             resting,
         };
@@ -80,7 +80,7 @@ impl Line {
         assert!(self.dark.len() <= beams, "a dark beam without a bin");
     }
 
-    /// Forgets every position, because the outputs have gone safe.
+    /// Forgets every position after the outputs have gone safe.
     pub fn cut_off(&mut self) {
         self.feeder.cut_off(&self.ledger);
         self.stepwise.clear();
@@ -89,7 +89,7 @@ impl Line {
         self.homed = false;
     }
 
-    /// Takes note of a motion that the rig has cleared and driven.
+    /// Records a motion that the guard has cleared and the rig has driven.
     pub fn driven(&mut self, movement: Move, now: RigTime, image: &Image) {
         self.mechanism.driven(movement, now, image);
         self.feeder.driven(movement, &mut self.ledger, now);
@@ -101,21 +101,21 @@ impl Line {
         self.mechanism.situation(parts, now, image)
     }
 
-    /// Holds motions back until every end sensor is debounced: for a doubtful one the guard assumes the whole stroke.
-    pub fn postpone(&mut self, now: RigTime, wants: &mut Wants) {
-        self.postponed.append(&mut wants.rig.motions);
+    /// Holds motions back until every end sensor is debounced: for an undecided one the guard assumes the whole stroke.
+    pub fn postpone(&mut self, now: RigTime, output: &mut TurnOutput) {
+        self.postponed.append(&mut output.rig.motions);
         if self.mechanism.is_in_doubt() {
             let soon = now + DEBOUNCE;
-            let wake_at = &mut wants.rig.wake_at;
+            let wake_at = &mut output.rig.wake_at;
             *wake_at = Some(wake_at.map_or(soon, |at| at.min(soon)));
         } else {
-            wants.rig.motions.append(&mut self.postponed);
+            output.rig.motions.append(&mut self.postponed);
         }
         let waiting = self.stepwise.iter().chain(&self.postponed).copied();
         self.mechanism.keep_waiting(&waiting.collect::<Vec<_>>());
     }
 
-    /// Returns true when every part is where it may wait.
+    /// Returns true when every part is in a waiting position.
     pub fn is_at_rest(&self) -> bool {
         self.feeder.is_at_rest(!self.dark.is_empty())
             && !self.ledger.holds(Place::Falling)
@@ -123,11 +123,11 @@ impl Line {
     }
 
     /// Returns true when no part is inside and every row is durable; without `pocket` a part may wait there.
-    pub fn is_finished(&self, pocket: bool, recorded: u64, wants: &Wants) -> bool {
+    pub fn is_finished(&self, pocket: bool, recorded: u64, output: &TurnOutput) -> bool {
         let ledger = &self.ledger;
         let empty = ledger.each().all(|(place, _)| place == Place::Pocket);
         let waiting = ledger.holds(Place::Pocket) && (pocket || ledger.is_pocket_found());
-        let mut judged = wants.record.parts.judged.iter();
+        let mut judged = output.record.parts.judged.iter();
         let durable = judged.all(|judged| judged.part.ordinal <= recorded);
         empty && !waiting && durable && self.feeder.moves_no_part()
     }

@@ -14,11 +14,11 @@ pub(super) struct Machine {
     pub mode: Mode,
     /// Time of the first turn, or of the first since the modules were verified.
     pub began: Option<RigTime>,
-    /// True before any command: the program itself gives the first start.
+    /// True before the first command, which the program itself gives.
     pub fresh: bool,
-    /// True when the run ends after the parts inside.
+    /// True when the run ends once the parts inside are finished.
     pub stopping: bool,
-    /// The run is over.
+    /// True once the run is over.
     pub ended: bool,
     /// True when an order caused the suspension, so that only an order ends it.
     pub suspended_by_order: bool,
@@ -46,14 +46,14 @@ impl Machine {
         }
     }
 
-    /// Takes note of a turn.
+    /// Records the time of a turn.
     pub fn turn(&mut self, now: RigTime) {
         assert!(!self.ended, "a turn after the end");
         assert!(now >= self.turned_at, "the clock of the rig went back");
         self.turned_at = now;
     }
 
-    /// Enters the state that follows on the cause; `None` when the state has no such transition.
+    /// Enters the state that follows on the cause; returns `None` when the state has no such transition.
     pub fn follow(&mut self, on: On, now: RigTime) -> Option<State> {
         let to = packml::next(self.state, on)?;
         assert_ne!(to, self.state, "{on:?} leads nowhere");
@@ -63,7 +63,7 @@ impl Machine {
         Some(to)
     }
 
-    /// Returns true while parts go to where they may wait and none begins.
+    /// Returns true while parts go to their waiting positions and no new one begins.
     pub fn is_coming_to_rest(&self) -> bool {
         matches!(self.state, State::Holding | State::Suspending)
     }

@@ -1,9 +1,9 @@
 //! The station: the sequence as a specification.
 //!
-//! `Station::step(now, inputs) -> Wants` is a function of its state and arguments: no clock, no I/O, no
-//! `async`. The caller may call it at any time; the states hold the deadlines.
+//! `Station::step(now, inputs) -> TurnOutput` is a function of its state and arguments: no clock, no I/O, no `async`. The
+//! caller may call it at any time; the states hold the deadlines.
 //!
-//! The outer machine is [`packml`]; `states` performs each state, `asked` answers orders.
+//! The outer machine is [`packml`]; `states` performs each state, `answers` answers orders.
 //! 1. `Resetting`: [`crate::handling::recovery`] brings every actuator to its rest end and discharges what is found inside;
 //! 2. `Starting`: without a valid calibration probes up in the empty nest, measurements of the references;
 //! 3. `Execute`: reference parts when there is no calibration, then the lot behind its [`gates`], through the
@@ -11,17 +11,17 @@
 //! 4. `Completing`, `Stopping`, `Holding`, `Suspending`: the parts inside go to where they may wait.
 //!
 //! Trouble: the [`catalogue`] gives the reaction to an [`trouble::Alarm`]; the [`annunciator`] lists it until its
-//! cause is gone and a person has acknowledged it. After `clear` and `reset` the station continues with the parts inside. A
-//! part inside is void, "interrupted". A stale sensor is trouble, never a guess.
+//! cause is gone and a person has acknowledged it. After `clear` and `reset` the station continues; a part inside is
+//! void, "interrupted". A stale sensor raises an alarm; the station never guesses its state.
 //!
-//! A run ends with its lot, or when a person leaves the lot for another one. Without a person at a screen
-//! ([`Plan::attended`] is false) an alarm that needs one ends the run, too. The station resets and starts a lot by
-//! itself; between lots ([`Plan::between_lots`]) it acts only on orders.
+//! A run ends with its lot, or when a person leaves the lot for another one. Unattended ([`Plan::attended`] is false)
+//! an alarm that needs a person ends the run, too, and the station resets and starts a lot by itself. Between lots
+//! ([`Plan::between_lots`]) it acts only on orders.
 
+mod activity;
 pub mod annunciator;
-mod asked;
+mod answers;
 pub mod catalogue;
-mod doing;
 pub mod gates;
 mod lamps;
 mod learning;
@@ -35,7 +35,7 @@ mod safety;
 mod states;
 mod timeouts;
 pub mod trouble;
-pub mod wants;
+pub mod turn;
 
 use crate::dut::Device;
 use crate::guard::{Motion, Situation};
@@ -45,8 +45,8 @@ use crate::handling::{Feeder, Ledger, Mechanism, Move};
 use crate::instrument::act::Runner;
 use crate::rig::axis::AxisTable;
 use crate::rig::image::Image;
+pub use activity::Activity;
 use annunciator::Annunciator;
-pub use doing::Doing;
 use gates::{Gates, LotSettings};
 use lamps::Lamps;
 use line::Line;
@@ -55,34 +55,34 @@ use packml::{Mode, State};
 use panel::Panel;
 use std::collections::VecDeque;
 use timeouts::Timeouts;
+use turn::{Inputs, TurnOutput};
 use units::RigTime;
-use wants::{Inputs, Wants};
 
 /// Plan of a run.
 #[derive(Debug, Clone)]
 pub struct Plan {
-    /// Parts of the lot; `None` goes on until stopped.
+    /// Number of parts of the lot; `None` for an endless lot.
     pub count: Option<u64>,
-    /// Serial numbers of the reference parts at the head of the magazine, used when there is no calibration.
-    pub golden: Vec<String>,
+    /// Serial numbers of the reference parts at the head of the magazine, used without a calibration.
+    pub reference_serials: Vec<String>,
     /// True with a valid calibration: the run measures neither references nor reference parts.
     pub calibrated: bool,
     /// Life of a calibration, microseconds.
     pub valid_us: i64,
     /// Wall clock at rig time zero, microseconds since 1970 UTC.
     pub epoch_us: i64,
-    /// The rig is simulated.
+    /// True on a simulated rig.
     pub simulated: bool,
     /// True when a person is at a screen: alarms and stops do not end the run.
     pub attended: bool,
-    /// State in which the last lot left the machine, between lots; none while there is a lot. Between lots the machine
+    /// State in which the last lot left the machine, between lots; `None` during a lot. Between lots the machine
     /// discharges parts found inside and begins nothing by itself.
     pub between_lots: Option<State>,
     /// Gates of the lot.
     pub lot: LotSettings,
     /// Uses of wearing parts before this run.
     pub worn: Uses,
-    /// Parts that the run before left inside.
+    /// Parts that the previous run left inside.
     pub left: Inside,
 }
 
@@ -102,10 +102,10 @@ enum Start {
 #[derive(Debug)]
 pub struct Station {
     plan: Plan,
-    /// The kind under test, with its calibration.
+    /// Recipe and calibration of the device under test.
     device: Device,
     start: Start,
-    /// References were measured in this run.
+    /// True once this run has measured the references.
     referenced: bool,
     machine: Machine,
     line: Line,
@@ -118,7 +118,7 @@ pub struct Station {
 struct LotControl {
     gates: Gates,
     reference_left: VecDeque<String>,
-    /// Reference parts that this run has planned so far.
+    /// Number of reference parts that this run has planned so far.
     reference_planned: u64,
     /// True once calibration and reference parts are complete.
     began: bool,
@@ -142,9 +142,9 @@ struct Alarms {
     timeouts: Timeouts,
     panel: Panel,
     lamps: Lamps,
-    /// When the emergency-stop chain was last seen open.
+    /// Time at which the emergency-stop chain was last open.
     chain_open: Option<RigTime>,
-    /// Safety inputs were read since the start or since the modules were verified.
+    /// True once the safety inputs were read after the start or the last verification.
     sensed: bool,
 }
 
@@ -154,7 +154,7 @@ impl Station {
         let reference_left = if plan.calibrated {
             VecDeque::new()
         } else {
-            plan.golden.iter().cloned().collect()
+            plan.reference_serials.iter().cloned().collect()
         };
         let ledger = Ledger::after(plan.left);
         let mut station = Self {
@@ -172,18 +172,18 @@ impl Station {
             start: Start::Begin,
             referenced: false,
         };
-        if station.plan.calibrated && station.plan.lot.golden_check.at_start {
+        if station.plan.calibrated && station.plan.lot.reference_check.at_start {
             station.begin_check();
         }
         station
     }
 
-    /// The part ledger.
+    /// Returns the part ledger.
     pub fn ledger(&self) -> &Ledger {
         &self.line.ledger
     }
 
-    /// Sensors and motions.
+    /// Returns sensors and motions.
     pub fn mechanism(&self) -> &Mechanism {
         &self.line.mechanism
     }
@@ -208,33 +208,33 @@ impl Station {
         self.plan.between_lots.is_some()
     }
 
-    /// Strokes, touches and bounces since the start, by name.
+    /// Returns strokes, touches and bounces since the start, by name.
     pub fn wear(&self) -> Vec<(&'static str, u64)> {
         self.line.mechanism.wear()
     }
 
-    /// State of the outer machine.
+    /// Returns the state of the outer machine.
     pub fn outer(&self) -> State {
         self.machine.state
     }
 
-    /// What the machine is used for.
+    /// Returns the mode of the outer machine.
     pub fn mode(&self) -> Mode {
         self.machine.mode
     }
 
     /// Returns the activity of the station.
-    pub fn doing(&self) -> Doing {
+    pub fn activity(&self) -> Activity {
         match self.machine.state {
-            _ if self.machine.ended => Doing::Ended,
-            State::Resetting if !self.alarms.sensed => Doing::WaitingForSensors,
-            State::Resetting if !self.line.homed => Doing::Homing,
-            State::Resetting => Doing::Discharging,
-            State::Starting => Doing::Calibrating,
+            _ if self.machine.ended => Activity::Ended,
+            State::Resetting if !self.alarms.sensed => Activity::WaitingForSensors,
+            State::Resetting if !self.line.homed => Activity::Homing,
+            State::Resetting => Activity::Discharging,
+            State::Starting => Activity::Calibrating,
             State::Execute | State::Completing => match self.line.feeder.test() {
-                Some(test) => Doing::Testing(test.stage()),
-                None if self.lot.began || self.lot.reference_left.is_empty() => Doing::Running,
-                None => Doing::ReferenceParts,
+                Some(test) => Activity::Testing(test.stage()),
+                None if self.lot.began || self.lot.reference_left.is_empty() => Activity::Running,
+                None => Activity::ReferenceParts,
             },
             state @ (State::Stopped
             | State::Idle
@@ -248,67 +248,67 @@ impl Station {
             | State::Stopping
             | State::Aborting
             | State::Aborted
-            | State::Clearing) => Doing::Resting(state),
+            | State::Clearing) => Activity::Resting(state),
         }
     }
 
-    /// One turn.
-    pub fn step(&mut self, now: RigTime, mut inputs: Inputs) -> Wants {
-        let mut wants = Wants::default();
+    /// Performs one turn.
+    pub fn step(&mut self, now: RigTime, mut inputs: Inputs) -> TurnOutput {
+        let mut output = TurnOutput::default();
         if self.machine.ended {
-            return wants;
+            return output;
         }
         self.machine.turn(now);
         let ordered = inputs.orders.len();
         if inputs.verified {
-            // Samples from before the verification are stale, which is no trouble.
+            // Samples from before the verification are stale and raise no alarm.
             (self.alarms.sensed, self.machine.began) = (false, Some(now));
         }
         self.machine.began.get_or_insert(now);
         for order in std::mem::take(&mut inputs.orders) {
-            let answer = self.order(order, now, &mut wants);
-            wants.answers.push(answer);
+            let answer = self.order(order, now, &mut output);
+            output.answers.push(answer);
         }
-        let stuck = self.pressed(now, inputs.image, &mut wants);
-        self.by_itself(now, &inputs, &mut wants);
+        let stuck = self.pressed(now, inputs.image, &mut output);
+        self.by_itself(now, &inputs, &mut output);
         if self.machine.ended {
-            return wants;
+            return output;
         }
-        self.look(now, &inputs, stuck, &mut wants);
-        self.raise_all(now, &mut wants);
-        if !wants.rig.safe && !self.machine.ended {
-            self.act(now, inputs, &mut wants);
-            self.raise_all(now, &mut wants);
+        self.look(now, &inputs, stuck, &mut output);
+        self.raise_all(now, &mut output);
+        if !output.rig.safe && !self.machine.ended {
+            self.act(now, inputs, &mut output);
+            self.raise_all(now, &mut output);
         }
-        self.line.postpone(now, &mut wants);
+        self.line.postpone(now, &mut output);
         self.alarms.annunciator.unshelve(now);
-        wants.record.alarms_changed |= self.alarms.annunciator.take_changed();
+        output.record.alarms_changed |= self.alarms.annunciator.take_changed();
         let stack = self.alarms.lamps.show(
             now,
             self.machine.state,
             self.alarms.annunciator.standing(),
-            wants.rig.safe,
+            output.rig.safe,
         );
-        wants.rig.outputs.extend(stack);
+        output.rig.outputs.extend(stack);
         self.line.check();
         self.lot.check();
-        wants.check(now, ordered);
-        let ends = wants.record.ending.is_some();
+        output.check(now, ordered);
+        let ends = output.record.ending.is_some();
         assert_eq!(ends, self.machine.ended, "the end and its event differ");
-        wants
+        output
     }
 
-    /// Takes note of a motion that the rig has cleared and driven.
+    /// Records a motion that the guard has cleared and the rig has driven.
     pub fn driven(&mut self, movement: Move, now: RigTime, image: &Image) {
         self.line.driven(movement, now, image);
     }
 
-    /// The motion as the guard knows it.
+    /// Returns the motion in the terms of the guard.
     pub fn motion(&self, movement: Move) -> Motion {
         movement.motion(self.line.mechanism.strokes())
     }
 
-    /// Situation for the guard.
+    /// Returns the situation for the guard.
     pub fn situation(&self, now: RigTime, image: &Image) -> Situation {
         self.line.situation(now, image)
     }

@@ -1,6 +1,6 @@
 //! Orders of operators and programs to the station, and the reasons of refusals.
-//!
-//! The station answers every order in its turn: performed, or refused with a code and its arguments. A screen shows the
+//! The station answers every order in its turn: it performs the order or refuses it with a code and arguments, the
+//! same that a screen shows next to a disabled button.
 //! same reasons beside its disabled buttons.
 
 use super::packml::{self, Command, Mode, State};
@@ -17,9 +17,9 @@ pub enum Order {
     Mode(Mode),
     /// One motion by hand, through the same guard as every other.
     Jog(Move),
-    /// In maintenance: the next motion of the sequence.
+    /// Drives the next motion of the sequence, in maintenance.
     Step,
-    /// All lamps and the buzzer for a moment.
+    /// Lights all lamps and sounds the buzzer briefly.
     LampTest,
     /// Ends the run and leaves the lot as it is, so that another one can begin.
     Leave,
@@ -32,8 +32,8 @@ pub enum Order {
 }
 
 /// Returns the shelving time in minutes: 1 to 480, 30 when the order names none.
-pub fn shelf_minutes(asked: Option<u32>) -> u32 {
-    asked.unwrap_or(30).clamp(1, 480)
+pub fn shelf_minutes(requested: Option<u32>) -> u32 {
+    requested.unwrap_or(30).clamp(1, 480)
 }
 
 /// Reason of a refused order.
@@ -41,56 +41,56 @@ pub fn shelf_minutes(asked: Option<u32>) -> u32 {
 pub enum Refused {
     /// The run is over.
     RunEnded,
-    /// The state does not know the command.
+    /// The state does not allow the command.
     WrongState(Command, State),
     /// The mode does not allow the order.
     WrongMode {
-        /// Word of the order.
+        /// Name of the order.
         order: &'static str,
         /// The mode.
         found: Mode,
-        /// The mode that knows it.
+        /// The mode that allows it.
         needed: Mode,
     },
-    /// Actuators were moved by hand since the reset.
+    /// Actuators have been jogged since the reset.
     MovedByHand,
-    /// There is no lot to go on with.
+    /// There is no lot to continue.
     NoLot,
     /// A part of the lot is still in nest or gripper.
     PartInside,
-    /// Another lot needs a machine at rest; the command that leads there, if one does.
+    /// Another lot needs a machine at rest; with the command that leads there, if any.
     NotAtRest(State, Option<Command>),
-    /// The mode is changed at rest only.
+    /// The mode can change only at rest.
     ModeLocked(State),
     /// A jog needs known positions.
     Unhomed(State),
-    /// The motion before has not arrived.
+    /// The previous motion has not arrived.
     StillMoving,
     /// No motion waits for a step.
     NoMotionWaits,
-    /// The cause of this alarm is still there.
+    /// The cause of this alarm remains.
     CauseRemains(Box<Alarm>),
-    /// No alarm of this code stands.
+    /// The list has no alarm of this code.
     NoSuchAlarm,
-    /// The guard refuses the motion; its sentence.
+    /// The guard refuses the motion, for this reason.
     Collision(String),
-    /// The program has refused it before the station; the sentence.
+    /// The program has refused the order before the station, for this reason.
     Denied(String),
-    /// A member of the order has none of the known words.
+    /// A member of the order has an unknown word.
     UnknownWord {
         /// Name of the member.
         member: &'static str,
         /// Its word; empty when it is missing.
         found: String,
-        /// Every word that it may have.
+        /// Every allowed word.
         known: Vec<&'static str>,
     },
-    /// An alarm is shelved for a reason.
+    /// A shelving order needs a reason.
     ShelveWithoutReason,
 }
 
 impl Refused {
-    /// Its text with the arguments.
+    /// Returns its text with the arguments.
     pub fn message(&self) -> Message {
         let of = |code| Message::new("refusal", code);
         let in_state = |code, state: &State| of(code).with("state", state.name());
@@ -161,7 +161,7 @@ pub const JOGS: [(&str, Move); 15] = {
     ]
 };
 
-/// The motion of this name.
+/// Returns the motion of this name.
 pub fn jog(name: &str) -> Option<Move> {
     JOGS.iter()
         .find(|(known, _)| *known == name)

@@ -1,13 +1,12 @@
 //! The outer machine: states, commands and modes with the names of ISA-TR88.00.02 (PackML).
 //!
-//! [`TRANSITIONS`] is the only source of the order of states: station, screen buttons and `golden/packml.dot`
-//! follow from it. Feed, clamp, measure and sort run inside `Execute`
-//! (and are finished inside `Completing`, `Stopping` and `Holding`).
+//! [`TRANSITIONS`] alone defines the order of states: station, screen buttons and `golden/packml.dot` derive from it.
+//! `Execute` feeds, clamps, measures and sorts parts; `Completing`, `Stopping` and `Holding` finish them.
 //!
-//! - *Held*: the cause is inside the machine, a person ends it. *Suspended*: the cause is outside (no
-//!   parts, a bin is full), and the machine goes on by itself.
-//! - A reset never starts anything; an acknowledgement never resets, a reset never acknowledges.
-//! - Names are stored, never numbers.
+//! - *Held*: the cause is inside the machine, and a person ends it. *Suspended*: the cause is outside (no parts, a
+//! full bin), and the machine resumes by itself.
+//! - A reset starts and acknowledges nothing; an acknowledgement resets nothing.
+//! - Files hold the names, never numbers.
 
 /// Declares an enum with the names that screens, orders and files use.
 macro_rules! names {
@@ -17,15 +16,15 @@ macro_rules! names {
         pub enum $kind { $($(#[$line])* $variant,)+ }
 
         impl $kind {
-            /// Every one, in the order of declaration.
+            /// Every variant, in the order of declaration.
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
 
-            /// The name outside of the program.
+            /// Returns the name in screens, orders and files.
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$variant => $name),+ }
             }
 
-            /// The one of this name.
+            /// Returns the variant of this name.
             pub fn from_name(name: &str) -> Option<Self> {
                 Self::ALL.iter().copied().find(|one| one.name() == name)
             }
@@ -36,98 +35,98 @@ macro_rules! names {
 names! {
     /// State of the outer machine.
     State {
-        /// Powered, outputs safe, nothing assumed of any position.
+        /// Powered, outputs safe, every position unknown.
         Stopped = "Stopped",
-        /// Sensors are read, actuators brought home, parts found inside are discharged.
+        /// Reads sensors, homes actuators, discharges parts found inside.
         Resetting = "Resetting",
-        /// Home and empty, waits for a start.
+        /// Homed and empty, waits for a start.
         Idle = "Idle",
-        /// References are measured in the empty nest when there is no calibration.
+        /// Measures the references in the empty nest if there is no calibration.
         Starting = "Starting",
-        /// Parts are fed, tested and sorted.
+        /// Feeds, tests and sorts parts.
         Execute = "Execute",
-        /// The count is reached, the parts inside are finished.
+        /// Finishes the parts inside after the count is reached.
         Completing = "Completing",
         /// The lot is done, outputs are safe.
         Complete = "Complete",
-        /// On its way to a point where the sequence can rest.
+        /// Moves to a point at which the sequence can rest, cause inside the machine.
         Holding = "Holding",
         /// At rest, cause inside the machine.
         Held = "Held",
-        /// Looks whether everything still stands where it stood.
+        /// Checks that parts and actuators are where they were.
         Unholding = "Unholding",
-        /// On its way to rest, cause outside the machine.
+        /// Moves to a point at which the sequence can rest, cause outside the machine.
         Suspending = "Suspending",
         /// At rest, cause outside the machine.
         Suspended = "Suspended",
-        /// The cause outside has gone.
+        /// Resumes after the cause outside has gone.
         Unsuspending = "Unsuspending",
-        /// The parts inside are finished, then outputs go safe.
+        /// Finishes the parts inside, then makes the outputs safe.
         Stopping = "Stopping",
-        /// Outputs are being made safe.
+        /// Makes the outputs safe.
         Aborting = "Aborting",
-        /// Outputs are safe, an alarm stands or stood.
+        /// Outputs are safe after an alarm.
         Aborted = "Aborted",
-        /// Modules are verified again.
+        /// Verifies the modules again.
         Clearing = "Clearing",
     }
 }
 
 names! {
-    /// What a person or another machine may ask of the outer machine.
+    /// Commands that a person or another machine may give.
     Command {
-        /// Home and empty the machine.
+        /// Homes and empties the machine.
         Reset = "reset",
-        /// Begin the lot.
+        /// Begins the lot.
         Start = "start",
-        /// End after the parts inside.
+        /// Ends the run after the parts inside.
         Stop = "stop",
-        /// Rest at the next possible point.
+        /// Brings the line to rest at the next possible point.
         Hold = "hold",
-        /// Go on after a hold.
+        /// Resumes after a hold.
         Unhold = "unhold",
-        /// Rest for a cause outside.
+        /// Brings the line to rest for a cause outside.
         Suspend = "suspend",
-        /// The cause outside has gone.
+        /// Resumes after the cause outside has gone.
         Unsuspend = "unsuspend",
-        /// Outputs safe at once.
+        /// Makes the outputs safe at once.
         Abort = "abort",
-        /// The cause of an abort is gone.
+        /// Leaves `Aborted` after the cause has gone.
         Clear = "clear",
-        /// End the lot after the parts inside, although its count is not reached.
+        /// Ends the lot after the parts inside, before its count is reached.
         Complete = "complete",
     }
 }
 
 names! {
-    /// What the machine is used for.
+    /// Mode of use of the machine.
     Mode {
-        /// Lots.
+        /// Runs lots.
         Production = "production",
-        /// Lots motion by motion, and jogging.
+        /// Runs lots motion by motion, and jogs.
         Maintenance = "maintenance",
-        /// Jogging only.
+        /// Jogs only.
         Manual = "manual",
     }
 }
 
-/// What makes a transition happen.
+/// Cause of a transition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum On {
     /// A command.
     Command(Command),
-    /// The state has done what it is for.
+    /// The state has completed its action.
     Done,
 }
 
 /// One row of the table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Transition {
-    /// State left.
+    /// State that the machine leaves.
     pub from: State,
-    /// Why.
+    /// Cause.
     pub on: On,
-    /// State entered.
+    /// State that the machine enters.
     pub to: State,
 }
 
@@ -147,7 +146,7 @@ const fn done(from: State, to: State) -> Transition {
     }
 }
 
-/// Every transition but `stop` and `abort`, which [`next`] adds for all states that know them.
+/// Every transition but `stop` and `abort`, which [`next`] adds for all states that allow them.
 pub const TRANSITIONS: &[Transition] = &[
     order(State::Stopped, Command::Reset, State::Resetting),
     done(State::Resetting, State::Idle),
@@ -175,7 +174,7 @@ pub const TRANSITIONS: &[Transition] = &[
     done(State::Clearing, State::Stopped),
 ];
 
-/// The state that follows, or none when the state does not know the cause.
+/// Returns the state that follows; `None` when the state has no such transition.
 pub fn next(from: State, on: On) -> Option<State> {
     let row = TRANSITIONS
         .iter()
@@ -187,17 +186,17 @@ pub fn next(from: State, on: On) -> Option<State> {
     }
 }
 
-/// An abort is under way or done.
+/// Returns true while an abort is under way or done.
 pub fn is_aborted(state: State) -> bool {
     matches!(state, State::Aborting | State::Aborted)
 }
 
-/// There is something that a stop would end.
+/// Returns true when the state allows a stop.
 fn may_stop(state: State) -> bool {
     !is_aborted(state) && !matches!(state, State::Clearing | State::Stopping | State::Stopped)
 }
 
-/// States that know a command, in the order of declaration.
+/// Returns the states that allow a command, in the order of declaration.
 pub fn states_for(command: Command) -> impl Iterator<Item = State> {
     State::ALL
         .iter()
@@ -205,7 +204,7 @@ pub fn states_for(command: Command) -> impl Iterator<Item = State> {
         .filter(move |state| next(*state, On::Command(command)).is_some())
 }
 
-/// A mode may be chosen here.
+/// Returns true when the state allows a change of mode.
 pub fn may_change_mode(state: State) -> bool {
     matches!(
         state,
@@ -213,7 +212,7 @@ pub fn may_change_mode(state: State) -> bool {
     )
 }
 
-/// The whole machine as a Graphviz drawing.
+/// Returns the whole machine as a Graphviz drawing.
 pub fn dot() -> String {
     let mut text = String::from("digraph packml {\n  rankdir=LR;\n");
     for from in State::ALL {

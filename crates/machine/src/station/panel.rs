@@ -1,5 +1,5 @@
-//! The three push buttons at the machine. The station may refuse their orders like any other; the audit has them with the
-//! origin `panel`.
+//! The three push buttons at the machine. The station may refuse their orders like any other; the audit trail lists
+//! them with the origin `panel`.
 //!
 //! | button | order |
 //! |---|---|
@@ -7,12 +7,12 @@
 //! | stop | `stop`; an unattended run ends after the parts inside |
 //! | reset | `clear` after an abort, else `reset` |
 //!
-//! A button orders once, when it has been down for [`SETTLED`] after it was up for as long: neither a bounce nor a held
-//! button orders twice, and one that is down when the program begins orders nothing until it was let go. Stop goes
-//! before reset and start. One that stays down for [`HELD`] is stuck, or something leans on it: `button_stuck`, which
-//! stops nothing. An input that is not read says nothing.
+//! A button gives one order when it has been down for [`SETTLED`] after being up for as long: a bounce or a held
+//! button never orders twice, and a button that is down at the start orders only after its release. Of several buttons
+//! stop wins, then reset. A button down for [`HELD`] counts as stuck (`button_stuck`), which stops nothing. An input
+//! without a sample is ignored.
 //!
-//! Times are those of the samples, so that one sample, however long it stands, never settles anything.
+//! Times are those of the samples, so that one sample, however old, never counts as settled.
 
 use super::packml::{Command, State};
 use super::trouble::Alarm;
@@ -21,21 +21,21 @@ use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
 use units::{RigTime, Span};
 
-/// Contacts of push buttons bounce for some 10 ms; a finger stays for 100.
+/// Debounce time: contacts bounce for some 10 ms, a finger stays for 100.
 const SETTLED: Span = Span::ms(30);
-/// Nobody presses a button for so long.
+/// Time down after which a button counts as stuck.
 const HELD: Span = Span::ms(5_000);
 
-/// The buttons.
+/// State of the three buttons.
 #[derive(Debug)]
 pub(super) struct Panel([Button; 3]);
 
 #[derive(Debug)]
 struct Button {
     point: DigitalIn,
-    /// As it was sampled last, and since which sample.
+    /// Last sampled state, and the time of the sample that first showed it.
     seen: Option<(bool, RigTime)>,
-    /// It was let go since it ordered, or since the start.
+    /// True after a release since its last order, or since the start.
     armed: bool,
 }
 
@@ -56,7 +56,7 @@ impl Default for Panel {
 }
 
 impl Panel {
-    /// What was pressed, for a machine in `state`, and what is stuck.
+    /// Returns the orders of a machine in `state`, and the stuck buttons.
     pub(super) fn look(
         &mut self,
         now: RigTime,
@@ -72,14 +72,14 @@ impl Panel {
                 stuck.push(Alarm::button_stuck(button.point));
             }
         }
-        // Stop and start at once is stop.
+        // Stop wins over start.
         pressed.truncate(1);
         (pressed, stuck)
     }
 }
 
 impl Button {
-    /// True once per press.
+    /// Returns true once per press.
     fn orders(&mut self, now: RigTime, image: &Image) -> bool {
         let sample = image.input(self.point, now, SENSOR_AGE);
         let (Some(down), Some(at)) = (sample, image.input_at(self.point)) else {

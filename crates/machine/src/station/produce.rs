@@ -2,7 +2,7 @@
 
 use super::Station;
 use super::packml::Mode;
-use super::wants::{Inputs, Wants};
+use super::turn::{Inputs, TurnOutput};
 use crate::handling::feeder::Permits;
 use crate::handling::nest::TestTerms;
 use units::RigTime;
@@ -13,10 +13,10 @@ impl Station {
         &mut self,
         now: RigTime,
         mut inputs: Inputs,
-        wants: &mut Wants,
+        output: &mut TurnOutput,
         permits: Permits,
     ) {
-        self.note_begin(wants);
+        self.note_begin(output);
         let job = inputs.job.take();
         let teaching = self.teaching().map(str::to_owned);
         let terms = TestTerms {
@@ -24,31 +24,31 @@ impl Station {
             teaching: teaching.as_deref(),
             device: &self.device,
         };
-        let before = wants.rig.motions.len();
+        let before = output.rig.motions.len();
         let resting = self.machine.is_coming_to_rest();
         let (feeder, _, mut turn) =
             self.line
-                .at(now, &inputs, wants, &mut self.lot.reference_left, resting);
+                .at(now, &inputs, output, &mut self.lot.reference_left, resting);
         if feeder.step(&mut turn, job, terms, permits) {
             self.line.mechanism.new_part();
         }
-        wants.notes.take_over();
+        output.notes.take_over();
         if self.machine.mode == Mode::Maintenance {
-            let motions = wants.rig.motions.drain(before..);
+            let motions = output.rig.motions.drain(before..);
             self.line.stepwise.extend(motions);
         }
-        self.learn(wants);
+        self.learn(output);
     }
 
-    fn note_begin(&mut self, wants: &mut Wants) {
+    fn note_begin(&mut self, output: &mut TurnOutput) {
         if !self.lot.began && self.lot.reference_left.is_empty() && self.device.is_calibrated() {
             self.lot.began = true;
-            wants.record.lot_began = true;
+            output.record.lot_began = true;
         }
     }
 
-    /// Returns true while parts of the lot are still to come out of the magazine.
-    pub(super) fn wants_more(&self) -> bool {
+    /// Returns true while the magazine is to deliver more parts of the lot.
+    pub(super) fn expects_more(&self) -> bool {
         self.plan
             .count
             .is_none_or(|count| self.line.ledger.own_parts() < self.lot.reference_planned + count)

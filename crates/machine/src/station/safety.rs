@@ -5,12 +5,12 @@ use super::annunciator::Standing;
 use super::catalogue::{self, AlarmCode, ClearedBy, Reaction};
 use super::packml::{self, Command, On, State};
 use super::trouble::Alarm;
-use super::wants::{Ending, Inputs, Wants};
+use super::turn::{Ending, Inputs, TurnOutput};
 use crate::dut::verdict::Verdict;
 use crate::handling::ledger::Part;
 use crate::handling::mechanism::SENSOR_AGE;
+use crate::handling::output::{Interrupted, Judged};
 use crate::handling::trouble::Trouble;
-use crate::handling::wants::{Interrupted, Judged};
 use crate::handling::{Move, Place};
 use crate::rig::bin::Bin;
 use crate::rig::image::Image;
@@ -19,7 +19,7 @@ use units::{RigTime, Span};
 
 /// Time after the start within which every safety input must have a sample.
 pub(super) const FIRST_SCAN: Span = Span::ms(3000);
-/// Dark time of a beam from which a bin counts as full; a falling part darkens it for 11 ms.
+/// Dark time of a beam after which its bin counts as full; a falling part darkens it for 11 ms.
 const FULL: Span = Span::ms(500);
 
 /// Longest time from the closing of the emergency-stop chain to full air pressure.
@@ -32,28 +32,28 @@ impl Station {
         now: RigTime,
         inputs: &Inputs,
         stuck: Vec<Alarm>,
-        wants: &mut Wants,
+        output: &mut TurnOutput,
     ) {
         let mut found = self.line.mechanism.update(now, inputs.image);
-        wants.rig.motions.extend(found.motions);
-        wants.rig.restart_check = self.line.mechanism.needs_restart_check(now);
+        output.rig.motions.extend(found.motions);
+        output.rig.restart_check = self.line.mechanism.needs_restart_check(now);
         self.still_in_nest(now, inputs.image, &mut found.trouble);
         let mut there = self.safety(now, inputs.image);
         there.extend(stuck);
         there.extend(self.full_bins(now, inputs.image));
         there.extend(self.still_starved(now, inputs.image));
         self.alarms.annunciator.sensed(&there);
-        let trouble = &mut wants.notes.trouble;
+        let trouble = &mut output.notes.trouble;
         if !packml::is_aborted(self.machine.state) {
             trouble.extend(found.trouble.into_iter().map(Alarm::from));
         }
         trouble.extend(inputs.bus.clone());
         trouble.extend(there);
         trouble.extend(self.worn());
-        let golden = &mut self.lot.reference_left;
-        let (feeder, _, mut turn) = self.line.at(now, inputs, wants, golden, false);
+        let reference = &mut self.lot.reference_left;
+        let (feeder, _, mut turn) = self.line.at(now, inputs, output, reference, false);
         feeder.confirm(&mut turn);
-        wants.notes.take_over();
+        output.notes.take_over();
         if !self.line.dark.is_empty() {
             self.alarms.timeouts.wait_for_bin();
         }
@@ -62,7 +62,7 @@ impl Station {
             .alarms
             .timeouts
             .look(now, self.machine.state, self.machine.mode, feeder);
-        wants.notes.trouble.extend(late);
+        output.notes.trouble.extend(late);
     }
 
     /// Reports a part as stuck in the nest when the gripper lost it before the handover.
@@ -75,7 +75,7 @@ impl Station {
         }
     }
 
-    /// Returns the alarms of the safety inputs: an open one, and after the first scan an unread one.
+    /// Returns the alarms of the safety inputs: of an open one, and after the first scan of an unread one.
     fn safety(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
         let inputs = [
             (DigitalIn::EmergencyStopOk, AlarmCode::EmergencyStop),
@@ -117,7 +117,7 @@ impl Station {
         alarms
     }
 
-    /// Returns true while low pressure is the consequence of an emergency stop and no actuator is to move.
+    /// Returns true while low pressure follows from an emergency stop and no actuator has to move.
     fn is_vented(&self, now: RigTime) -> bool {
         let rests = packml::is_aborted(self.machine.state)
             || matches!(self.machine.state, State::Stopped | State::Complete);
@@ -153,33 +153,39 @@ impl Station {
         (starved && !parts).then(|| AlarmCode::MagazineEmpty.into())
     }
 
-    /// Takes note of a refused motion: homing tries another one first, any other state raises an alarm.
-    pub fn refused(&mut self, movement: Move, refusal: &str, now: RigTime, wants: &mut Wants) {
+    /// Reacts to a refused motion: homing tries another one first, any other state raises an alarm.
+    pub fn refused(
+        &mut self,
+        movement: Move,
+        refusal: &str,
+        now: RigTime,
+        output: &mut TurnOutput,
+    ) {
         if self.machine.state == State::Resetting && self.line.recovery.refused(movement) {
             return;
         }
-        wants.notes.trouble.push(Alarm::refused(movement, refusal));
-        self.raise_all(now, wants);
+        output.notes.trouble.push(Alarm::refused(movement, refusal));
+        self.raise_all(now, output);
         let standing = self.alarms.annunciator.standing();
         let stack = self
             .alarms
             .lamps
-            .show(now, self.machine.state, standing, wants.rig.safe);
-        wants.rig.outputs.extend(stack);
-        wants.record.alarms_changed |= self.alarms.annunciator.take_changed();
+            .show(now, self.machine.state, standing, output.rig.safe);
+        output.rig.outputs.extend(stack);
+        output.record.alarms_changed |= self.alarms.annunciator.take_changed();
     }
 
-    /// Lists the alarms of this turn and reacts to them; `wants` keeps the new ones.
-    pub(super) fn raise_all(&mut self, now: RigTime, wants: &mut Wants) {
-        for alarm in std::mem::take(&mut wants.notes.trouble) {
+    /// Lists the alarms of this turn and reacts to them; `output` keeps the new ones.
+    pub(super) fn raise_all(&mut self, now: RigTime, output: &mut TurnOutput) {
+        for alarm in std::mem::take(&mut output.notes.trouble) {
             if self.alarms.annunciator.raise(&alarm, now) {
-                wants.record.alarms.push(alarm.clone());
+                output.record.alarms.push(alarm.clone());
             }
-            self.react(&alarm, now, wants);
+            self.react(&alarm, now, output);
         }
     }
 
-    fn react(&mut self, alarm: &Alarm, now: RigTime, wants: &mut Wants) {
+    fn react(&mut self, alarm: &Alarm, now: RigTime, output: &mut TurnOutput) {
         let (entry, name) = (alarm.code.entry(), alarm.code.name());
         if catalogue::NEEDS_CALIBRATION.contains(&alarm.code)
             && !packml::is_aborted(self.machine.state)
@@ -190,52 +196,52 @@ impl Station {
             Reaction::Abort => {
                 let parked = matches!(self.machine.state, State::Stopped | State::Complete);
                 if !(parked && entry.cleared_by == ClearedBy::Sensor) {
-                    self.abort(&name, now, wants);
+                    self.abort(&name, now, output);
                 }
             }
-            Reaction::Hold if !self.plan.attended => self.abort(&name, now, wants),
-            Reaction::Hold => self.rest(Command::Hold, now, wants),
+            Reaction::Hold if !self.plan.attended => self.abort(&name, now, output),
+            Reaction::Hold => self.rest(Command::Hold, now, output),
             Reaction::Suspend => {
                 if self.machine.state == State::Execute {
                     self.machine.suspended_by_order = false;
                 }
-                self.rest(Command::Suspend, now, wants);
+                self.rest(Command::Suspend, now, output);
             }
             Reaction::Nothing => {}
         }
     }
 
-    fn rest(&mut self, command: Command, now: RigTime, wants: &mut Wants) {
+    fn rest(&mut self, command: Command, now: RigTime, output: &mut TurnOutput) {
         if packml::next(self.machine.state, On::Command(command)).is_some() {
-            self.enter(command, now, wants);
+            self.enter(command, now, output);
         }
     }
 
     /// Makes the outputs safe at once and interrupts the parts inside; ends an unattended run.
-    pub(super) fn abort(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
+    pub(super) fn abort(&mut self, why: &str, now: RigTime, output: &mut TurnOutput) {
         if packml::is_aborted(self.machine.state) || self.machine.ended {
             return;
         }
-        self.make_safe(why, now, wants);
-        self.enter(Command::Abort, now, wants);
+        self.make_safe(why, now, output);
+        self.enter(Command::Abort, now, output);
         if !self.plan.attended {
-            self.end(Ending::Alarm, now, wants);
+            self.end(Ending::Alarm, now, output);
         }
     }
 
     /// Makes the outputs safe and forgets every position.
-    pub(super) fn make_safe(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
-        wants.rig.motions.clear();
-        wants.rig.jog = None;
-        wants.rig.job = None;
-        wants.rig.safe = true;
-        self.interrupt(why, now, wants);
+    pub(super) fn make_safe(&mut self, why: &str, now: RigTime, output: &mut TurnOutput) {
+        output.rig.motions.clear();
+        output.rig.jog = None;
+        output.rig.job = None;
+        output.rig.safe = true;
+        self.interrupt(why, now, output);
         self.line.cut_off();
     }
 
-    /// Sends parts in nest and gripper to retest; the row of a judged one records it.
-    fn interrupt(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
-        let parts = &mut wants.record.parts;
+    /// Sends parts in nest and gripper to retest; the row of a judged part records it.
+    fn interrupt(&mut self, why: &str, now: RigTime, output: &mut TurnOutput) {
+        let parts = &mut output.record.parts;
         for part in self.line.ledger.held_mut() {
             if part.interrupted.is_some() && part.bin == Some(Bin::RETEST) {
                 continue;
@@ -265,13 +271,13 @@ impl Station {
         assert!(all, "an interrupted part goes elsewhere");
     }
 
-    /// Returns the alarm whose sensor still shows its cause, which forbids clear and reset.
+    /// Returns the alarm whose sensor still shows its cause; it forbids clear and reset.
     pub(super) fn cause(&self) -> Option<&Standing> {
         self.alarms.annunciator.still_sensed()
     }
 }
 
-/// Returns true when every safety input has a sample after `since`, open or closed.
+/// Returns true when every safety input has a sample later than `since`.
 pub(super) fn safety_was_read(image: &Image, since: RigTime) -> bool {
     let inputs = [
         DigitalIn::EmergencyStopOk,

@@ -4,11 +4,11 @@ use super::catalogue::{AlarmCode, Reaction};
 use super::packml::{self, Command, On, State};
 use super::safety::{FIRST_SCAN, safety_was_read};
 use super::trouble::Alarm;
-use super::wants::{Ending, Inputs, Wants};
+use super::turn::{Ending, Inputs, TurnOutput};
 use super::{Start, Station};
 use crate::handling::feeder::Permits;
+use crate::handling::output::{Interrupted, Judged, NestJob};
 use crate::handling::recovery::Recovery;
-use crate::handling::wants::{Interrupted, Judged, NestJob};
 use crate::handling::{Move, NestId, Place};
 use crate::instrument::act::{Doing, Runner};
 use crate::rig::bin::Bin;
@@ -17,26 +17,26 @@ use units::{RigTime, Span};
 
 /// Time within which outputs must confirm their safe value; after it the abort continues with an alarm.
 const SAFE_WITHIN: Span = Span::ms(2000);
-/// Reason for a part inside at a reset without an earlier interruption.
+/// Reason for a part that a reset finds inside without an earlier interruption.
 const BY_A_RESET: &str = "reset";
 /// Time after which an unattended suspension ends the run.
 const ALONE: Span = Span::ms(60_000);
 
 impl Station {
-    /// Gives the orders of an unattended machine, and ends the run with the program.
-    pub(super) fn by_itself(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
+    /// Gives the commands of an unattended machine, and ends the run with the program.
+    pub(super) fn by_itself(&mut self, now: RigTime, inputs: &Inputs, output: &mut TurnOutput) {
         if self.machine.ended {
             return;
         }
         if inputs.stop && !self.machine.stopping {
             self.machine.stopping = true;
             if packml::next(self.machine.state, On::Command(Command::Stop)).is_some() {
-                self.enter(Command::Stop, now, wants);
+                self.enter(Command::Stop, now, output);
             }
         }
         if inputs.abort && !packml::is_aborted(self.machine.state) {
-            self.make_safe("stopped_by_operator", now, wants);
-            self.end(Ending::Stopped, now, wants);
+            self.make_safe("stopped_by_operator", now, output);
+            self.end(Ending::Stopped, now, output);
         }
         let rests = matches!(
             self.machine.state,
@@ -48,7 +48,7 @@ impl Station {
             self.machine.state,
         ) {
             (true, ..) if rests => {
-                self.make_safe("stopped", now, wants);
+                self.make_safe("stopped", now, output);
                 let aborted = packml::is_aborted(self.machine.state);
                 let in_trouble = aborted && !self.alarms.annunciator.standing().is_empty();
                 self.end(
@@ -58,60 +58,62 @@ impl Station {
                         Ending::Stopped
                     },
                     now,
-                    wants,
+                    output,
                 );
             }
             (false, ..) if self.is_between_lots() => {}
             (false, _, State::Stopped) if self.machine.entered == RigTime(0) => {
-                self.enter(Command::Reset, now, wants)
+                self.enter(Command::Reset, now, output)
             }
-            (false, _, State::Idle) if self.machine.fresh => self.enter(Command::Start, now, wants),
+            (false, _, State::Idle) if self.machine.fresh => {
+                self.enter(Command::Start, now, output)
+            }
             (false, false, State::Suspended) if now.since(self.machine.entered) > ALONE => {
-                self.make_safe("suspended_too_long", now, wants);
-                self.end(Ending::Alarm, now, wants);
+                self.make_safe("suspended_too_long", now, output);
+                self.end(Ending::Alarm, now, output);
             }
             (..) => {}
         }
     }
 
     /// Ends the run; raises an alarm for a part that still falls into its bin.
-    pub(super) fn end(&mut self, ending: Ending, now: RigTime, wants: &mut Wants) {
+    pub(super) fn end(&mut self, ending: Ending, now: RigTime, output: &mut TurnOutput) {
         let over = self.line.ledger.fall().map(|fall| fall.bin);
         if let Some(bin) = over {
             self.line.ledger.lose(Place::Falling);
             let alarm = Alarm::beam_unread(bin);
             if self.alarms.annunciator.raise(&alarm, now) {
-                wants.record.alarms.push(alarm);
-                wants.record.alarms_changed |= self.alarms.annunciator.take_changed();
+                output.record.alarms.push(alarm);
+                output.record.alarms_changed |= self.alarms.annunciator.take_changed();
             }
         }
         assert!(
             self.line.ledger.fall().is_none(),
             "a part falls on after the end"
         );
-        wants.rig.safe = true;
-        wants.record.ending = Some(ending);
+        output.rig.safe = true;
+        output.record.ending = Some(ending);
         self.machine.ended = true;
     }
 
-    /// Enters the state that follows on a command; the caller has checked that it may.
-    pub(super) fn enter(&mut self, command: Command, now: RigTime, wants: &mut Wants) {
+    /// Enters the state that follows on a command, which the caller has checked.
+    pub(super) fn enter(&mut self, command: Command, now: RigTime, output: &mut TurnOutput) {
         if let Some(to) = self.machine.follow(On::Command(command), now) {
-            self.entered(to, now, wants);
+            self.entered(to, now, output);
         }
     }
 
     /// Leaves a state that is complete.
-    fn done(&mut self, now: RigTime, wants: &mut Wants) {
+    fn done(&mut self, now: RigTime, output: &mut TurnOutput) {
         if let Some(to) = self.machine.follow(On::Done, now) {
-            self.entered(to, now, wants);
+            self.entered(to, now, output);
         }
     }
 
     /// Performs the entry actions of a state.
-    fn entered(&mut self, to: State, now: RigTime, wants: &mut Wants) {
+    fn entered(&mut self, to: State, now: RigTime, output: &mut TurnOutput) {
         self.alarms.timeouts.forget();
-        wants.rig.wake_at = Some(now);
+        output.rig.wake_at = Some(now);
         match to {
             State::Resetting => {
                 self.line.recovery = Recovery::default();
@@ -124,7 +126,7 @@ impl Station {
             State::Clearing => {
                 (self.machine.verify_requested, self.machine.verified) = (false, None)
             }
-            State::Stopped | State::Complete => self.make_safe("stopped", now, wants),
+            State::Stopped | State::Complete => self.make_safe("stopped", now, output),
             State::Idle
             | State::Execute
             | State::Completing
@@ -144,41 +146,41 @@ impl Station {
             } else {
                 Ending::Complete
             };
-            self.end(ending, now, wants);
+            self.end(ending, now, output);
         }
     }
 
     /// Performs a turn of the present state.
-    pub(super) fn act(&mut self, now: RigTime, inputs: Inputs, wants: &mut Wants) {
+    pub(super) fn act(&mut self, now: RigTime, inputs: Inputs, output: &mut TurnOutput) {
         match self.machine.state {
-            State::Resetting => self.reset(now, inputs, wants),
-            State::Starting => self.begin(now, &inputs, wants),
+            State::Resetting => self.reset(now, inputs, output),
+            State::Starting => self.begin(now, &inputs, output),
             State::Execute => {
-                self.look_for_check(now, wants);
+                self.look_for_check(now, output);
                 let permits = Permits {
-                    release: self.wants_more(),
+                    release: self.expects_more(),
                     push: true,
                 };
-                self.produce(now, inputs, wants, permits);
-                let done = !self.wants_more() && !self.lot.gates.is_checking();
+                self.produce(now, inputs, output, permits);
+                let done = !self.expects_more() && !self.lot.gates.is_checking();
                 if self.machine.state == State::Execute && done {
-                    self.done(now, wants);
+                    self.done(now, output);
                 }
             }
-            State::Completing => self.finish(now, inputs, wants, true),
-            State::Stopping if self.line.homed => self.finish(now, inputs, wants, false),
+            State::Completing => self.finish(now, inputs, output, true),
+            State::Stopping if self.line.homed => self.finish(now, inputs, output, false),
             State::Holding | State::Suspending => {
                 let permits = Permits {
                     release: false,
                     push: false,
                 };
-                self.produce(now, inputs, wants, permits);
+                self.produce(now, inputs, output, permits);
                 if self.machine.is_coming_to_rest() && self.line.is_at_rest() {
-                    self.done(now, wants);
+                    self.done(now, output);
                 }
             }
-            State::Aborting => self.wait_for_safe(now, &inputs, wants),
-            State::Clearing => self.clear(now, &inputs, wants),
+            State::Aborting => self.wait_for_safe(now, &inputs, output),
+            State::Clearing => self.clear(now, &inputs, output),
             State::Suspended => {
                 let cause = self
                     .alarms
@@ -186,51 +188,51 @@ impl Station {
                     .stopping(Reaction::Suspend)
                     .is_some();
                 if !cause && !self.machine.suspended_by_order {
-                    self.enter(Command::Unsuspend, now, wants);
+                    self.enter(Command::Unsuspend, now, output);
                 }
             }
-            State::Stopping | State::Unholding | State::Unsuspending => self.done(now, wants),
+            State::Stopping | State::Unholding | State::Unsuspending => self.done(now, output),
             State::Stopped | State::Idle | State::Complete | State::Held | State::Aborted => {}
         }
     }
 
-    fn reset(&mut self, now: RigTime, inputs: Inputs, wants: &mut Wants) {
+    fn reset(&mut self, now: RigTime, inputs: Inputs, output: &mut TurnOutput) {
         if !self.alarms.sensed {
             return;
         }
         if self.line.homed {
-            return self.finish(now, inputs, wants, false);
+            return self.finish(now, inputs, output, false);
         }
         if self.line.recovery.drive_reset(now) {
             self.line.mechanism.drive_reset(now);
         }
-        let golden = &mut self.lot.reference_left;
-        let (feeder, recovery, mut turn) = self.line.at(now, &inputs, wants, golden, false);
+        let reference = &mut self.lot.reference_left;
+        let (feeder, recovery, mut turn) = self.line.at(now, &inputs, output, reference, false);
         let home = recovery.step(&mut turn, feeder.is_releasing());
-        wants.notes.take_over();
+        output.notes.take_over();
         if home {
             let moves = self.line.mechanism.moving().next();
             assert_eq!(moves, None, "home while an actuator moves");
             self.line.homed = true;
-            self.take_up(now, wants);
+            self.take_up(now, output);
         }
     }
 
-    /// Continues the sequence with the parts inside.
-    fn take_up(&mut self, now: RigTime, wants: &mut Wants) {
+    /// Resumes the sequence with the parts inside.
+    fn take_up(&mut self, now: RigTime, output: &mut TurnOutput) {
         self.line.feeder.resume(&self.line.ledger);
         if self.lot.gates.is_checking() {
             self.begin_check();
         }
-        self.end_reference_run(wants);
-        self.take_up_gripped(now, wants);
-        self.take_up_nested(wants);
-        wants.rig.wake_at = Some(now);
+        self.end_reference_run(output);
+        self.take_up_gripped(now, output);
+        self.take_up_nested(output);
+        output.rig.wake_at = Some(now);
     }
 
-    /// Interrupts the part in the nest. One with a bin was judged before and put back: it goes to retest, and its row
-    /// records the reason.
-    fn take_up_nested(&mut self, wants: &mut Wants) {
+    /// Interrupts the part in the nest. A part with a bin was judged already and put back: it goes to retest, and its
+    /// row records the reason.
+    fn take_up_nested(&mut self, output: &mut TurnOutput) {
         let Some(part) = self.line.ledger.part_mut(Place::NEST) else {
             return;
         };
@@ -241,38 +243,38 @@ impl Station {
         if part.bin.is_some_and(|bin| bin != Bin::RETEST) {
             part.bin = Some(Bin::RETEST);
             let ordinal = part.ordinal;
-            let interrupted = &mut wants.record.parts.interrupted;
+            let interrupted = &mut output.record.parts.interrupted;
             interrupted.push(Interrupted { ordinal, why });
         }
     }
 
     /// Sends the part in the gripper to retest; its row records the reason.
-    fn take_up_gripped(&mut self, now: RigTime, wants: &mut Wants) {
+    fn take_up_gripped(&mut self, now: RigTime, output: &mut TurnOutput) {
         let Some(part) = self.line.ledger.part_mut(Place::Gripper) else {
             return;
         };
-        let told = part.interrupted.is_some();
+        let is_recorded = part.interrupted.is_some();
         let why = part
             .interrupted
             .get_or_insert_with(|| BY_A_RESET.into())
             .clone();
         if part.bin.replace(Bin::RETEST).is_none() {
             let judged = Judged::interrupted(part.clone(), &why, now);
-            wants.record.parts.judged.push(judged);
-        } else if !told {
+            output.record.parts.judged.push(judged);
+        } else if !is_recorded {
             let ordinal = part.ordinal;
-            let interrupted = &mut wants.record.parts.interrupted;
+            let interrupted = &mut output.record.parts.interrupted;
             interrupted.push(Interrupted { ordinal, why });
         }
     }
 
-    fn begin(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
+    fn begin(&mut self, now: RigTime, inputs: &Inputs, output: &mut TurnOutput) {
         if self.plan.calibrated || self.referenced {
-            return self.done(now, wants);
+            return self.done(now, output);
         }
         match std::mem::replace(&mut self.start, Start::Begin) {
             Start::Begin => {
-                wants.rig.motions.push(Move::ProbesUp);
+                output.rig.motions.push(Move::ProbesUp);
                 self.start = Start::Up;
             }
             Start::Up => {
@@ -286,9 +288,9 @@ impl Station {
                 } else {
                     Start::Up
                 };
-                wants.rig.wake_at = up.then_some(now);
+                output.rig.wake_at = up.then_some(now);
             }
-            Start::References(runner) => self.measure(now, inputs, runner, wants),
+            Start::References(runner) => self.measure(now, inputs, runner, output),
             Start::Down => {
                 if self
                     .line
@@ -296,7 +298,7 @@ impl Station {
                     .has_arrived(Move::ProbesDown, now, inputs.image)
                 {
                     self.referenced = true;
-                    self.done(now, wants);
+                    self.done(now, output);
                 } else {
                     self.start = Start::Down;
                 }
@@ -309,27 +311,27 @@ impl Station {
         now: RigTime,
         inputs: &Inputs,
         mut runner: Box<Runner>,
-        wants: &mut Wants,
+        output: &mut TurnOutput,
     ) {
         let done = inputs.job.as_ref().map(|job| &job.done);
         match runner.step(now, done, inputs.image) {
             Doing::Job(job) => {
                 let nest = NestId::FIRST;
-                wants.rig.job = Some(NestJob { nest, job });
+                output.rig.job = Some(NestJob { nest, job });
             }
-            Doing::Wait(until) => wants.rig.wake_at = Some(until),
+            Doing::Wait(until) => output.rig.wake_at = Some(until),
             Doing::Busy => {}
             Doing::Trouble(why) => {
                 let fault = Message::new("fault", "line").with("detail", why);
-                wants.notes.trouble.push(Alarm::calibration(&fault));
+                output.notes.trouble.push(Alarm::calibration(&fault));
             }
             Doing::Done => {
                 if let Err(why) = self.conclude_references(now, &runner) {
                     let alarm = Alarm::calibration(&why.message());
-                    wants.notes.trouble.push(alarm);
+                    output.notes.trouble.push(alarm);
                     return;
                 }
-                wants.rig.motions.push(Move::ProbesDown);
+                output.rig.motions.push(Move::ProbesDown);
                 self.start = Start::Down;
                 return;
             }
@@ -337,44 +339,44 @@ impl Station {
         self.start = Start::References(runner);
     }
 
-    /// Finishes the parts inside; with `push` the one in the pocket too.
-    fn finish(&mut self, now: RigTime, inputs: Inputs, wants: &mut Wants, push: bool) {
+    /// Finishes the parts inside, with `push` also the part in the pocket.
+    fn finish(&mut self, now: RigTime, inputs: Inputs, output: &mut TurnOutput, push: bool) {
         let (state, recorded) = (self.machine.state, inputs.recorded);
         let permits = Permits {
             release: false,
             push,
         };
-        self.produce(now, inputs, wants, permits);
-        if self.machine.state == state && self.line.is_finished(push, recorded, wants) {
-            self.done(now, wants);
+        self.produce(now, inputs, output, permits);
+        if self.machine.state == state && self.line.is_finished(push, recorded, output) {
+            self.done(now, output);
         }
     }
 
-    fn wait_for_safe(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
+    fn wait_for_safe(&mut self, now: RigTime, inputs: &Inputs, output: &mut TurnOutput) {
         if inputs.settled {
-            self.done(now, wants);
+            self.done(now, output);
         } else if now.since(self.machine.entered) > SAFE_WITHIN {
-            wants
+            output
                 .notes
                 .trouble
                 .push(AlarmCode::OutputsNotConfirmed.into());
-            self.done(now, wants);
+            self.done(now, output);
         }
     }
 
-    /// Verifies the modules, then waits for a fresh sample of every safety input, so that a reset finds them read.
-    fn clear(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
+    /// Verifies the modules, then waits for a fresh sample of every safety input, which a reset requires.
+    fn clear(&mut self, now: RigTime, inputs: &Inputs, output: &mut TurnOutput) {
         if inputs.verified {
             self.machine.verified = Some(now);
         }
         if let Some(at) = self.machine.verified {
             assert!(at <= now, "verified in the future");
             if safety_was_read(inputs.image, at) || now.since(at) > FIRST_SCAN {
-                self.done(now, wants);
+                self.done(now, output);
             }
         } else if !self.machine.verify_requested {
             self.machine.verify_requested = true;
-            wants.rig.verify = true;
+            output.rig.verify = true;
         }
     }
 }

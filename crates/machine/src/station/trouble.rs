@@ -1,4 +1,4 @@
-//! Alarms: trouble of the rig as a code with its arguments. `parts` has those about parts and their places.
+//! Alarms: trouble of the rig as a code with its arguments; `parts` has the alarms about parts and their places.
 
 mod parts;
 
@@ -51,7 +51,7 @@ impl From<Trouble> for Alarm {
 }
 
 impl Alarm {
-    /// Returns the text. For an alarm stored without arguments by an older version it is the cause.
+    /// Returns the text; the cause for an alarm that an older version stored without arguments.
     pub fn text(&self, lang: Lang) -> String {
         let said = self.code.message(self.args.clone()).try_say(lang);
         let [cause, ..] = self.code.help(lang);
@@ -77,7 +77,7 @@ impl Alarm {
         }
     }
 
-    /// The text of `fault` speaks in that of the alarm, with its arguments.
+    /// Makes an alarm whose text contains that of `fault`, with its arguments.
     fn of_a_fault(code: AlarmCode, fault: &Message) -> Self {
         let args = fault.args().clone().with("fault", fault.code());
         Self { code, args }
@@ -118,7 +118,7 @@ impl Alarm {
         Self::of_a_move(AlarmCode::MotionRefused, movement).with("detail", refusal)
     }
 
-    /// A line or a module does not answer as it should.
+    /// A line or module fails to answer correctly.
     pub fn bus(text: &str) -> Self {
         Self::from(AlarmCode::BusTrouble).with("detail", text)
     }
@@ -157,7 +157,7 @@ impl Alarm {
         Self::from(AlarmCode::ReferenceCheckDue).with("serial", serial)
     }
 
-    /// A reference part does not agree with its certificate.
+    /// A reference part disagrees with its certificate.
     pub fn reference_check_failed(fault: &Message) -> Self {
         Self::of_a_fault(AlarmCode::ReferenceCheckFailed, fault)
     }
@@ -190,12 +190,12 @@ impl Alarm {
         Self::from(AlarmCode::CalibrationCutOff).with("module", module)
     }
 
-    /// The references or the reference parts give no calibration.
+    /// References or reference parts give no calibration.
     pub fn calibration(fault: &Message) -> Self {
         Self::of_a_fault(AlarmCode::CalibrationFailed, fault)
     }
 
-    /// The stored calibration may not be used, so that no lot begins.
+    /// The stored calibration is unusable, so that no lot begins.
     pub fn calibration_invalid(why: &str) -> Self {
         Self::from(AlarmCode::CalibrationInvalid).with("detail", why)
     }

@@ -12,7 +12,7 @@ pub struct Machine {
     pub state: String,
     /// `production`, `maintenance`, `manual`.
     pub mode: String,
-    /// Every button, enabled or with the reason why not.
+    /// Every button, enabled or with the reason of its refusal.
     pub buttons: Vec<Button>,
     /// Actuators in the order of the line.
     pub actuators: Vec<ActuatorView>,
@@ -50,7 +50,7 @@ pub struct Button {
     pub why_en: String,
     /// Reason for the refusal, Chinese; empty when enabled.
     pub why_zh: String,
-    /// The same as code and arguments; null when enabled.
+    /// The reason as code and arguments; null when enabled.
     pub why: Option<Message>,
 }
 

@@ -7,7 +7,7 @@ use serde::Serialize;
 pub struct MotionView {
     /// Name in the order `jog`, or name of a motion of the sequence.
     pub motion: String,
-    /// Ways of the actuators involved.
+    /// Strokes of the actuators involved.
     pub strokes: Vec<StrokeView>,
     /// Least distance to the bodies that the motion must not touch, mm; null beyond 25 mm and for a refused motion.
     pub clearance_mm: Option<f64>,
@@ -15,7 +15,7 @@ pub struct MotionView {
     pub refused: Option<RefusedView>,
 }
 
-/// The way of one actuator.
+/// Stroke of one actuator.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct StrokeView {
     /// Name as in `config/scene.toml`.
@@ -35,13 +35,13 @@ pub struct RefusedView {
     pub blocker: String,
     /// Least distance of the two during the motion, mm.
     pub distance_mm: f64,
-    /// Distance they must exceed, mm.
+    /// Least distance required, mm.
     pub margin_mm: f64,
     /// Place of the contact, mm.
     pub at: [f64; 3],
-    /// How far the stroke is clear, mm from the rest end; an actuator beyond may come back to here. Null when it is
-    /// blocked at its start.
+    /// Position up to which the stroke is clear, mm from the rest end; an actuator beyond may return to it. Null when
+    /// the stroke is blocked at its start.
     pub last_clear_mm: Option<f64>,
-    /// The whole sentence, with the remedy.
+    /// The whole refusal, with the remedy.
     pub text: String,
 }

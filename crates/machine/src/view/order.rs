@@ -62,7 +62,7 @@ pub struct Order {
     pub counter: Option<String>,
 }
 
-/// Person who gives an order, and place.
+/// Person who gives an order, and network address.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct By {
     /// Name at login.

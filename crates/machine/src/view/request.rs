@@ -4,7 +4,7 @@ use super::order::{By, Order};
 use std::fmt;
 use texts::Message;
 
-/// What an order comes to.
+/// Outcome of an order.
 pub type Answer = Result<(), Message>;
 
 /// An order on its way to the station.
@@ -37,8 +37,8 @@ impl OrderRequest {
         }
     }
 
-    /// Sends the answer; does nothing if the page has gone away.
-    pub fn say(self, answer: Answer) {
+    /// Sends the answer; does nothing after the page has disconnected.
+    pub fn answer(self, answer: Answer) {
         (self.way_back)(answer);
     }
 }

@@ -11,14 +11,14 @@ pub struct LineTraffic {
     pub entries: Vec<Message>,
 }
 
-/// A piece of traffic, at most one frame.
+/// Message on a line, at most one frame.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct Message {
     /// Rig time, microseconds since the run began.
     pub at_us: u64,
     /// `>` sent, `<` reply, `~` discarded.
     pub way: String,
-    /// Characters, non-printable ones as `\r` or `\xNN`.
+    /// Characters; non-printable ones as `\r` or `\xNN`.
     pub text: String,
     /// Meaning of request and reply in words; empty for a request.
     pub meaning: String,

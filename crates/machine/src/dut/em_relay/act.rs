@@ -22,7 +22,7 @@ pub enum Read {
     Gate,
     /// Temperature of the magazine track, taken as that of the part.
     Track,
-    /// Asks each module with outputs whether it has restarted since the last such read; a restart raises an alarm.
+    /// Reads the restart flag of each module with outputs; a restart raises an alarm.
     Resets,
 }
 
@@ -37,7 +37,7 @@ pub enum Act {
     Read(Read),
     /// Enables these channels of the coil converter and no others; only before a lot.
     CoilMask(&'static [AnalogIn]),
-    /// Remembers this instant.
+    /// Marks this instant.
     Mark,
     /// See [`act::Act::WaitSinceMark`].
     WaitSinceMark(Span),
@@ -47,7 +47,7 @@ pub enum Act {
     Wait(Span),
     /// See [`act::Act::ConvertSinceMark`].
     ConvertSinceMark(Span),
-    /// Reads the board until the point is active or the wait ends, and keeps which came first.
+    /// Reads the board until the point is active or the wait ends, and records which came first.
     Until {
         /// Point of the interface board.
         point: DigitalIn,
@@ -87,7 +87,7 @@ impl Points {
         }
     }
 
-    /// Steps the level output, ramps the other two.
+    /// Sets the level output, ramps the other two.
     fn supplied(&self, outputs: Vec<(AnalogOut, Volt)>) -> act::Act {
         let ramps = |(output, _): &(AnalogOut, Volt)| *output != AnalogOut::SupplyLevel;
         let ramps = outputs.iter().any(ramps);
@@ -109,8 +109,8 @@ impl Points {
             Read::Drop => act::Read::points([analog(AnalogIn::ContactDrop)]),
             Read::Gates => act::Read::points([Counter::Gate0, Counter::Gate1].map(count)),
             Read::Gate => act::Read::Points {
-                asked: vec![count(Counter::Gate0)],
-                beside: vec![count(Counter::Gate1)],
+                read: vec![count(Counter::Gate0)],
+                retained: vec![count(Counter::Gate1)],
             },
             Read::Track => act::Read::points([Point::Temperature(self.track)]),
             Read::Resets => act::Read::Restarts,

@@ -1,4 +1,4 @@
-//! Bins of a failed relay, one for each cause that a fitter can correct.
+//! Bins of a failed relay, one per correctable cause.
 
 use crate::rig::bin::Bin;
 

@@ -1,9 +1,9 @@
 //! Calibration of a rig for relays: the factors that turn terminal volts, output commands and counts into quantities,
 //! each with its standard uncertainty.
 //!
-//! The factors come from the references on the interface board (5.000 V, 400 ohm, 50 mOhm, 1.000 ms)
-//! and from reference parts, never from the specimens under test. A calibration without
-//! reference parts has no overshoot and measures no threshold ([`Calibration::overshoots`] is `None`).
+//! The factors come from the references on the interface board (5.000 V, 400 ohm, 50 mOhm, 1.000 ms) and from
+//! reference parts, never from the parts under test. A calibration without reference parts measures no threshold
+//! ([`Calibration::overshoots`] is `None`).
 
 use super::overshoot::OvershootModel;
 use super::threshold::Direction;
@@ -28,7 +28,7 @@ impl InputLine {
     }
 }
 
-/// Coil voltage that one of the three supply outputs adds, as a straight line of the wanted voltage.
+/// Coil voltage from one of the three supply outputs, as a straight line of the wanted voltage.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OutputLine {
     /// Volts at the coil per wanted volt.
@@ -45,13 +45,13 @@ impl OutputLine {
     };
 
     /// Returns the voltage to command so that the coil gets `wanted`.
-    pub fn ask_for(&self, wanted: Volt) -> Volt {
+    pub fn command_for(&self, wanted: Volt) -> Volt {
         Volt((wanted.0 - self.offset_v.value) / self.gain.value)
     }
 
-    /// Returns the voltage at the coil when the command is `asked`.
-    pub fn delivers(&self, asked: Volt) -> Volt {
-        Volt(self.offset_v.value + self.gain.value * asked.0)
+    /// Returns the voltage at the coil for the command `command`.
+    pub fn delivers(&self, command: Volt) -> Volt {
+        Volt(self.offset_v.value + self.gain.value * command.0)
     }
 }
 
@@ -60,8 +60,8 @@ impl OutputLine {
 pub struct Overshoot {
     /// Indicated minus certified threshold on the fine ramp, volts; positive for operate, negative for release.
     pub fine_v: Factor,
-    /// Mean certified threshold of those parts, volts: [`Overshoot::fine_v`] contains the gain error of the supply at this
-    /// voltage, so that only the distance from it adds uncertainty.
+    /// Mean certified threshold of those parts, volts. [`Overshoot::fine_v`] contains the gain error of the supply at
+    /// this voltage, so that only the distance from it adds uncertainty.
     #[serde(default)]
     pub at_v: f64,
     /// Mean of coarse minus fine indication of those parts, volts.
@@ -70,7 +70,7 @@ pub struct Overshoot {
     /// Model of coarse minus fine indication: places the fine ramp, and gives results where a recipe allows it.
     #[serde(default = "untaught")]
     pub coarse: OvershootModel,
-    /// True when enough parts of the lot have taught the model for it to give results.
+    /// True when enough parts of the lot have taught the model that it may give results.
     #[serde(default)]
     pub judges: bool,
 }
@@ -79,9 +79,9 @@ pub struct Overshoot {
 const FIRST_PARTS: u32 = 20;
 
 impl Overshoot {
-    /// Takes over the model taught by all parts, or that of the lot alone once it has seen [`FIRST_PARTS`].
+    /// Takes over the model taught by all parts, or the model of the lot once it has learned from [`FIRST_PARTS`].
     ///
-    /// Reference parts lie far apart, where the line bends: their model places ramps but gives no results.
+    /// Reference parts lie too far apart for a straight line: their model places ramps but gives no results.
     pub fn taught(self, by_all: OvershootModel, by_lot: OvershootModel) -> Self {
         let judges = by_lot.parts() >= FIRST_PARTS;
         let coarse = if judges { by_lot } else { by_all };
@@ -92,11 +92,11 @@ impl Overshoot {
         }
     }
 
-    /// Returns by how much more the fine ramp overshoots on this part than on the reference parts, volts (1 sd).
+    /// Returns the fine overshoot of this part beyond that of the reference parts, volts (1 sd).
     ///
-    /// A rising ramp waits for the armature at both rates, so the fine overshoot grows in proportion to the coarse one. A
-    /// falling ramp waits for the flux, which predicts no fine overshoot and only adds uncertainty. Without a coarse ramp
-    /// the overshoot of the reference parts is the uncertainty.
+    /// A rising ramp waits for the armature at both rates, so the fine overshoot grows in proportion to the coarse
+    /// one. A falling ramp waits for the flux, which predicts no fine overshoot and only adds uncertainty. Without a
+    /// coarse ramp the overshoot of the reference parts is the uncertainty.
     pub fn own_v(&self, coarse_minus_fine_v: f64, direction: Direction) -> Factor {
         let further = self.fine_v.value * (coarse_minus_fine_v / self.at_coarse_v - 1.0);
         match direction {
@@ -107,7 +107,7 @@ impl Overshoot {
     }
 }
 
-/// Model of a calibration that was stored without one.
+/// Returns the model for a stored calibration that has none.
 fn untaught() -> OvershootModel {
     OvershootModel::guess(0.0)
 }
@@ -124,23 +124,23 @@ pub struct Overshoots {
 /// All factors of a rig with their date, as the history stores them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
-    /// When the factors were found, microseconds since 1970 UTC.
+    /// Time of the measurement, microseconds since 1970 UTC.
     pub made_at_us: i64,
-    /// When they expire, microseconds since 1970 UTC.
+    /// Expiry, microseconds since 1970 UTC.
     pub due_at_us: i64,
-    /// True on a simulated rig; a real one refuses it.
+    /// True on a simulated rig; a real rig refuses such a calibration.
     pub simulated: bool,
-    /// Nominal coil voltage of the reference parts; the overshoot holds for no other.
+    /// Nominal coil voltage of the reference parts; the overshoot is valid for this voltage only.
     pub nominal_v: f64,
     /// Line of the converter that reads the coil.
     pub coil_input: InputLine,
     /// Ohms per unit of (voltage reading / current reading) on the fine channels.
     pub ohm_fine: Factor,
-    /// The same with the wide current channel, for coils that draw too much for the fine one.
+    /// [`Calibration::ohm_fine`] on the wide current channel, for coils beyond the range of the fine one.
     pub ohm_wide: Factor,
     /// Milliohms per volt of contact drop at the terminal, half the difference of both polarities.
     pub contact_mohm_per_v: Factor,
-    /// Added to gate 0 and gate 1 by their counters, microseconds.
+    /// Delay of the gates of counters 0 and 1, microseconds; each gate counts longer by it.
     pub gate_delay_us: [Factor; 2],
     /// Supply output for levels.
     pub level: OutputLine,
@@ -152,17 +152,17 @@ pub struct Calibration {
     pub coarse_v_per_s: Factor,
     /// Slope of the fine ramp at the coil, volts per second.
     pub fine_v_per_s: Factor,
-    /// Overshoot of the ramps; none before the reference parts are measured.
+    /// Overshoot of the ramps; `None` before the reference parts are measured.
     #[serde(rename = "lags")]
     pub overshoots: Option<Overshoots>,
-    /// Resistance of the coil's two force contacts during the run of the reference parts, which the overshoot contains,
-    /// ohm; 0 when not known.
+    /// Resistance of the coil's two force contacts while the reference parts were measured, ohm; the overshoot
+    /// contains it. 0 when unknown.
     #[serde(default)]
     pub probe_contact_ohm: f64,
 }
 
 impl Calibration {
-    /// Returns ideal factors of infinite uncertainty, with which a rig measures its references.
+    /// Returns ideal factors of infinite uncertainty, for the measurement of the references.
     pub fn unknown(nominal_v: f64) -> Self {
         let unknown = Factor::new(1.0, f64::INFINITY);
         Self {
@@ -188,7 +188,7 @@ impl Calibration {
         }
     }
 
-    /// Returns every measured factor; the slope of the coarse ramp is the maker's and not among them.
+    /// Returns every measured factor; the slope of the coarse ramp is the maker's and therefore absent.
     pub fn factors(&self) -> Vec<Named> {
         let named = |name, unit, factor| Named { name, unit, factor };
         let mut all = vec![
@@ -223,12 +223,12 @@ mod tests {
             gain: Factor::new(1.0004, 0.0),
             offset_v: Factor::new(-0.0021, 0.0),
         };
-        let asked = line.ask_for(Volt(7.9));
-        assert!((line.delivers(asked).0 - 7.9).abs() < 1e-12);
+        let command = line.command_for(Volt(7.9));
+        assert!((line.delivers(command).0 - 7.9).abs() < 1e-12);
     }
 
     #[test]
-    fn the_coarse_ramp_corrects_the_fine_overshoot_of_a_part() {
+    fn the_coarse_ramp_corrects_a_parts_fine_overshoot() {
         let overshoot = Overshoot {
             fine_v: Factor::new(0.028, 0.0),
             at_v: 7.88,

@@ -77,7 +77,7 @@ impl CardStep {
         }
     }
 
-    /// How the coil is driven, or the contact fed.
+    /// Returns the drive of the coil or the supply of the contact.
     fn drive(self, relay: &RelayRecipe) -> Vec<Piece> {
         let (test, nominal) = (&relay.test, Piece::Figure(relay.part.nominal_v));
         let prebias = Piece::Figure(test.prebias_v);

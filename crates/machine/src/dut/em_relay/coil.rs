@@ -1,15 +1,15 @@
 //! Coil resistance as a ratio to the reference resistor, at the reference temperature.
 //!
-//! Voltage and current come from one converter in the same scan, and the calibration compares the
-//! same two channels on the reference resistor, so gain errors cancel. Copper: `R(T1) / R(T2) =
-//! (234.5 + T1) / (234.5 + T2)`, temperatures in Celsius (IEC 60028 annealed copper).
+//! One converter reads voltage and current in the same scan, and the calibration reads the reference resistor on the
+//! same two channels, so gain errors cancel. Copper: `R(T1) / R(T2) = (234.5 + T1) / (234.5 + T2)`, temperatures in
+//! Celsius (IEC 60028 annealed copper).
 
 use super::Parameter;
 use crate::gauge::Factor;
 use crate::gauge::budget::{Budget, Reading};
 use units::{Celsius, Ohm, Unit, Volt};
 
-/// Temperature at which the resistance of annealed copper would vanish, below zero Celsius.
+/// Degrees below zero Celsius at which the extrapolated resistance of annealed copper is 0.
 const COPPER_ZERO_C: f64 = 234.5;
 
 /// Uncertainty terms of one scan that do not depend on the part.
@@ -92,7 +92,7 @@ mod tests {
     };
 
     #[test]
-    fn twenty_degrees_instead_of_twenty_three_is_minus_1_17_percent() {
+    fn three_kelvin_change_the_coil_by_1_17_percent() {
         let factor = to_reference(Celsius(23.0), Celsius(20.0));
         assert!((factor - 254.5 / 257.5).abs() < 1e-15);
     }

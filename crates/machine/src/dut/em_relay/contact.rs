@@ -1,18 +1,18 @@
 //! Contact resistance, four-wire, with the source reversed: `R = K (V+ - V-) / 2`, or with four readings
 //! `K (V1 - V2 - V3 + V4) / 4`.
 //!
-//! The reversal takes out the thermal EMF and the converter's offset; `K` was found on the 50 mOhm
-//! reference with the same source, amplifier and converter, so it holds the current and all gains.
+//! The reversal cancels the thermal EMF and the converter's offset. The calibration finds `K` on the 50 mOhm reference
+//! with the same source, amplifier and converter, so `K` contains the current and all gains.
 
 use super::sampling::Polarities;
 use crate::gauge::Factor;
 use crate::gauge::budget::{Budget, Reading};
 use units::{Unit, Volt};
 
-/// One closure read with both polarities of the source.
+/// Closure read with both polarities of the source.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Closure {
-    /// Drop of the current alone, volts at the terminal.
+    /// Drop caused by the current, volts at the terminal.
     pub drop: Volt,
     /// Reading without current: offset and thermal EMF, volts at the terminal.
     pub zero: Volt,
@@ -45,8 +45,8 @@ impl Closure {
 
 /// Returns the standard uncertainty of the mean drop of `later + 1` closures.
 ///
-/// The first has `readings` readings of both polarities. The later ones are forward only, less the zero of the first,
-/// from which the EMF may have moved by `emf_v`: more closures do not average the noise of that zero.
+/// The first closure has `readings` readings of both polarities. The later ones are forward only; the first one's zero
+/// is subtracted from them, and the EMF may change by `emf_v`, so more closures do not average the noise of that zero.
 pub fn u_with_later_v(readings: usize, later: usize, reading_v: f64, emf_v: f64) -> f64 {
     let (m, k) = (readings as f64, later as f64);
     let n = k + 1.0;
@@ -58,8 +58,8 @@ pub fn u_with_later_v(readings: usize, later: usize, reading_v: f64, emf_v: f64)
 
 /// Returns the resistance in milliohms from the drops of one or more closures, each free of offset and EMF.
 ///
-/// `mean_u_v` is the standard uncertainty of their mean at the terminal. The scatter from closure to
-/// closure belongs to the part and not to the budget: the mean of these closures is the result.
+/// `mean_u_v` is the standard uncertainty of their mean at the terminal. The budget omits the scatter from closure to
+/// closure: the result is the mean of these closures.
 pub fn resistance(drops: &[Volt], mohm_per_v: Factor, mean_u_v: f64) -> Option<Reading> {
     if drops.is_empty() {
         return None;
@@ -94,8 +94,8 @@ mod tests {
     }
 
     #[test]
-    fn four_readings_remove_what_drifts_evenly_and_two_do_not() {
-        // 1 mV a reading, and a longer pause where the source turns round.
+    fn only_four_readings_remove_linear_drift() {
+        // 1 mV of drift per reading, and a longer pause at each reversal.
         let read = [(0.9, 0.0), (-0.9, 3.0), (-0.9, 4.0), (0.9, 7.0)];
         let read = read.map(|(drop, time)| Volt(drop + 0.001 * time));
         let four = Closure::of(&read, Polarities::PlusMinusMinusPlus).expect("four readings");
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn a_zero_that_later_closures_share_is_not_averaged_away() {
+    fn a_shared_zero_is_not_averaged_away() {
         let half = |readings, later| u_with_later_v(readings, later, 1.0, 0.0).powi(2);
         for later in [0, 1, 3, 100] {
             assert!((half(2, later) - 0.5).abs() < 1e-12, "{later}");

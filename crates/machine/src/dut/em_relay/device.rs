@@ -1,7 +1,7 @@
-//! A relay recipe on a rig, with everything that the parts of a lot share.
+//! Relay recipe on a rig, with the data that the parts of a lot share.
 //!
-//! Holds the recipe, the calibration and what parts teach: reference parts the overshoot of the ramps, good parts of the
-//! lot the place of the next fine ramp, every part the contact resistance of the probes at the coil.
+//! Holds recipe, calibration and what it learns: the overshoot of the ramps from reference parts, the interval of the
+//! next fine ramp from good parts of the lot, the probe contact at the coil from every part.
 
 use super::calibration::{Calibration, Overshoots};
 use super::feasible::nominal_v_per_s;
@@ -32,9 +32,9 @@ pub struct Device {
     voltage_gain: f64,
     certificates: Vec<ReferencePart>,
     reference_parts: ReferenceRun,
-    /// Overshoot models of the coarse ramps, operate and release, taught by reference parts and by every part that passes.
+    /// Models of the coarse overshoot, operate and release, learned from reference parts and from every part that passes.
     coarse: (OvershootModel, OvershootModel),
-    /// The same models, taught by parts of this lot alone.
+    /// The same models, learned from parts of this lot alone.
     of_lot: (OvershootModel, OvershootModel),
     probe_contact: Trend,
 }
@@ -43,7 +43,7 @@ impl Device {
     /// Resolves the points of the recipe on a rig, and selects the reference parts of its nominal voltage.
     ///
     /// # Errors
-    /// Names the first point that the rig does not have, or the section of its references.
+    /// Names the first point that the rig lacks, or the section of its references.
     pub fn new(
         recipe: Arc<Recipe>,
         relay: Arc<RelayRecipe>,
@@ -108,7 +108,7 @@ impl Device {
         self.certificates.iter().map(|part| part.serial.as_str())
     }
 
-    /// Returns true when the overshoot of the fine ramps is known, so that parts may be judged.
+    /// Returns true when the overshoot of the fine ramps is known, so that the test may judge parts.
     pub fn is_calibrated(&self) -> bool {
         let overshoots = self.context.calibration.overshoots;
         overshoots.is_some_and(|overshoots| overshoots.operate.fine_v.u.is_finite())
@@ -122,7 +122,7 @@ impl Device {
     /// Computes the factors from the readings of [`Self::reference_acts`].
     ///
     /// # Errors
-    /// Names the channel or the reference that does not read as it must.
+    /// Names the channel or the reference whose reading is out of range.
     pub fn conclude_references(
         &mut self,
         readings: &Readings,
@@ -142,7 +142,7 @@ impl Device {
         Ok(())
     }
 
-    /// Discards the overshoot, so that references and reference parts have to be measured again.
+    /// Discards the overshoot, so that the rig must measure references and reference parts again.
     pub fn forget_calibration(&mut self) {
         self.reference_parts = ReferenceRun::default();
         self.calibrate(|calibration| calibration.overshoots = None);
@@ -166,10 +166,10 @@ impl Device {
         }
     }
 
-    /// Learns from a reference part. With the `last` one the calibration is complete and returned.
+    /// Learns from a reference part. After the `last` one, returns the complete calibration.
     ///
     /// # Errors
-    /// Says why the part cannot be used, or which one does not fit the others.
+    /// Names the reason why the part is unusable, or the outlier.
     pub fn learn_reference(
         &mut self,
         serial: &str,
@@ -199,7 +199,7 @@ impl Device {
     /// Completes the calibration with the reference parts measured so far.
     ///
     /// # Errors
-    /// Says which part does not fit the others, or that there are too few.
+    /// Names the outlier, or reports too few parts.
     pub fn conclude_reference_parts(&mut self) -> Result<Calibration, Misfit> {
         let accuracy = &self.context.accuracy;
         let overshoots =
@@ -228,7 +228,7 @@ impl Device {
     /// Compares the results of a reference part with its certificate.
     ///
     /// # Errors
-    /// Names the result that does not agree.
+    /// Names the result that disagrees.
     pub fn check(&self, serial: &str, record: &TestRecord) -> Result<(), Misfit> {
         match self.certificate(serial) {
             Some(part) => reference_part::check(part, record),
@@ -238,12 +238,12 @@ impl Device {
         }
     }
 
-    /// Returns the resistance of the coil's two force contacts, mean over the last parts; none before the first part.
+    /// Returns the resistance of the coil's two force contacts, mean over the last parts; `None` before the first part.
     pub fn probe_contact(&self) -> Option<Ohm> {
         self.probe_contact.mean()
     }
 
-    /// Returns the same once it is the mean of enough parts for an alarm.
+    /// Returns [`Self::probe_contact`] once it is the mean of enough parts for an alarm.
     pub fn settled_probe_contact(&self) -> Option<Ohm> {
         self.probe_contact.settled()
     }
@@ -268,7 +268,7 @@ impl Device {
         }
     }
 
-    /// Takes over the overshoot of the reference parts, with the probe contact that it contains.
+    /// Takes over the overshoot of the reference parts and the probe contact that it contains.
     fn teach(&mut self, overshoots: Overshoots) {
         let probe_contact_ohm = self.reference_parts.probe_contact_ohm();
         self.calibrate(|calibration| calibration.probe_contact_ohm = probe_contact_ohm);

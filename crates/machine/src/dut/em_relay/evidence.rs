@@ -1,5 +1,5 @@
-//! Lower bounds that stored curves prove for a parameter without a value: as long as the contact has not moved, the
-//! threshold or the time is greater than the curve shows.
+//! Lower bounds that stored curves prove for a parameter without a value: while the contact has not moved, threshold
+//! or time exceed what the curve shows.
 //!
 //! | parameter | is at least |
 //! |---|---|
@@ -39,8 +39,8 @@ pub fn at_least(curves: &[Curve], parameter: Parameter, nominal_v: f64) -> Optio
 
 /// One event of the curves.
 enum Event {
-    /// Command of a supply output, by its place in [`SUPPLY`], volts.
-    Asked(usize, f64),
+    /// Command of a supply output, by its index in [`SUPPLY`], volts.
+    Command(usize, f64),
     /// Drive on or off.
     Drive(bool),
     /// Contacts closed.
@@ -63,16 +63,16 @@ const SUPPLY: [AnalogOut; 3] = [
 impl Bounds {
     fn of(curves: &[Curve], nominal_v: f64) -> Self {
         let mut seen = Self::default();
-        let mut asked = [0.0; SUPPLY.len()];
+        let mut commands = [0.0; SUPPLY.len()];
         let (mut driven, mut since_us) = (false, None);
         let mut open = false;
         for (at_us, event) in events(curves) {
-            let total: f64 = asked.iter().sum();
+            let total: f64 = commands.iter().sum();
             match event {
-                Event::Asked(output, volts) => {
+                Event::Command(output, volts) => {
                     seen.unmoved(driven && open, total);
                     open = false;
-                    asked[output] = volts;
+                    commands[output] = volts;
                 }
                 Event::Drive(on) if on != driven => {
                     seen.unmoved(driven && open, total);
@@ -96,7 +96,7 @@ impl Bounds {
                 }
             }
         }
-        seen.unmoved(driven && open, asked.iter().sum());
+        seen.unmoved(driven && open, commands.iter().sum());
         seen
     }
 
@@ -115,7 +115,7 @@ fn events(curves: &[Curve]) -> Vec<(i64, Event)> {
         for (at, value) in samples {
             let bit = |n: u32| value as u64 >> n & 1 == 1;
             if let Some(output) = supply {
-                events.push((at, Event::Asked(output, value)));
+                events.push((at, Event::Command(output, value)));
             } else if curve.signal == DigitalOut::CoilDrive.name() {
                 events.push((at, Event::Drive(bit(0))));
             } else if curve.signal == BOARD {
@@ -132,7 +132,7 @@ fn events(curves: &[Curve]) -> Vec<(i64, Event)> {
 mod tests {
     use super::*;
 
-    /// A signal from pairs of millisecond and value.
+    /// Curve of a signal from pairs of millisecond and value.
     fn curve(signal: &str, samples: &[(i64, f64)]) -> Curve {
         Curve {
             signal: signal.into(),
@@ -148,7 +148,7 @@ mod tests {
     const BETWEEN: f64 = 0.0;
 
     #[test]
-    fn a_ramp_without_make_bounds_the_operate_voltage_by_its_top() {
+    fn the_top_of_a_ramp_bounds_the_operate_voltage() {
         let curves = [
             curve("supply_level", &[(0, 5.0)]),
             curve("supply_coarse", &[(20, 6.0), (200, 0.0)]),
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn a_contact_that_makes_bounds_by_what_came_before() {
+    fn a_make_bounds_by_the_voltage_before_it() {
         let curves = [
             curve("supply_level", &[(0, 5.0), (50, 7.0), (100, 9.0)]),
             curve("coil_drive", &[(5, 1.0)]),
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_that_moves_as_it_should_is_bound_by_no_time_beyond_its_own() {
+    fn a_good_part_is_bounded_by_its_own_times() {
         let curves = [
             curve("supply_level", &[(0, 12.0)]),
             curve("coil_drive", &[(10, 1.0), (60, 0.0)]),

@@ -26,7 +26,7 @@ const SLOW_CONVERSIONS_PER_S: f64 = 10.0;
 const COUNTS: u8 = 0x50;
 
 /// Refuses a recipe that these modules cannot perform, or whose limits are narrower than the guard bands; the fault
-/// names the key of the recipe and the module in question.
+/// names the key of the recipe and the module.
 ///
 /// # Errors
 /// The first fault.
@@ -89,7 +89,7 @@ pub fn check(
 /// Refuses a rig without references on its board, or without any reference part.
 ///
 /// # Errors
-/// Names what `rig.toml` lacks.
+/// Names the missing section of `rig.toml`.
 pub fn check_references(
     board: Option<&ReferenceSettings>,
     parts: &ReferenceSet,
@@ -103,7 +103,7 @@ pub fn check_references(
     Err(Fault::new("kind", "\"em_relay\"", expected))
 }
 
-/// Returns why the modules cannot perform a strategy; `None` when they can.
+/// Returns the reason why the modules cannot perform a strategy; `None` when they can.
 pub fn hindrance(
     strategy: Strategy,
     wiring: &Wiring,
@@ -170,15 +170,14 @@ pub fn hindrance(
         })
 }
 
-/// Returns the rate of an output at the coil, volts per second; 0 for one that steps.
+/// Returns the slew rate of an output at the coil, volts per second; 0 for an output that steps.
 pub fn nominal_v_per_s(wiring: &Wiring, output: AnalogOutput) -> f64 {
     let terminal = wiring.analog_out(output);
     let slew = wiring.module(terminal.module).slew;
     slew.and_then(|code| code.volt_per_second()).unwrap_or(0.0) * terminal.gain
 }
 
-/// Returns the expanded uncertainty of a parameter from the accuracy that the makers promise: the terms that no
-/// strategy removes.
+/// Returns the expanded uncertainty of a parameter from the makers' accuracies: the terms that every strategy has.
 fn expected_u(parameter: Parameter, recipe: &RelayRecipe, accuracy: &AccuracySettings) -> f64 {
     let per_kelvin = relative_per_kelvin(Celsius(recipe.part.reference_temperature_c));
     let threshold = |volts: f64| {

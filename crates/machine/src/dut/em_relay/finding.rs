@@ -1,4 +1,4 @@
-//! Findings of a relay test beside its results: the part is bad, or the test cannot judge it.
+//! Findings of a relay test in addition to its results: the part is bad, or the test cannot judge it.
 
 use super::threshold::Direction;
 use super::{Parameter, bins};
@@ -15,7 +15,7 @@ pub enum Contact {
     Nc,
 }
 
-/// One finding; [`Finding::with`] adds the figure or the pin that its text names.
+/// A finding; [`Finding::with`] adds the figure or the pin that its text names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Finding {
     /// No current through the coil.
@@ -81,9 +81,9 @@ pub enum Finding {
 /// Code and consequence of a finding.
 struct Entry {
     code: &'static str,
-    /// Bin of a bad part; none for a part that cannot be judged.
+    /// Bin of a bad part; `None` for a part that cannot be judged.
     bin: Option<Bin>,
-    /// Characteristic and side of the limit that it proves exceeded.
+    /// Characteristic and side of its limit that the finding proves exceeded.
     proves: Option<(Parameter, Side)>,
 }
 
@@ -207,22 +207,22 @@ impl Finding {
         }
     }
 
-    /// Code in rows and exports.
+    /// Returns the code in rows and exports.
     pub fn code(self) -> &'static str {
         self.entry().code
     }
 
-    /// Bin of a bad part; none for a part that cannot be judged.
+    /// Returns the bin of a bad part; `None` for a part that cannot be judged.
     pub fn bin(self) -> Option<Bin> {
         self.entry().bin
     }
 
-    /// Returns the characteristic whose limit it proves exceeded, if any.
+    /// Returns the characteristic whose limit the finding proves exceeded, if any.
     pub fn proves(self) -> Option<Parameter> {
         self.entry().proves.map(|(parameter, _)| parameter)
     }
 
-    /// The finding with this code.
+    /// Returns the finding with this code.
     pub fn from_code(code: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|it| it.code() == code)
     }

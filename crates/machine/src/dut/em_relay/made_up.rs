@@ -1,4 +1,4 @@
-//! The lot of the default world in figures, for made-up relays.
+//! Statistics of the lot in the default simulated world, for made-up relays.
 
 use super::Parameter;
 use super::parameter::Expected;
@@ -9,7 +9,7 @@ use crate::dut::made_up::{Looks, Scatter};
 use crate::gauge::Budget;
 use crate::instrument::trace::Signal;
 
-/// Scatter of every parameter.
+/// Returns the scatter of every parameter.
 pub fn scatter(relay: &RelayRecipe) -> Vec<(Characteristic, Scatter)> {
     let all = Parameter::ALL.into_iter();
     all.map(|it| (it.into(), of(relay, it))).collect()
@@ -45,7 +45,7 @@ fn of(relay: &RelayRecipe, parameter: Parameter) -> Scatter {
     }
 }
 
-/// 30 polls of a contact, 120 samples of a voltage.
+/// Returns the samples per evidence curve: 30 polls of a contact, 120 samples of a voltage.
 pub fn evidence() -> Vec<Looks> {
     vec![
         Looks {

@@ -2,17 +2,17 @@
 //!
 //! | question | file |
 //! |---|---|
-//! | what outlives one part: recipe, factors, what parts have taught | [`device`] |
+//! | data that outlives one part: recipe, factors, what the device has learned | [`device`] |
 //! | what is measured, in which unit | [`parameter`] |
 //! | where a part that fails goes | [`bins`] |
 //! | what the part is, how it is measured | [`recipe`] |
-//! | what may stand in the files of `config/` | [`keys`] |
-//! | what a test finds beside figures | [`finding`] |
+//! | which keys the files of `config/` may have | [`keys`] |
+//! | what a test finds in addition to figures | [`finding`] |
 //! | the order of a test, a file per stage | [`measure`] |
 //! | how a threshold is found, and whether modules and uncertainty allow it | [`strategy`], [`feasible`] |
 //! | which points a rig must have, and how acts and readings name them | [`points`], [`act`], [`readings`] |
 //! | how often coil and contacts are read | [`sampling`] |
-//! | what the instruments are known to do | [`calibration`], [`settings`] |
+//! | how accurate the instruments are | [`calibration`], [`settings`] |
 //! | how the factors are found: board references, reference parts | [`reference`], [`reference_part`] |
 //! | coil resistance | [`coil`] |
 //! | operate and release voltage | [`threshold`], [`overshoot`], [`supply`] |

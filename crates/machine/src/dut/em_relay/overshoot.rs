@@ -1,45 +1,44 @@
 //! Model of the overshoot of a coarse ramp, from earlier results of the same part.
 //!
-//! A ramp overshoots by its rate times a delay, and the delay depends on the same causes as other results: an armature that
-//! is late on a step is late on a ramp, eddy currents that hold the flux after switch-off hold it back while it rises,
-//! a winding of more ohms has another time constant, and a higher threshold is crossed later. A release
-//! also depends on the operate ramp: springs and travel determine both. The model is therefore linear in
-//! the logarithms of five results ([`Shown`]), each relative to that of the first part.
+//! The overshoot of a ramp is its rate times a delay, and the causes of the delay affect other results too: an
+//! armature that is late on a step is late on a ramp, eddy currents that hold the flux after switch-off also delay its
+//! rise, a winding of more ohms has another time constant, and the ramp reaches a higher threshold later. The release
+//! overshoot also depends on springs and travel, which the operate ramp shows. The model is therefore linear in the
+//! logarithms of five results ([`Shown`]), each relative to that of the first part.
 //!
-//! Reference parts and the first parts of a lot teach the line: they have both ramps. It is a regression with a conjugate
-//! prior (normal with inverse gamma), so it gives an uncertainty from the first part on: a result that has hardly varied
-//! yet widens it. The weight of the prior falls with every part.
+//! Reference parts and the first parts of a lot teach the line: they have both ramps. It is a regression with a
+//! conjugate prior (normal with inverse gamma), so it gives an uncertainty from the first part on; a result that has
+//! varied little widens it. The weight of the prior falls with every part.
 //!
-//! A line holds only among the parts that taught it. It may place the ramp of a part far outside ([`Predicted::alike`]) but
-//! gives no result for it; the uncertainty grows with the square of the distance.
+//! The line is valid only among the parts that taught it. For a part far outside it may place the ramp but gives no
+//! result ([`Predicted::alike`]); the uncertainty grows with the square of the distance.
 
 use serde::{Deserialize, Serialize};
 use units::Volt;
 
-/// Prior scatter about the line, volts (1 sd): that of two operations, and the residual of reference parts that lie far
-/// apart.
+/// Prior scatter about the line, volts (1 sd): two operations, and the residual of reference parts that lie far apart.
 const SCATTER_V: f64 = 0.004;
 /// Weight of the prior, in parts.
 const WORTH: f64 = 4.0;
-/// Uncertainty of the guessed overshoot of the first part, volts (1 sd).
+/// Standard uncertainty of the assumed overshoot of the first part, volts.
 const GUESS_SD_V: f64 = 0.05;
-/// Prior elasticities of the overshoot, in per cent per per cent of a result (mean and 1 sd), in the order of [`Shown`].
-/// A late armature is heavy: its flight is most of the delay of a rising ramp and half of an operate time. A high
-/// threshold delays an operation without mass, hence the negative terms. A falling ramp waits for the flux, which follows
-/// each result a little.
+/// Prior elasticities of the overshoot, percent per percent of a result (mean and 1 sd), in the order of [`Shown`]. A
+/// late armature is heavy: its flight is most of the delay of a rising ramp and half of an operate time. A high
+/// threshold delays an operation independently of mass, hence the negative terms. A falling ramp waits for the flux,
+/// which depends a little on each result.
 const RISING: [f64; RESULTS] = [-0.8, -0.8, 1.3, 0.0, 0.3];
 const FALLING: [f64; RESULTS] = [0.0; RESULTS];
 const ELASTICITY_SD: f64 = 0.25;
-/// Largest residual that teaches, in standard uncertainties: one outlier does not bend the line for a lot, and a wrong
-/// line still widens until it fits.
+/// Largest residual that the model learns from, in standard uncertainties: one outlier does not bend the line, and a
+/// wrong line widens until it fits.
 const ODD: f64 = 3.0;
-/// Greatest squared distance from the parts seen, in standard deviations, and its widening while few parts were seen: one
-/// similar part in two thousand is further away (Hotelling's T2 of five variates, within a tenth from ten parts on).
+/// Greatest squared distance from the parts learned, in standard deviations, and its widening after few parts: one
+/// similar part in two thousand lies further away (Hotelling's T2 of five variates, within a tenth from ten parts on).
 const FURTHEST2: f64 = 20.0;
 const WIDER: f64 = 20.0;
 /// Number of results in the model.
 const RESULTS: usize = 5;
-/// A constant, and a slope for each result.
+/// Number of coefficients: a constant, and a slope for each result.
 const TERMS: usize = RESULTS + 1;
 
 /// Results of a part at the event of its coarse ramp; NaN for a missing one.
@@ -58,7 +57,7 @@ pub struct Shown {
 }
 
 impl Shown {
-    /// Results of a part without a ramp.
+    /// Results of a part before any measurement.
     pub const NOTHING: Self = Self {
         indicated: Volt(f64::NAN),
         operate: Volt(f64::NAN),
@@ -67,7 +66,7 @@ impl Shown {
         coil_ohm: f64::NAN,
     };
 
-    /// Returns the logarithms of all, none unless all are above zero.
+    /// Returns the logarithms of the results; `None` unless all are above zero.
     fn logarithms(&self) -> Option<[f64; RESULTS]> {
         let results = [
             self.indicated.0,
@@ -92,14 +91,14 @@ pub struct Predicted {
     pub alike: bool,
 }
 
-/// The model as far as parts have taught it.
+/// Regression of the overshoot on the results of the parts learned so far.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OvershootModel {
     guess_v: f64,
     parts: u32,
     /// Logarithms of the first part.
     first: [f64; RESULTS],
-    /// Sums over prior and parts: products of the terms, and of terms and overshoot less guess.
+    /// Sums over prior and parts: products of the terms, and of the terms with the overshoot minus the guess.
     products: [[f64; TERMS]; TERMS],
     #[serde(rename = "with_lag")]
     with_overshoot: [f64; TERMS],
@@ -126,12 +125,12 @@ impl OvershootModel {
         law
     }
 
-    /// Returns the number of parts that have taught it.
+    /// Returns the number of parts learned.
     pub fn parts(&self) -> u32 {
         self.parts
     }
 
-    /// Learns from a part with both indications; ignores one with a missing result.
+    /// Learns from a part with both indications; ignores a part with a missing result.
     pub fn learn(&mut self, shown: &Shown, fine: Volt) {
         let overshoot_v = (shown.indicated - fine).0;
         let Some(logarithms) = shown.logarithms().filter(|_| overshoot_v.is_finite()) else {
@@ -154,7 +153,7 @@ impl OvershootModel {
         self.parts += 1;
     }
 
-    /// Returns the expected overshoot of a part; with a missing result that of the first part, and not `alike`.
+    /// Returns the expected overshoot of a part; with a missing result that of the first part, not `alike`.
     pub fn of(&self, shown: &Shown) -> Predicted {
         let logarithms = shown.logarithms().filter(|_| self.parts > 0);
         let terms = self.terms(logarithms.unwrap_or(self.first));
@@ -173,7 +172,7 @@ impl OvershootModel {
         }
     }
 
-    /// Returns the number of terms that parts, not the prior, have determined: degrees of freedom used up by the line.
+    /// Returns the number of terms that the parts determine rather than the prior: the degrees of freedom of the line.
     fn determined(&self) -> f64 {
         let of_term = |term: usize| {
             let mut alone = [0.0; TERMS];
@@ -183,7 +182,7 @@ impl OvershootModel {
         (0..TERMS).map(of_term).sum()
     }
 
-    /// Returns the squared distance from the parts seen, relative to the limit for similar ones; none while too few were seen.
+    /// Returns the squared distance from the parts learned, relative to the limit for similar parts; `None` at first.
     fn beyond(&self, spread: f64) -> Option<f64> {
         let parts = f64::from(self.parts);
         let more = parts - RESULTS as f64;
@@ -202,8 +201,8 @@ impl OvershootModel {
     }
 }
 
-/// Returns the prior mean of a term, volts, and its weight. The overshoot of a rising ramp is positive, that of a falling
-/// one negative.
+/// Returns the prior mean of a term, volts, and its weight: positive overshoot for a rising ramp, negative for a
+/// falling one.
 fn prior(guess_v: f64, term: usize) -> (f64, f64) {
     let elasticities = if guess_v > 0.0 { RISING } else { FALLING };
     let (mean_v, sd_v) = match term.checked_sub(1) {

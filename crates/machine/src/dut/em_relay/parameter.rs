@@ -1,4 +1,4 @@
-//! The nine characteristics of a relay, as data: a new one is a variant, its place in [`Parameter::ALL`] and a row of the table.
+//! The nine characteristics of a relay, as data: a new one needs a variant, a place in [`Parameter::ALL`] and a table row.
 
 use super::bins;
 use super::card::CardStep;
@@ -47,7 +47,7 @@ impl Parameter {
         Self::ContactResistanceNc,
     ];
 
-    /// Returns key, unit and bin, which every kind has.
+    /// Returns key, unit and bin, as for every kind of part.
     pub const fn definition(self) -> &'static Definition {
         &self.facts().definition
     }
@@ -71,9 +71,9 @@ impl Parameter {
 /// Data of a parameter that only relays have.
 #[derive(Debug, Clone, Copy)]
 pub struct Facts {
-    /// Key, unit and bin, which every kind has.
+    /// Key, unit and bin, as for every kind of part.
     pub definition: Definition,
-    /// True when it scales with the copper of the coil: results are converted to the reference temperature.
+    /// True when the parameter scales with the copper of the coil: results are converted to the reference temperature.
     pub copper: bool,
     /// Steps of the process card that list its limits.
     pub card: &'static [CardStep],
@@ -92,15 +92,15 @@ pub enum Expected {
     Coil,
     /// Around the expected threshold of the recipe.
     Threshold(Direction),
-    /// As in the lot of the default world.
+    /// Distribution of the lot in the default simulated world.
     Usual {
         /// Mean of the lot; its median when `logarithmic`.
         mean: f64,
         /// Standard deviation of the values, or of their logarithm.
         sd: f64,
-        /// True when the logarithm scatters.
+        /// True when the logarithm is normally distributed.
         logarithmic: bool,
-        /// Standard uncertainty that no strategy removes.
+        /// Standard uncertainty that remains with every strategy.
         u: f64,
     },
 }
@@ -162,7 +162,7 @@ const NC: (&[CardStep], Stage) = (
     Stage::TimedRelease,
 );
 
-/// In the order of [`Parameter::ALL`].
+/// Facts in the order of [`Parameter::ALL`].
 #[rustfmt::skip]
 static TABLE: [Facts; Parameter::ALL.len()] = [
     Facts::of("coil_resistance_ohm", COIL, (&[CardStep::Coil], Stage::Coil), Expected::Coil, 0.12),

@@ -1,6 +1,6 @@
 //! Points of the fixture that measures an electromagnetic relay: interface board, converters, sources, counters.
 //!
-//! This file declares the names; `config/rig.toml` wires them. [`Points`] exists only when the rig has every point that
+//! This file declares the names; `config/rig.toml` wires them. [`Points`] exists only for a rig with every point that
 //! a test needs.
 
 use crate::instrument::act::Word;
@@ -12,7 +12,7 @@ use crate::rig::wiring::Wiring;
 use std::sync::Arc;
 
 points! {
-    /// Inputs from the interface board; `true` means that the name applies, whatever the polarity of the wire.
+    /// Inputs from the interface board; `true` means that the named condition holds, whatever the polarity of the wire.
     DigitalIn {
         KelvinCoilA = "kelvin_coil_a",
         KelvinCoilB = "kelvin_coil_b",
@@ -113,14 +113,14 @@ const QUANTITIES: [Quantity; 8] = [
     COIL_VOLTAGE,
     quantity("coil_current_fine", "A", 1e-8),
     quantity("reference_voltage", "V", 1e-5),
-    // Every part reads it, and no act sets its channel mask.
+    // Every test reads it, and no act sets its channel mask.
     Quantity {
         enabled: true,
         ..quantity("contact_drop", "V", 1e-7)
     },
 ];
 
-/// The coil voltage of a test.
+/// Signal of the coil voltage.
 pub const COIL_VOLTAGE: Quantity = quantity("coil_voltage_fine", "V", 1e-5);
 
 const fn quantity(name: &'static str, unit: &'static str, step: f64) -> Quantity {
@@ -147,7 +147,7 @@ const SWITCHES: [Switch; DigitalOut::COUNT] = {
     all
 };
 
-/// The points of a test as this rig has wired them.
+/// Points of a test as this rig has wired them.
 #[derive(Debug, Clone)]
 pub struct Points {
     inputs: [DigitalInput; DigitalIn::COUNT],
@@ -165,7 +165,7 @@ impl Points {
     /// Resolves every point.
     ///
     /// # Errors
-    /// Names the first point that the rig does not have.
+    /// Names the first point that the rig lacks.
     pub fn resolve(wiring: &Wiring) -> Result<Self, MissingPoint> {
         let inputs = all("digital_in", DigitalIn::NAMES, |it| {
             wiring.digital_input(it)
@@ -220,7 +220,7 @@ impl Points {
     }
 }
 
-/// Resolves all `names` of a section.
+/// Resolves the points `names`.
 fn all<T: Copy, const N: usize>(
     section: &'static str,
     names: &[&'static str],

@@ -1,28 +1,28 @@
-//! Contact resistance of the probes at the coil pins, from the voltage that the pins lack.
+//! Contact resistance of the probes at the coil pins, from the voltage drop between supply and pins.
 //!
-//! The sense wires keep it out of the coil resistance, but thresholds are volts of the supply: each ohm in series raises
-//! them in proportion, 20 mV of 8 V at 400 ohm. The change since the reference parts is a term of the budget of a
+//! The sense wires keep it out of the coil resistance, but thresholds are volts of the supply: each ohm in series
+//! raises them in proportion, 20 mV of 8 V at 400 ohm. Its change since the reference parts is an uncertainty of a
 //! threshold and no correction, since the pins of a part may differ from those before it. The Kelvin bits open only at
 //! 5 ohm a pin.
 //!
 //! The supply is calibrated on the reference resistor, without probes. The difference between command and pin voltage,
 //! divided by the current, is the resistance of both force contacts in series.
 //!
-//! One part gives it to 0.15 ohm, sixteen to 0.04. Drift of output and input since the calibration adds 0.4 ohm for 0.1 %
-//! on a coil of 400 ohm. It is a trend and no result: no part fails by it. The probes of the contacts have no such
-//! figure, because no input reads the voltage of their source.
+//! One part gives it with an uncertainty of 0.15 ohm, sixteen parts of 0.04. Drift of output and input since the
+//! calibration adds 0.4 ohm per 0.1 % on a coil of 400 ohm. It is a trend that fails no part. The probes of the
+//! contacts have no such figure, because no input reads the voltage of their source.
 
 use units::{Ohm, Volt};
 
 /// Parts before the mean counts as a trend; from then on each new part has the weight 1/16.
 const ENOUGH: u32 = 16;
 
-/// Returns the resistance of both force contacts: `coil` gets `at_pins` when the command is `asked`.
-pub fn in_series(asked: Volt, at_pins: Volt, coil: Ohm) -> Ohm {
-    Ohm(coil.0 * (asked.0 / at_pins.0 - 1.0))
+/// Returns the resistance of both force contacts: `coil` gets `at_pins` at the command `command`.
+pub fn in_series(command: Volt, at_pins: Volt, coil: Ohm) -> Ohm {
+    Ohm(coil.0 * (command.0 / at_pins.0 - 1.0))
 }
 
-/// Mean over the parts of a run, weighted towards the latest: sixteen parts reduce a weight to 0.37.
+/// Mean over the parts of a run, weighted towards the latest: after sixteen parts a weight has fallen to 0.37.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Trend {
     mean: Option<f64>,
@@ -37,7 +37,7 @@ impl Trend {
         self.mean = Some(mean + (ohm - mean) / f64::from(self.parts.min(ENOUGH)));
     }
 
-    /// Returns the mean; none before the first part.
+    /// Returns the mean; `None` before the first part.
     pub fn mean(&self) -> Option<Ohm> {
         self.mean.map(Ohm)
     }
@@ -53,15 +53,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_the_pins_get_less_is_lost_in_the_force_wires() {
-        // 2 ohm in front of 400: the coil sees 400/402 of 5 V.
+    fn the_voltage_drop_gives_the_series_resistance() {
+        // 2 ohm in series with 400 ohm: the coil gets 400/402 of 5 V.
         let ohm = in_series(Volt(5.0), Volt(5.0 * 400.0 / 402.0), Ohm(400.0));
         assert!((ohm.0 - 2.0).abs() < 1e-12);
         assert_eq!(in_series(Volt(5.0), Volt(5.0), Ohm(60.0)), Ohm(0.0));
     }
 
     #[test]
-    fn the_mean_follows_a_step_within_some_dozens_of_parts_and_not_one_part() {
+    fn the_mean_follows_a_step_over_many_parts() {
         let mut trend = Trend::default();
         assert!(trend.mean().is_none());
         trend.add(Ohm(0.0));

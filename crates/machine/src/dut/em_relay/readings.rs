@@ -45,14 +45,14 @@ pub struct Readings {
     pub drops: Vec<Sample>,
     /// Gate counters 0 and 1.
     pub gates: Vec<[CountSample; 2]>,
-    /// Whether each awaited input came.
+    /// For each awaited input, true when it came in time.
     pub seen: Vec<bool>,
     /// Track temperatures.
     pub track: Vec<Sample>,
 }
 
 impl Readings {
-    /// Sorts the readings of a stage; `before` are the last counts of the stage before.
+    /// Sorts the readings of a stage; `before` holds the last counts of the previous stage.
     pub fn of(read: &ByPoint, points: &Points, before: Option<[CountSample; 2]>) -> Self {
         let analog = |input| read.analog(points.analog(input)).cloned();
         let count = |counter| read.counts(points.counter(counter)).cloned();
@@ -87,7 +87,7 @@ fn boards(read: &ByPoint, points: &Points) -> Vec<BoardInputs> {
     board
         .map(
             |((no_closed, nc_closed), (compliance, probe_chain))| BoardInputs {
-                // All inputs of the board are kept together.
+                // The board's inputs arrive in one reading.
                 kelvin: kelvin.each_mut().map(|pin| pin.next() == Some(true)),
                 no_closed,
                 nc_closed,

@@ -1,4 +1,4 @@
-//! The relay part of a recipe: the device, and how to measure it.
+//! Relay part of a recipe: the device, and how to measure it.
 
 use super::parameter::Parameter;
 use super::sampling::{CoilSampling, ContactSampling};
@@ -11,9 +11,9 @@ use serde::{Deserialize, Serialize};
 /// The sections `[part]` and `[test]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RelayRecipe {
-    /// The part.
+    /// The device.
     pub part: PartData,
-    /// How it is measured.
+    /// Its measurement.
     pub test: TestPlan,
 }
 
@@ -21,7 +21,7 @@ impl RelayRecipe {
     /// Checks that pre-bias and expected thresholds lie in their order below the nominal voltage.
     ///
     /// # Errors
-    /// Names the first key that does not.
+    /// Names the first key out of order.
     pub fn check(&self) -> Result<(), Fault> {
         let test = &self.test;
         let ordered = [
@@ -54,7 +54,7 @@ impl RelayRecipe {
     }
 }
 
-/// The part itself.
+/// Data of the device.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PartData {
     /// Nominal coil voltage, V.
@@ -79,13 +79,13 @@ impl PartData {
     }
 }
 
-/// Which channels measure the coil.
+/// Channels that measure the coil.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CoilChannels {
     /// `coil_voltage_fine` and `coil_current_fine`.
     Fine,
-    /// `coil_voltage_fine` and `coil_current`: a coil of low resistance draws too much for the fine current.
+    /// `coil_voltage_fine` and `coil_current`: a coil of low resistance exceeds the range of the fine current.
     CoarseCurrent,
 }
 
@@ -99,16 +99,16 @@ pub enum Suppression {
     Diode,
 }
 
-/// How the part is measured.
+/// Measurement of the part.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TestPlan {
     /// Operations before the first measurement.
     pub conditioning_operations: u32,
-    /// Coil resistance is measured here and the operate ramp starts here, V.
+    /// Voltage at which the coil resistance is measured and the operate ramp starts, V.
     pub prebias_v: f64,
     /// Height of the coarse ramp, V.
     pub coarse_span_v: f64,
-    /// Which channels measure the coil.
+    /// Channels that measure the coil.
     pub coil_channels: CoilChannels,
     /// Operate threshold expected of the lot, V.
     pub expected_operate_v: f64,
@@ -121,7 +121,7 @@ pub struct TestPlan {
     /// Coil suppression during the timed release.
     #[serde(rename = "clamp")]
     pub suppression: Suppression,
-    /// How the thresholds are found.
+    /// Strategies of the thresholds, sampling of coil and contacts.
     #[serde(default)]
     pub strategy: Strategies,
 }
@@ -130,13 +130,13 @@ pub struct TestPlan {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Strategies {
-    /// Of the operate threshold.
+    /// Strategy of the operate threshold.
     pub operate_voltage_v: Strategy,
-    /// Of the release threshold.
+    /// Strategy of the release threshold.
     pub release_voltage_v: Strategy,
-    /// Of the coil resistance.
+    /// Sampling of the coil resistance.
     pub coil: CoilSampling,
-    /// Of both contacts.
+    /// Sampling of both contacts.
     pub contact: ContactSampling,
 }
 

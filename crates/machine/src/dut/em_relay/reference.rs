@@ -1,9 +1,9 @@
 //! Calibration against the references on the interface board: 5.000 V, 400 ohm, 50 mOhm, 1.000 ms.
 //!
-//! Runs with an empty nest and the probes up (drive and source need the probe-up chain). It gives the
-//! coil converter's line, ohms per ratio on both current channels, milliohms per volt of drop, gate
-//! delay, gain and offset of the three supply outputs, and the slope of the fine ramp against the
-//! host's clock. The slope of the coarse ramp stays nominal: it only places the fine one.
+//! Runs with an empty nest and the probes up (drive and source need the probe-up chain). It gives the coil converter's
+//! line, ohms per ratio on both current channels, milliohms per volt of drop, gate delays, gain and offset of the
+//! three supply outputs, and the slope of the fine ramp against the host's clock. The slope of the coarse ramp stays
+//! nominal: it only places the fine ramp.
 
 mod fault;
 
@@ -36,18 +36,18 @@ pub const SCANNED: [AnalogIn; CHANNELS] = [
     AnalogIn::ReferenceVoltage,
 ];
 const CHANNELS: usize = 4;
-/// Scans per level: averages 2.8 mV of one reading to 0.8 mV.
+/// Scans per level: they average the 2.8 mV of one reading to 0.8 mV.
 const SCANS: usize = 12;
 /// Scans along the fine ramp.
 const RAMP_SCANS: usize = 44;
-/// Levels at the coil, volts: both within the fine channels with 400 ohm.
+/// Levels at the coil, volts: both within the range of the fine channels at 400 ohm.
 const LOW_V: f64 = 1.5;
 const HIGH_V: f64 = 5.7;
-/// Distance from both ends of the fine ramp within which readings do not count for its slope, volts.
+/// Distance from both ends of the fine ramp within which readings are excluded from the slope, volts.
 const SLOPE_MARGIN_V: f64 = 0.3;
 /// Drops read per polarity.
 const DROPS: usize = 8;
-/// Gate pulses: their sum has one count of error, so the mean has 1/25.
+/// Number of gate pulses: their sum errs by one count, their mean by 1/25.
 const PULSES: u32 = 25;
 
 /// Returns the inputs that [`acts`] scans; none on a rig that lacks a point of the kind.
@@ -153,7 +153,7 @@ fn pulses(acts: &mut Vec<Act>) {
         Act::Wait(Span::ms(2)),
         Act::Board(vec![(Arm, false)]),
     ];
-    // The first pulse closes a window that may still be open.
+    // The first pulse closes a window that an earlier test may have left open.
     acts.extend(pulse.clone());
     acts.push(Act::Read(Read::Gates));
     for _ in 0..PULSES {
@@ -189,7 +189,7 @@ fn mean(
     }
 }
 
-/// One level: terminal volts of voltage, fine current, wide current and reference.
+/// Terminal volts at one level: voltage, fine current, wide current and reference.
 struct Level {
     voltage_v: f64,
     fine_v: f64,
@@ -309,7 +309,7 @@ pub fn conclude(
     })
 }
 
-/// Fails when the gain error exceeds 1.5 times the accuracy of the maker: that is a defect, not a calibration.
+/// Fails when the gain error exceeds 1.5 times the accuracy of the maker: calibration does not correct a defect.
 fn check_gain(context: &Context, line: &InputLine) -> Result<(), ReferenceFault> {
     let promised = context.accuracy.ai_gain_pct / 100.0;
     let found = line.gain.value - 1.0;
@@ -322,8 +322,8 @@ fn check_gain(context: &Context, line: &InputLine) -> Result<(), ReferenceFault>
     Ok(())
 }
 
-/// Slope of the fine ramp by least squares against the arrival of the replies. The constant
-/// delay between conversion and reply does not tilt the line.
+/// Returns the slope of the fine ramp by least squares against the arrival of the replies; their constant delay after
+/// the conversion does not tilt the line.
 fn slope(
     context: &Context,
     scans: &[CoilScan],

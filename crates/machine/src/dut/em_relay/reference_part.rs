@@ -18,10 +18,10 @@ use texts::{Lang, Message};
 use thiserror::Error;
 use units::{Celsius, Ohm, Unit};
 
-/// Greatest distance of a reference part's overshoot from the mean, volts; further away it is an outlier.
+/// Greatest distance of a reference part's overshoot from the mean, volts; a part further away is an outlier.
 const BAND_V: f64 = 0.060;
 
-/// Why a reference part does not calibrate the rig, or does not agree with its certificate.
+/// Reason why a reference part does not calibrate the rig, or disagrees with its certificate.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{}", self.message().say(Lang::En))]
 pub enum Misfit {
@@ -34,7 +34,7 @@ pub enum Misfit {
     Without {
         /// Its serial number.
         serial: String,
-        /// What is missing.
+        /// Missing characteristic.
         characteristic: Parameter,
     },
     /// The temperature of the part is unknown.
@@ -42,7 +42,7 @@ pub enum Misfit {
         /// Its serial number.
         serial: String,
     },
-    /// The coil is not the one of the certificate.
+    /// The coil resistance differs from the certificate.
     OtherCoil {
         /// Its serial number.
         serial: String,
@@ -53,9 +53,9 @@ pub enum Misfit {
         /// Difference allowed.
         allowed_ohm: f64,
     },
-    /// Too few were measured.
+    /// Too few reference parts were measured.
     TooFew {
-        /// How many.
+        /// Number measured.
         measured: usize,
     },
     /// One part is an outlier.
@@ -65,11 +65,11 @@ pub enum Misfit {
         /// Distance from the mean, mV.
         off_mv: f64,
     },
-    /// A result does not agree with the certificate.
+    /// A result disagrees with the certificate.
     Reads {
         /// Its serial number.
         serial: String,
-        /// What reads differently.
+        /// Characteristic that disagrees.
         characteristic: Parameter,
         /// Value found, in `unit`.
         found: f64,
@@ -83,7 +83,7 @@ pub enum Misfit {
 }
 
 impl Misfit {
-    /// Its text of the family `fault`, with its figures.
+    /// Returns its text of the family `fault`, with its figures.
     pub fn message(&self) -> Message {
         let of = |code, serial| Message::new("fault", code).with("serial", serial);
         match self {
@@ -131,7 +131,7 @@ struct Shift {
     serial: String,
     operate_v: f64,
     release_v: f64,
-    /// Coarse minus fine indications, operate and release; NaN where no coarse ramp was seen.
+    /// Coarse minus fine indications, operate and release; NaN without a coarse ramp.
     coarse_v: [f64; 2],
 }
 
@@ -143,7 +143,7 @@ pub struct ReferenceRun {
 }
 
 impl ReferenceRun {
-    /// Learns from a tested reference part; fails when it cannot be used.
+    /// Learns from a tested reference part; fails when the part is unusable.
     pub fn learn<T>(
         &mut self,
         part: &ReferencePart,
@@ -181,7 +181,7 @@ impl ReferenceRun {
         Ok(())
     }
 
-    /// Returns the overshoot from all reference parts; an error names the outlier.
+    /// Returns the overshoot from all reference parts; the error names the outlier.
     pub fn overshoots(
         &self,
         sets: &[ReferencePart],
@@ -299,11 +299,11 @@ fn check_coil<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<(), Mis
     Ok(())
 }
 
-/// Greatest distance of a result from the certificate, in standard deviations: with three results one good part in 120 is
-/// outside.
+/// Greatest distance of a result from the certificate, in standard deviations: with three results one good part in 120
+/// exceeds it.
 const CHECK_K: f64 = 3.0;
 
-/// Compares the results of a reference part with its certificate; an error names the one that does not agree.
+/// Compares the results of a reference part with its certificate; the error names the result that disagrees.
 pub fn check<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<(), Misfit> {
     let certified = [
         (Parameter::CoilResistance, part.coil_resistance_ohm),

@@ -1,19 +1,19 @@
-//! How often something is looked at before it is a result: scans of the coil, polarities and closures of a
-//! contact. Named in the recipe beside the strategies of the thresholds.
+//! Number of readings per result: scans of the coil, polarities and closures of a contact. The recipe sets them next
+//! to the strategies of the thresholds.
 //!
-//! Polarities of one closure: `plus_minus` takes out what stands still (offset, thermal EMF);
-//! `plus_minus_minus_plus` takes out what drifts evenly too, and halves the variance of the reading.
+//! Polarities of one closure: `plus_minus` cancels what is constant (offset, thermal EMF); `plus_minus_minus_plus`
+//! also cancels linear drift, and halves the variance of the reading.
 //!
-//! Closures of one part differ by their films, by far more than a reading errs. With `stops_early` a part gets
-//! another closure only while `|mean - limit| <= 3 sqrt(u^2 + s^2 / n)`: u is what all closures share, s their
-//! scatter, never believed to be below what the recipe expects of a film.
+//! Closures of one part scatter by their contact films, far more than readings do. With `stops_early` a part gets
+//! another closure only while `|mean - limit| <= 3 sqrt(u^2 + s^2 / n)`: u is the uncertainty that all closures share,
+//! s their scatter, at least that which the recipe expects of a film.
 
 use crate::gauge::Limit;
 use serde::{Deserialize, Serialize};
 use units::Unit;
 
-/// How far from a limit a mean must lie before it is left at that, in standard deviations: 0.13 % of parts at the
-/// very limit are let go.
+/// Distance of a mean from its limit at which no more closures follow, in standard deviations: it decides 0.13 % of
+/// the parts at the limit wrongly.
 const CLEAR: f64 = 3.0;
 
 /// Directions of the source on one closure.
@@ -28,7 +28,7 @@ pub enum Polarities {
 }
 
 impl Polarities {
-    /// The names of recipes.
+    /// Names in recipes.
     pub const NAMES: [&'static str; 2] = ["plus_minus", "plus_minus_minus_plus"];
 
     /// Signs of the source in the order of the readings.
@@ -40,17 +40,17 @@ impl Polarities {
     }
 }
 
-/// How contacts are read.
+/// Sampling of the contacts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ContactSampling {
-    /// Of every NO closure, and of the NC closure at rest.
+    /// Polarities of every NO closure and of the NC closure at rest.
     pub polarities: Polarities,
-    /// Timed closures of either contact, at the most; NC has the one at rest besides.
+    /// Greatest number of timed closures of either contact; NC has the closure at rest in addition.
     pub closures: u32,
-    /// Fewer, once both means are clear of their limits.
+    /// True to end the closures once both means are clear of their limits.
     pub stops_early: bool,
-    /// Scatter of a film from closure to closure that is expected at least, percent of the resistance (1 sd).
+    /// Smallest expected scatter of a film from closure to closure, percent of the resistance (1 sd).
     pub closure_scatter_pct: u32,
 }
 
@@ -66,8 +66,8 @@ impl Default for ContactSampling {
 }
 
 impl ContactSampling {
-    /// True when more closures would not change the judgement of this contact: `values_mohm` holds the closures
-    /// so far, `u_mohm` is the standard uncertainty that they share.
+    /// Returns true when more closures would not change the judgement of this contact: `values_mohm` holds the
+    /// closures so far, `u_mohm` the standard uncertainty that they share.
     pub fn is_clear(&self, values_mohm: &[f64], u_mohm: f64, limit: &Limit) -> bool {
         assert_eq!(limit.unit, Unit::Milliohm, "the limit of something else");
         let n = values_mohm.len() as f64;
@@ -81,19 +81,19 @@ impl ContactSampling {
     }
 }
 
-/// How the coil is read.
+/// Sampling of the coil.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct CoilSampling {
-    /// From the drive to the instant after which a conversion may begin, ms.
+    /// Time from the drive until a conversion may begin, ms.
     pub settles_ms: u32,
-    /// Scans that are averaged.
+    /// Number of scans that are averaged.
     pub scans: u32,
 }
 
 impl Default for CoilSampling {
-    /// 32 ms: the current settles to 0.05 % within 13 ms (7.6 L/R of an open armature), but an armature that the
-    /// pre-bias has just lifted from its stop swings, and moves the current by up to 0.4 % until the swing has died out.
+    /// 32 ms: the current settles to 0.05 % within 13 ms (7.6 L/R of an open armature), but the pre-bias lifts the
+    /// armature from its stop, and its swing moves the current by up to 0.4 % until it dies out.
     fn default() -> Self {
         Self {
             settles_ms: 32,
@@ -120,23 +120,23 @@ mod tests {
     }
 
     #[test]
-    fn one_closure_far_from_the_limit_is_enough_and_one_near_it_is_not() {
+    fn only_closures_near_the_limit_repeat() {
         let films_of_10 = sampling(10);
         assert!(films_of_10.is_clear(&[18.0], 0.05, &LIMIT));
-        // 3 x 10 % of 80 is 24 mOhm: 80 may still be a part beyond 100.
+        // 3 x 10 % of 80 is 24 mOhm: the true mean may exceed 100.
         assert!(!films_of_10.is_clear(&[80.0], 0.05, &LIMIT));
         assert!(films_of_10.is_clear(&[150.0], 0.05, &LIMIT));
     }
 
     #[test]
-    fn closures_that_agree_narrow_the_band_by_the_root_of_their_number() {
+    fn agreeing_closures_narrow_the_band() {
         let films_of_10 = sampling(10);
         assert!(!films_of_10.is_clear(&[86.0; 3], 0.05, &LIMIT), "3 x 5.0");
         assert!(films_of_10.is_clear(&[86.0; 4], 0.05, &LIMIT), "3 x 4.3");
     }
 
     #[test]
-    fn closures_that_disagree_are_believed_more_than_the_recipe() {
+    fn disagreeing_closures_widen_the_expected_scatter() {
         assert!(sampling(1).is_clear(&[50.0, 51.0], 0.05, &LIMIT));
         assert!(!sampling(1).is_clear(&[20.0, 80.0], 0.05, &LIMIT));
     }
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_read_is_clear_of_nothing_and_without_a_limit_all_is() {
+    fn no_closure_is_unclear_and_no_limit_is_clear() {
         assert!(!sampling(10).is_clear(&[], 0.0, &LIMIT));
         assert!(!sampling(10).is_clear(&[f64::NAN], 0.0, &LIMIT));
         let open = Limit {
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn signs_add_up_to_nothing_and_so_do_signs_times_time() {
+    fn polarity_signs_cancel_offset_and_drift() {
         for polarities in [Polarities::PlusMinus, Polarities::PlusMinusMinusPlus] {
             assert_eq!(polarities.signs().iter().sum::<f64>(), 0.0);
         }

@@ -1,5 +1,4 @@
-//! What measuring relies on: references, how long a calibration holds, reference parts.
-//! From `config/rig.toml` and `config/golden.toml`.
+//! References, calibration interval and reference parts, from `config/rig.toml` and `config/golden.toml`.
 
 use super::Parameter;
 use crate::dut::instruments::Certificate;
@@ -20,7 +19,7 @@ pub struct ReferenceSettings {
     pub voltage_v: f64,
     /// Its tolerance, %.
     pub voltage_tolerance_pct: f64,
-    /// Gate pulse that ARM gives with the contact reference, ms.
+    /// Gate pulse that ARM triggers on the contact reference, ms.
     pub gate_pulse_ms: f64,
     /// Clock of the gated counters, Hz.
     pub counter_clock_hz: f64,
@@ -28,19 +27,20 @@ pub struct ReferenceSettings {
     pub counter_clock_tolerance_ppm: f64,
 }
 
-/// How long a calibration holds.
+/// Validity and source of a calibration.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct CalibrationSettings {
-    /// Age at which a lot is refused, hours.
+    /// Age at which the rig refuses a lot, hours.
     pub valid_h: f64,
-    /// File of the reference parts, beside `rig.toml`; none where no recipe needs them.
-    pub golden: Option<String>,
+    /// File of the reference parts, next to `rig.toml`; `None` when no recipe needs them.
+    #[serde(rename = "golden")]
+    pub reference_file: Option<String>,
 }
 
 /// A certified value.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Certified {
-    /// The value in the unit of its key.
+    /// Value in the unit of its key.
     pub value: f64,
     /// Standard uncertainty of the certificate, same unit.
     pub u: f64,
@@ -51,7 +51,7 @@ pub struct Certified {
 pub struct ReferencePart {
     /// Serial number.
     pub serial: String,
-    /// Nominal coil voltage: it serves recipes of this voltage.
+    /// Nominal coil voltage of the recipes that it calibrates.
     pub nominal_v: f64,
     /// Operate threshold, V.
     pub operate_voltage_v: Certified,
@@ -62,7 +62,7 @@ pub struct ReferencePart {
 }
 
 impl ReferencePart {
-    /// What is certified of it.
+    /// Returns the certified values.
     pub fn certified(&self) -> [(Parameter, Certified); 3] {
         [
             (Parameter::OperateVoltage, self.operate_voltage_v),
@@ -83,12 +83,12 @@ pub struct ReferenceSet {
 }
 
 impl ReferenceSet {
-    /// The certificates of all parts.
+    /// Returns the certificates of all parts.
     pub fn certificates(&self) -> Vec<Certificate> {
         self.parts.iter().map(Certificate::from).collect()
     }
 
-    /// The parts that serve recipes of this nominal coil voltage.
+    /// Returns the parts for recipes of this nominal coil voltage.
     pub fn of_nominal(&self, nominal_v: f64) -> impl Iterator<Item = &ReferencePart> {
         self.parts
             .iter()

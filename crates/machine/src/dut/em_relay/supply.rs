@@ -1,7 +1,7 @@
 //! The coil supply as three outputs that add up: level (steps), coarse ramp, fine ramp.
 //!
-//! Keeps the voltage last written to each, so that a stage sets a sum and leaves a ramp where
-//! the stage before has left it: the coarse ramp goes up once for operate and down once for release.
+//! [`Supply`] holds the voltage last commanded of each, so that a stage sets a sum and keeps the ramps of the stage
+//! before: the coarse ramp rises once for operate and falls once for release.
 
 use crate::dut::em_relay::Calibration;
 use crate::dut::em_relay::act::Act;
@@ -9,12 +9,12 @@ use crate::dut::em_relay::calibration::OutputLine;
 use crate::dut::em_relay::points::AnalogOut;
 use units::{Span, Volt};
 
-/// The sum of three outputs in floating point.
+/// Rounding error of the sum of three outputs.
 const ROUNDING: Volt = Volt(1e-9);
 /// Slowest settling of an output after its last refresh.
 pub const RAMP_MARGIN: Span = Span::ms(4);
 
-/// Voltages that each output contributes at the coil.
+/// Voltage that each output contributes at the coil.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Supply {
     level: OutputLine,
@@ -28,7 +28,7 @@ pub struct Supply {
 }
 
 impl Supply {
-    /// With all outputs at zero.
+    /// Returns a supply with all outputs at zero.
     pub fn new(calibration: &Calibration) -> Self {
         let (level, coarse, fine) = (calibration.level, calibration.coarse, calibration.fine);
         Self {
@@ -43,22 +43,22 @@ impl Supply {
         }
     }
 
-    /// Sum of the three as asked.
+    /// Returns the sum of the three commanded voltages.
     pub fn total(&self) -> Volt {
         self.level_at + self.coarse_at + self.fine_at
     }
 
-    /// Voltage the coarse ramp adds once it has arrived.
+    /// Returns the voltage that the coarse ramp adds at its end.
     pub fn coarse(&self) -> Volt {
         self.coarse_at
     }
 
-    /// Voltage the fine ramp adds once it has arrived.
+    /// Returns the voltage that the fine ramp adds at its end.
     pub fn fine(&self) -> Volt {
         self.fine_at
     }
 
-    /// True once both ramps have gone as low as their outputs can.
+    /// Returns true once both ramps are commanded to their lowest voltage.
     pub fn ramps_are_down(&self) -> bool {
         let rests = |line: OutputLine, at: Volt| {
             let lowest = line.delivers(Volt(0.0)).0.max(0.0);
@@ -67,35 +67,35 @@ impl Supply {
         rests(self.coarse, self.coarse_at) && rests(self.fine, self.fine_at)
     }
 
-    /// Act that steps the level so that the sum becomes `total`; the ramps stay.
+    /// Returns the act that steps the level so that the sum becomes `total`; the ramps stay.
     pub fn step_to(&mut self, total: Volt) -> Act {
         let wanted = total - self.coarse_at - self.fine_at;
-        let asked = Volt(self.level.ask_for(wanted).0.max(0.0));
-        self.level_at = self.level.delivers(asked);
+        let command = Volt(self.level.command_for(wanted).0.max(0.0));
+        self.level_at = self.level.delivers(command);
         let over = self.total() - total;
         assert!(
-            asked == Volt(0.0) || over < ROUNDING,
+            command == Volt(0.0) || over < ROUNDING,
             "{over:?} over {total:?}"
         );
-        Act::Supply(vec![(AnalogOut::SupplyLevel, asked)])
+        Act::Supply(vec![(AnalogOut::SupplyLevel, command)])
     }
 
-    /// Act that starts the coarse ramp towards `volts`, and how long the ramp takes.
+    /// Returns the act that starts the coarse ramp towards `volts`, and the duration of the ramp.
     pub fn ramp_coarse(&mut self, volts: Volt) -> (Act, Span) {
-        let asked = Volt(self.coarse.ask_for(volts).0.max(0.0));
-        let way = self.coarse.delivers(asked) - self.coarse_at;
+        let command = Volt(self.coarse.command_for(volts).0.max(0.0));
+        let way = self.coarse.delivers(command) - self.coarse_at;
         self.coarse_at = self.coarse_at + way;
         let takes = Span::seconds(way.0.abs() / self.coarse_v_per_s) + RAMP_MARGIN;
-        (Act::Supply(vec![(AnalogOut::SupplyCoarse, asked)]), takes)
+        (Act::Supply(vec![(AnalogOut::SupplyCoarse, command)]), takes)
     }
 
-    /// Act that starts the fine ramp towards `volts`, and how long the ramp takes.
+    /// Returns the act that starts the fine ramp towards `volts`, and the duration of the ramp.
     pub fn ramp_fine(&mut self, volts: Volt) -> (Act, Span) {
-        let asked = Volt(self.fine.ask_for(volts).0.max(0.0));
-        let way = self.fine.delivers(asked) - self.fine_at;
+        let command = Volt(self.fine.command_for(volts).0.max(0.0));
+        let way = self.fine.delivers(command) - self.fine_at;
         self.fine_at = self.fine_at + way;
         let takes = Span::seconds(way.0.abs() / self.fine_v_per_s) + RAMP_MARGIN;
-        (Act::Supply(vec![(AnalogOut::SupplyFine, asked)]), takes)
+        (Act::Supply(vec![(AnalogOut::SupplyFine, command)]), takes)
     }
 }
 

@@ -1,4 +1,4 @@
-//! Recipe, reference parts and instruments that err by nothing.
+//! Recipe, reference parts and instruments without error.
 #![allow(clippy::unwrap_used)]
 
 use crate::dut;
@@ -24,7 +24,7 @@ struct Instruments {
     accuracy: AccuracySettings,
 }
 
-/// The default recipe on instruments that err by nothing, lags known.
+/// The default recipe on instruments without error, overshoot known.
 pub fn context() -> Context {
     let recipe: Recipe = toml::from_str(include_str!(
         "../../../../../config/recipes/jzc-22f-012.toml"
@@ -48,18 +48,18 @@ pub fn context() -> Context {
     }
 }
 
-/// The same as the station holds it, with the reference parts of the plant.
+/// The same context as a device, with the reference parts of the plant.
 pub fn device() -> dut::Device {
     device_of(context())
 }
 
 /// A device of this context.
 pub fn device_of(context: Context) -> dut::Device {
-    dut::Device::EmRelay(Box::new(Device::of(context, 1.6, golden_parts())))
+    dut::Device::EmRelay(Box::new(Device::of(context, 1.6, reference_parts())))
 }
 
 /// The reference parts of 12 V.
-pub fn golden_parts() -> Vec<ReferencePart> {
+pub fn reference_parts() -> Vec<ReferencePart> {
     let set: ReferenceSet =
         toml::from_str(include_str!("../../../../../config/golden.toml")).unwrap();
     set.of_nominal(12.0).cloned().collect()

@@ -1,11 +1,10 @@
 //! Operate and release voltage from a ramp and a gated counter.
 //!
-//! The window opens when the supply has moved [`WINDOW_V`] from the level it had at ARM, and the
-//! latch closes it at the contact event, so the indicated voltage is
-//! `start +- (WINDOW_V + slope x gate)`. A ramp overshoots the quasi-static threshold by its overshoot;
-//! reference parts tell the overshoot of the fine ramp, and the same number absorbs the tolerance of the
-//! 50 mV, the error of the level, the contact of the probes and the mean heating of the coil, all of which were there too.
-//! Pickup current does not depend on temperature, so the voltage scales like the coil (IEC 61810-7).
+//! The window opens when the supply has moved [`WINDOW_V`] from its level at ARM, and the latch closes it at the
+//! contact event, so the indicated voltage is `start +- (WINDOW_V + slope x gate)`. A ramp overshoots the quasi-static
+//! threshold. Reference parts give the overshoot of the fine ramp; it also contains the tolerance of the 50 mV, the
+//! error of the level, the contact of the probes and the mean heating of the coil. The operate current does not depend
+//! on temperature, so the voltage scales like the coil (IEC 61810-7).
 
 use super::calibration::Overshoot;
 use super::coil::{relative_per_kelvin, to_reference};
@@ -16,7 +15,7 @@ use units::{Celsius, Second, Unit, Volt};
 /// Movement of the supply that opens the window of a ramp.
 pub const WINDOW_V: Volt = Volt(0.050);
 
-/// Which way the supply moves.
+/// Direction of the supply on a ramp.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// Towards operate.
@@ -35,33 +34,33 @@ impl Direction {
     }
 }
 
-/// Supply voltage at the contact event of a ramp that began at `start`.
+/// Returns the supply voltage at the contact event of a ramp that began at `start`.
 pub fn indicated(start: Volt, slope_v_per_s: f64, gate: Second, direction: Direction) -> Volt {
     start + (WINDOW_V + Volt(slope_v_per_s * gate.0)) * direction.sign()
 }
 
-/// What makes a threshold doubtful besides the reference parts' shift.
+/// Uncertainty terms of a threshold besides the shift of the reference parts.
 #[derive(Debug, Clone, Copy)]
 pub struct RampDoubt {
     /// Slope of the fine ramp, volts per second.
     pub slope_v_per_s: Factor,
-    /// The error of the slope is part of the overshoot already.
+    /// True when the overshoot contains the error of the slope already.
     pub slope_known: bool,
     /// Scatter of the part's own threshold from operation to operation, volts.
     pub operation_v: f64,
-    /// Time between two steps of the output while it ramps.
+    /// Refresh interval of the output on a ramp.
     pub refresh: Second,
     /// Relative standard uncertainty of the gain of the level at which the ramp starts.
     pub level_share: f64,
-    /// What the force contacts of the coil put in series to it now and not when reference parts ran, a share of its
+    /// Change of the series resistance of the coil's force contacts since the reference parts, as a share of the coil
     /// resistance.
     pub contact_share: f64,
-    /// Part's temperature against the track's, kelvin (1 sd).
+    /// Difference between the temperatures of part and track, kelvin (1 sd).
     pub temperature_k: f64,
 }
 
-/// Quasi-static threshold at the reference temperature from one fine ramp, which on this part overshoots by `own`
-/// volts more than on the reference parts.
+/// Returns the quasi-static threshold at the reference temperature from one fine ramp, which overshoots by `own` volts
+/// more on this part than on the reference parts.
 pub fn quasi_static(
     (seen, own): (Volt, Factor),
     gate: Second,
@@ -107,14 +106,14 @@ mod tests {
     use crate::dut::em_relay::overshoot::OvershootModel;
 
     #[test]
-    fn a_rising_ramp_indicates_start_plus_window_plus_slope_times_gate() {
+    fn a_ramp_indicates_start_plus_window_plus_slope() {
         let seen = indicated(Volt(7.8), 1.5, Second(0.04), Direction::Rising);
         assert!((seen.0 - 7.91).abs() < 1e-12);
         let seen = indicated(Volt(2.5), 1.5, Second(0.04), Direction::Falling);
         assert!((seen.0 - 2.39).abs() < 1e-12);
     }
 
-    /// U / 2 of an operate voltage of 7.88 V with these doubts and no others.
+    /// U / 2 of an operate voltage of 7.88 V with these two uncertainty terms alone.
     fn doubted(contact: f64, temperature_k: f64) -> f64 {
         let overshoot = Overshoot {
             fine_v: Factor::new(0.0, 0.0),
@@ -144,12 +143,12 @@ mod tests {
     }
 
     #[test]
-    fn one_kelvin_is_thirty_millivolts_of_an_operate_voltage() {
+    fn one_kelvin_is_30_millivolts_of_operate_voltage() {
         assert!((doubted(0.0, 1.0) - 0.0306).abs() < 1e-4);
     }
 
     #[test]
-    fn one_ohm_at_the_probes_is_twenty_millivolts_of_an_operate_voltage() {
+    fn one_ohm_at_the_probes_is_20_millivolts() {
         assert!((doubted(1.0 / 400.0, 0.0) - 0.0197).abs() < 1e-4);
     }
 }

@@ -1,16 +1,15 @@
 //! Times from the gated counters.
 //!
-//! Gate 0 is open from the start event to the latched first make, gate 1 while the window is open
-//! and the selected contact is not made. So `N0 / f` is the operate or release time without bounce
-//! and `(N1 - N0) / f` the open time of the bounces after the first make. A count is the floor of a
-//! length with a random phase: unbiased, sd at most half a period. Bounces shorter than one period
-//! of the 50 kHz clock (20 us) stay unseen.
+//! Gate 0 is open from the start event to the latched first make, gate 1 while the window is open and the selected
+//! contact is open. So `N0 / f` is the operate or release time without bounce, and `(N1 - N0) / f` the open time of
+//! the bounces after the first make. A count is the floor of a length with a random phase: unbiased, sd at most half a
+//! period. Bounces shorter than one period of the 50 kHz clock (20 us) are not counted.
 
 use crate::gauge::Factor;
 use crate::gauge::budget::{Budget, Reading, rectangular};
 use units::Unit;
 
-/// The reference clock at both counters.
+/// Reference clock of both counters.
 #[derive(Debug, Clone, Copy)]
 pub struct Clock {
     /// Nominal frequency, hertz.
@@ -19,17 +18,17 @@ pub struct Clock {
     pub tolerance_ppm: f64,
 }
 
-/// Counts that a counter advanced between two reads, across its 32-bit wrap.
+/// Returns the counts of a counter between two reads, across its 32-bit wrap.
 pub fn counts(before: u32, after: u32) -> u32 {
     after.wrapping_sub(before)
 }
 
-/// Root mean square error of a count with uniform phase and uniform length: `1 / (sqrt(6) f)`.
+/// Returns the root mean square error of a count with uniform phase and uniform length: `1 / (sqrt(6) f)`.
 fn count_u_ms(clock: Clock) -> f64 {
     1e3 / (clock.hz * 6f64.sqrt())
 }
 
-/// Length of one gate in milliseconds.
+/// Returns the length of one gate in milliseconds.
 pub fn gate_ms(gate: u32, delay_us: Factor, clock: Clock) -> Reading {
     let value = f64::from(gate) / clock.hz * 1e3 - delay_us.value / 1e3;
     let budget = Budget::default()
@@ -43,7 +42,7 @@ pub fn gate_ms(gate: u32, delay_us: Factor, clock: Clock) -> Reading {
     }
 }
 
-/// Bounce-open time in milliseconds from both gates.
+/// Returns the total open time of the bounces in milliseconds from both gates.
 ///
 /// Both counts are floors of lengths on one clock, so each brings its own count error.
 pub fn bounce_ms(gate0: u32, gate1: u32, delay_us: [Factor; 2], clock: Clock) -> Reading {
@@ -75,14 +74,14 @@ mod tests {
     }
 
     #[test]
-    fn a_gate_of_236_counts_is_4_72_ms_less_the_gate_delay() {
+    fn a_gate_time_excludes_the_gate_delay() {
         let time = gate_ms(236, Factor::new(10.0, 2.0), CLOCK);
         assert!((time.value - 4.71).abs() < 1e-12);
         assert!(time.expanded() < 0.02);
     }
 
     #[test]
-    fn bounce_is_what_the_raw_gate_counts_more_than_the_latched_one() {
+    fn bounce_is_the_difference_of_both_gates() {
         let delays = [Factor::new(10.0, 1.0), Factor::new(-5.0, 1.0)];
         let bounce = bounce_ms(236, 252, delays, CLOCK);
         assert!((bounce.value - 0.335).abs() < 1e-12);

@@ -1,10 +1,10 @@
-//! What the operation process card says of a resistor.
+//! Operation process card of a resistor.
 
 use super::Parameter;
 use super::recipe::ResistorRecipe;
 use crate::dut::card::{Card, Demand, Piece, Step};
 
-/// The card of a recipe.
+/// Returns the card of a recipe.
 pub fn card(resistor: &ResistorRecipe) -> Card {
     let level = resistor.test.level_v;
     let drive = vec![Piece::Figure(level), Piece::Literal(" V")];

@@ -1,18 +1,18 @@
-//! Findings of a resistor test beside its result.
+//! Findings of a resistor test in addition to its result.
 
 use super::parameter::{BIN, Parameter};
 use crate::dut::reason::{Code, Reason};
 use crate::gauge::Side;
 use crate::rig::bin::Bin;
 
-/// One finding.
+/// A finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Finding {
     /// No current: the resistor, a pin or a probe is open.
     Open,
-    /// More current than the channel reads.
+    /// The current exceeds the range of the channel.
     Short,
-    /// The channel gave no number.
+    /// The channel has no usable reading.
     CurrentNotReadable,
 }
 
@@ -20,7 +20,7 @@ impl Finding {
     /// Every finding.
     pub const ALL: [Self; 3] = [Self::Open, Self::Short, Self::CurrentNotReadable];
 
-    /// Code in rows and exports.
+    /// Returns the code in rows and exports.
     pub fn code(self) -> &'static str {
         match self {
             Self::Open => "resistor_open",
@@ -29,17 +29,17 @@ impl Finding {
         }
     }
 
-    /// Bin of a bad part; none where the part could not be judged.
+    /// Returns the bin of a bad part; `None` for a part that cannot be judged.
     pub fn bin(self) -> Option<Bin> {
         self.side().map(|_| BIN)
     }
 
-    /// The characteristic whose limit it proves broken, if it does.
+    /// Returns the characteristic whose limit the finding proves exceeded, if any.
     pub fn proves(self) -> Option<Parameter> {
         self.side().map(|_| Parameter::Resistance)
     }
 
-    /// The finding with this code.
+    /// Returns the finding with this code.
     pub fn from_code(code: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|it| it.code() == code)
     }

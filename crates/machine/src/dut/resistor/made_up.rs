@@ -1,4 +1,4 @@
-//! A lot of resistors in figures, for made-up parts.
+//! Statistics of a lot of resistors, for made-up parts.
 
 use super::Parameter;
 use crate::dut::Characteristic;
@@ -6,10 +6,10 @@ use crate::dut::made_up::Scatter;
 use crate::dut::recipe::Limits;
 use crate::gauge::Budget;
 
-/// Resistance where the recipe names no limit to lie between, ohm.
+/// Resistance for a recipe without both limits, ohm.
 const USUAL_OHM: f64 = 390.0;
 
-/// Scatters about the middle of the limits by a tenth of their distance.
+/// Returns a scatter about the middle of the limits, a tenth of their distance wide.
 pub fn scatter(limits: &Limits) -> Vec<(Characteristic, Scatter)> {
     let limit = limits.of(Parameter::Resistance);
     let (mean, sd) = match (limit.low, limit.high) {

@@ -1,7 +1,8 @@
 //! The test of a resistor: drive on at a level, one channel read, drive off.
 //!
-//! R = V / I. V is the level asked of the supply, I what the fine channel reads; both are taken as the makers promise them. The
-//! contact of the probes is part of R and a term of its budget. A result inside the guard band is read `slow_repeats` times more, and the mean counts.
+//! R = V / I. V is the commanded level, I the reading of the fine channel; both have the makers' accuracies. The probe
+//! contacts are part of R and a term of its budget. A result inside the guard band is
+//! repeated `slow_repeats` times and averaged.
 
 use super::points::Points;
 use super::promise::Promise;
@@ -20,7 +21,7 @@ use crate::rig::sample::{Quality, Sample};
 use std::sync::Arc;
 use units::{RigTime, Span, Unit, Volt};
 
-/// Current and amplifier have settled after the drive went off.
+/// Settling time of current and amplifier after the drive is off.
 const OFF: Span = Span::ms(5);
 
 /// A resistor recipe on a rig.
@@ -30,15 +31,15 @@ pub struct Device {
     resistor: Arc<ResistorRecipe>,
     points: Points,
     promise: Promise,
-    /// Enabled channels of the converter that reads the current.
+    /// Number of enabled channels of the converter that reads the current.
     channels: u32,
 }
 
 impl Device {
-    /// Puts the recipe on a rig.
+    /// Resolves the points of the recipe on a rig.
     ///
     /// # Errors
-    /// Names the first point that the rig does not have.
+    /// Names the first point that the rig lacks.
     pub fn new(
         recipe: Arc<Recipe>,
         resistor: Arc<ResistorRecipe>,
@@ -101,7 +102,7 @@ impl Device {
         ]
     }
 
-    /// Resistance from the currents of one measurement, or what was found instead.
+    /// Returns the resistance from the currents of one measurement, or the finding.
     fn resistance(&self, samples: &[Sample]) -> Result<Reading, Finding> {
         let mut sum = 0.0;
         for sample in samples {
@@ -139,10 +140,10 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// Every one.
+    /// Every stage.
     pub const ALL: [Self; 2] = [Self::Measure, Self::Off];
 
-    /// Its name in views.
+    /// Returns the name in views.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Measure => "Resistance",
@@ -165,7 +166,7 @@ pub struct Test {
 }
 
 impl Test {
-    /// Goes on as far as it can.
+    /// Advances the test as far as `done` and `image` allow.
     pub fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress {
         let mut done = done;
         loop {
@@ -198,7 +199,7 @@ impl Test {
         self.began = now;
     }
 
-    /// Takes in one measurement; another one follows while the result is in doubt.
+    /// Adds one measurement; another follows while the result is in doubt.
     fn conclude(&mut self, readings: &Readings, now: RigTime) {
         let samples: Vec<Sample> = readings
             .analog(self.device.points.current)
@@ -221,8 +222,8 @@ impl Test {
         self.runner = Runner::new(acts, now);
     }
 
-    /// A thorough test repeats whatever came out; another one what lies inside the guard band, once it has begun to repeat
-    /// to the end.
+    /// Returns true when a repeat is due: in a thorough test after every result, in others after one inside the guard
+    /// band; repeats once begun go on to the last.
     fn is_in_doubt(&self) -> bool {
         let repeating = self.record.attempts(Parameter::Resistance) > 1;
         let conditional = |(_, judgement): &(Characteristic, Judgement)| match judgement {
@@ -232,17 +233,17 @@ impl Test {
         self.thorough || repeating || self.judgements().iter().any(conditional)
     }
 
-    /// Number of the test of this part, from 1.
+    /// Returns the number of this test of the part, from 1.
     pub fn number(&self) -> u8 {
         self.number
     }
 
-    /// Name of the stage under way.
+    /// Returns the name of the stage under way.
     pub fn stage(&self) -> &'static str {
         self.stage.name()
     }
 
-    /// The result against its limit.
+    /// Returns the result against its limit.
     pub fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
         let recipe = &self.device.recipe;
         let reading = self.record.result(Parameter::Resistance);
@@ -252,18 +253,18 @@ impl Test {
         judged.into_iter().map(named).collect()
     }
 
-    /// Verdict of the part.
+    /// Returns the verdict of the part.
     pub fn verdict(&self) -> Verdict {
         let expected = Parameter::ALL.map(Characteristic::from);
         Verdict::after(self.record.why_stopped(), &expected, self.judgements())
     }
 
-    /// What was found so far.
+    /// Returns the record so far.
     pub fn record(&self) -> &TestRecord<()> {
         &self.record
     }
 
-    /// Hands over what was found, once the part is judged.
+    /// Takes the record out of a finished test.
     pub fn take_record(&mut self) -> TestRecord {
         std::mem::take(&mut self.record).of_any_kind(|()| Own::Nothing)
     }

@@ -1,16 +1,16 @@
 //! Resistor: a fixture check, and the smallest kind there is.
 //!
-//! A dummy of relay size holds one resistor between the two coil pins. The rig feeds, clamps, measures and sorts it like any
-//! part, which checks feeder, probes and supply with one characteristic on one channel. Voltage and current are taken as
-//! the makers promise them: the kind needs neither references nor reference parts.
+//! A dummy of relay size holds one resistor between the two coil pins. The rig feeds, clamps, measures and sorts it
+//! like any part, which checks feeder, probes and supply with one characteristic on one channel. Voltage and current
+//! have the makers' accuracies: the kind needs neither references nor reference parts.
 //!
 //! | question | file |
 //! |---|---|
 //! | what is measured, and where a part that fails goes | [`parameter`] |
 //! | what the part is, how it is measured | [`recipe`] |
 //! | which points of the rig it needs | [`points`] |
-//! | how well the figure is known | [`promise`] |
-//! | what a test finds beside the figure | [`finding`] |
+//! | how accurate the figure is | [`promise`] |
+//! | what a test finds in addition to the figure | [`finding`] |
 //! | the keys of its recipe | [`keys`] |
 //! | the test | [`measure`] |
 //! | the process card | [`card`] |

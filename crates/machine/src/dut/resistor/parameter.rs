@@ -5,10 +5,10 @@ use crate::gauge::repetition::MeanOf;
 use crate::rig::bin::Bin;
 use units::Unit;
 
-/// Bin of a resistor that fails: the one for whatever hangs at the coil pins.
+/// Bin of a resistor that fails, shared with relay coils.
 pub const BIN: Bin = Bin::named("coil");
 
-/// What is measured on a resistor.
+/// Characteristic of a resistor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Parameter {
     /// DC resistance between the coil pins.
@@ -19,7 +19,7 @@ impl Parameter {
     /// Every parameter.
     pub const ALL: [Self; 1] = [Self::Resistance];
 
-    /// What is fixed about it.
+    /// Returns key, unit and bin.
     pub const fn definition(self) -> &'static Definition {
         match self {
             Self::Resistance => &RESISTANCE,

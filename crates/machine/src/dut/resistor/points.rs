@@ -1,14 +1,14 @@
-//! The points that a resistor needs: the level and the drive of the coil board, and one current channel.
+//! Points that a resistor needs: level and drive of the coil board, and one current channel.
 //!
 //! `em_relay` declares them as points of its board, under the same names.
 
 use crate::rig::point::{AnalogInput, AnalogOutput, DigitalOutput, MissingPoint};
 use crate::rig::wiring::Wiring;
 
-/// The points as this rig has wired them.
+/// Points as this rig has wired them.
 #[derive(Debug, Clone, Copy)]
 pub struct Points {
-    /// Puts the supply on the two pins.
+    /// Connects the supply to the two pins.
     pub drive: DigitalOutput,
     /// Voltage of the supply.
     pub level: AnalogOutput,
@@ -17,10 +17,10 @@ pub struct Points {
 }
 
 impl Points {
-    /// Looks every point up.
+    /// Resolves every point.
     ///
     /// # Errors
-    /// Names the first one that the rig does not have.
+    /// Names the first point that the rig lacks.
     pub fn resolve(wiring: &Wiring) -> Result<Self, MissingPoint> {
         let missing = |section, name| MissingPoint { section, name };
         let (drive, level, current) = ("coil_drive", "supply_level", "coil_current_fine");

@@ -1,4 +1,4 @@
-//! How well resistance is known from what the makers promise: the kind has no calibration.
+//! Uncertainty of a resistance from the makers' accuracies: the kind has no calibration.
 
 use super::recipe::ResistorRecipe;
 use crate::dut::accuracy::AccuracySettings;
@@ -10,15 +10,15 @@ const FULL_SCALE_V: f64 = 10.0;
 const STEP_V: f64 = 2.0 * FULL_SCALE_V / 4096.0;
 /// Share of the full scale that a good part may use.
 const USABLE: f64 = 0.98;
-/// The part may differ so much from the reference temperature, K (half width).
+/// Greatest difference of the part from the reference temperature, K.
 const TEMPERATURE_K: f64 = 10.0;
 /// Resistance of both probe contacts in series, ohm (half width).
 const PROBES_OHM: f64 = 0.2;
 
-/// Promises for the one channel of the test.
+/// Accuracies of the one channel of the test.
 #[derive(Debug, Clone, Copy)]
 pub struct Promise {
-    /// Of the makers.
+    /// Accuracies of the makers.
     pub accuracy: AccuracySettings,
     /// Volts at the terminal per ampere.
     pub volt_per_ampere: f64,
@@ -33,17 +33,17 @@ impl Promise {
         (self.accuracy.ai_noise_lsb * STEP_V).hypot(resolution(STEP_V))
     }
 
-    /// A current below this cannot be told from none, A.
+    /// Returns the current below which a reading counts as an open circuit, A.
     pub fn no_current_ampere(&self) -> f64 {
         (self.offset_v() + 3.0 * self.noise_v()) / self.volt_per_ampere
     }
 
-    /// The greatest current that the channel reads, A.
+    /// Returns the greatest current that the channel reads, A.
     pub fn most_ampere(&self) -> f64 {
         USABLE * FULL_SCALE_V / self.volt_per_ampere
     }
 
-    /// Doubts of a resistance, ohm.
+    /// Returns the uncertainty budget of a resistance, ohm.
     pub fn budget(&self, resistor: &ResistorRecipe, ohm: f64) -> Budget {
         let (promised, level_v) = (&self.accuracy, resistor.test.level_v);
         let terminal_v = level_v / ohm * self.volt_per_ampere;

@@ -1,4 +1,4 @@
-//! What a recipe says of a resistor: the part, and how it is measured.
+//! Resistor part of a recipe: the part, and how to measure it.
 
 use super::parameter::{BIN, Parameter};
 use super::points::Points;
@@ -14,13 +14,13 @@ use units::Volt;
 /// The sections `[part]` and `[test]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ResistorRecipe {
-    /// The part.
+    /// The resistor.
     pub part: PartData,
-    /// How it is measured.
+    /// Its measurement.
     pub test: TestPlan,
 }
 
-/// The part itself.
+/// Data of the part.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PartData {
     /// Body along x, y, z as it lies in the nest, mm.
@@ -33,19 +33,19 @@ pub struct PartData {
     pub tcr_ppm_per_k: f64,
 }
 
-/// How the part is measured.
+/// Measurement of the part.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TestPlan {
     /// Voltage across the part, V.
     pub level_v: f64,
-    /// From the drive to the instant after which a conversion may begin, ms.
+    /// Time from the drive until a conversion may begin, ms.
     pub settles_ms: u32,
-    /// Readings that are averaged.
+    /// Number of readings that are averaged.
     pub readings: u32,
 }
 
 impl ResistorRecipe {
-    /// The outside of the part.
+    /// Returns the dimensions for the collision guard.
     pub fn body(&self) -> Body {
         Body {
             size_mm: self.part.body_mm,
@@ -53,11 +53,11 @@ impl ResistorRecipe {
         }
     }
 
-    /// Checks that the rig has the bin and the points, that level and current lie within reach of the modules, and that the
-    /// uncertainty leaves something between the limits.
+    /// Checks that the rig has bin and points, that the modules reach level and current, and that the limits are wider
+    /// than the guard bands.
     ///
     /// # Errors
-    /// Names the first key that asks for what is not there.
+    /// Names the first key that the rig cannot meet.
     pub fn feasible(
         &self,
         limits: &Limits,
@@ -113,7 +113,7 @@ impl ResistorRecipe {
     }
 }
 
-/// The level steps, and the converter reads the channel of the current.
+/// Checks that the level steps, and that the converter reads the channel of the current.
 fn check_modules(wiring: &Wiring, points: &Points) -> Result<(), Fault> {
     let source = wiring.module(wiring.analog_out(points.level).module);
     if source

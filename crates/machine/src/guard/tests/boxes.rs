@@ -42,7 +42,7 @@ pub(super) fn boxed(settings: &GuardSettings) -> Vec<Boxed> {
     settings.elements.iter().map(one).collect()
 }
 
-/// `lying`: rotated from z onto x, the only rotation in the scene.
+/// Appends the boxes of a piece; `lying`: rotated from z onto x, the only rotation in the scene.
 fn inner_boxes(piece: &Piece, at: [f64; 3], lying: bool, out: &mut Vec<([f64; 3], [f64; 3])>) {
     match piece.kind {
         Kind::Block => out.push((at, piece.half.unwrap())),

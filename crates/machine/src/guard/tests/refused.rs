@@ -94,7 +94,7 @@ fn a_part_too_tall_for_z_is_not_gripped() {
 }
 
 #[test]
-fn pins_too_long_for_z_do_not_pass_the_chutes() {
+fn too_long_pins_do_not_pass_the_chutes() {
     let mut long = rest().with(Gripper, at(7.0)).parts(|p| p.gripper = true);
     long.part_size.pin_length_mm = 7.0;
     let no = blocked(Motion::to(SortAxis, 150.0), &long);
@@ -245,7 +245,7 @@ fn motions_that_start_together_are_checked_mutually() {
         }
         blocked(Motion::group(&pair), &rest());
     }
-    // Although both ends are clear: the axis leaves before z is up.
+    // Both ends are clear, but the axis leaves before z is up.
     let down = rest().with(SortZ, at(40.0));
     blocked(
         Motion::group(&[stroke(SortZ, 0.0), stroke(SortAxis, 150.0)]),

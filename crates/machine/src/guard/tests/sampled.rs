@@ -125,6 +125,6 @@ fn a_cleared_motion_is_clear_at_every_sampled_pose() {
     }
     assert!(
         cleared > SITUATIONS / 5,
-        "only {cleared} of {SITUATIONS} were cleared: too few to say anything"
+        "only {cleared} of {SITUATIONS} were cleared: too few for a proof"
     );
 }

@@ -1,6 +1,6 @@
 //! The feed moves one part at a time from the track into the pocket, and only into a free nest.
 
-use super::Shop;
+use super::MockRig;
 use super::device;
 use crate::handling::feed::Feed;
 use crate::handling::ledger::Kind;
@@ -9,108 +9,108 @@ use crate::handling::place::{NestId, Place};
 use crate::rig::point::DigitalIn;
 use units::Span;
 
-fn step(feed: Feed, shop: &mut Shop, wanted: bool) -> Feed {
-    feed.step(&mut shop.turn(), NestId::FIRST, wanted, true)
+fn step(feed: Feed, mock: &mut MockRig, wanted: bool) -> Feed {
+    feed.step(&mut mock.turn(), NestId::FIRST, wanted, true)
 }
 
-/// Makes a shop with a part in the pocket and the escapement closed.
-fn ready() -> (Feed, Shop) {
-    let mut shop = Shop::at_rest();
-    shop.ledger.enter_pocket();
-    shop.set(DigitalIn::PocketPresent, true);
-    shop.scan();
-    (Feed::Ready, shop)
+/// Makes a rig with a part in the pocket and the escapement closed.
+fn ready() -> (Feed, MockRig) {
+    let mut mock = MockRig::at_rest();
+    mock.ledger.enter_pocket();
+    mock.set(DigitalIn::PocketPresent, true);
+    mock.scan();
+    (Feed::Ready, mock)
 }
 
 #[test]
 fn a_part_gets_its_number_in_the_nest() {
-    let mut shop = Shop::at_rest();
-    let feed = step(Feed::Empty, &mut shop, true);
-    assert_eq!(shop.wants.rig.motions, [Move::EscapementRelease]);
-    shop.carried_out(Move::EscapementRelease);
-    let feed = step(feed, &mut shop, true);
+    let mut mock = MockRig::at_rest();
+    let feed = step(Feed::Empty, &mut mock, true);
+    assert_eq!(mock.output.rig.motions, [Move::EscapementRelease]);
+    mock.carried_out(Move::EscapementRelease);
+    let feed = step(feed, &mut mock, true);
     assert!(matches!(feed, Feed::Releasing { .. }));
-    shop.set(DigitalIn::PocketPresent, true);
-    shop.after(50);
-    let feed = step(feed, &mut shop, true);
+    mock.set(DigitalIn::PocketPresent, true);
+    mock.after(50);
+    let feed = step(feed, &mut mock, true);
     assert_eq!(
-        (feed, &*shop.wants.rig.motions),
+        (feed, &*mock.output.rig.motions),
         (Feed::Holding, &[Move::EscapementHold][..])
     );
-    shop.carried_out(Move::EscapementHold);
-    let feed = step(feed, &mut shop, true);
-    let feed = step(feed, &mut shop, true);
+    mock.carried_out(Move::EscapementHold);
+    let feed = step(feed, &mut mock, true);
+    let feed = step(feed, &mut mock, true);
     assert_eq!(
-        (feed, &*shop.wants.rig.motions),
+        (feed, &*mock.output.rig.motions),
         (Feed::Pushing, &[Move::PusherExtend][..])
     );
-    shop.set(DigitalIn::NestPresent, true);
-    shop.carried_out(Move::PusherExtend);
-    let feed = step(feed, &mut shop, true);
+    mock.set(DigitalIn::NestPresent, true);
+    mock.carried_out(Move::PusherExtend);
+    let feed = step(feed, &mut mock, true);
     assert_eq!(
-        (feed, &*shop.wants.rig.motions),
+        (feed, &*mock.output.rig.motions),
         (Feed::Retracting, &[Move::PusherRetract][..])
     );
     assert_eq!(
-        shop.ledger.part(Place::NEST).map(|part| part.kind.clone()),
+        mock.ledger.part(Place::NEST).map(|part| part.kind.clone()),
         Some(Kind::Lot(1))
     );
-    assert_eq!(step(feed, &mut shop, true), Feed::Retracting);
-    shop.carried_out(Move::PusherRetract);
-    assert_eq!(step(feed, &mut shop, false), Feed::Empty);
-    assert!(shop.ledger.balances());
+    assert_eq!(step(feed, &mut mock, true), Feed::Retracting);
+    mock.carried_out(Move::PusherRetract);
+    assert_eq!(step(feed, &mut mock, false), Feed::Empty);
+    assert!(mock.ledger.balances());
 }
 
 #[test]
 fn releasing_needs_demand_and_a_retracted_pusher() {
-    let mut shop = Shop::at_rest();
-    assert_eq!(step(Feed::Empty, &mut shop, false), Feed::Empty);
-    shop.set(DigitalIn::PusherRetracted, false);
-    shop.scan();
-    assert_eq!(step(Feed::Empty, &mut shop, true), Feed::Empty);
-    assert!(shop.wants.rig.motions.is_empty());
+    let mut mock = MockRig::at_rest();
+    assert_eq!(step(Feed::Empty, &mut mock, false), Feed::Empty);
+    mock.set(DigitalIn::PusherRetracted, false);
+    mock.scan();
+    assert_eq!(step(Feed::Empty, &mut mock, true), Feed::Empty);
+    assert!(mock.output.rig.motions.is_empty());
 }
 
 #[test]
 fn an_absent_part_is_an_alarm_after_three_attempts() {
     for (track, code) in [(true, "part_not_arrived"), (false, "magazine_empty")] {
-        let mut shop = Shop::at_rest();
-        shop.set(DigitalIn::TrackLevel, track);
-        shop.scan();
-        let mut feed = step(Feed::Empty, &mut shop, true);
+        let mut mock = MockRig::at_rest();
+        mock.set(DigitalIn::TrackLevel, track);
+        mock.scan();
+        let mut feed = step(Feed::Empty, &mut mock, true);
         for attempt in 1..=3 {
-            assert_eq!(shop.wants.rig.motions, [Move::EscapementRelease]);
-            let since = shop.now;
-            shop.carried_out(Move::EscapementRelease);
-            shop.now = since + Span::ms(1500);
-            shop.scan();
-            feed = step(feed, &mut shop, true);
-            assert!(shop.wants.rig.motions.is_empty() && shop.alarms().is_empty());
-            shop.after(1);
-            feed = step(feed, &mut shop, true);
-            assert_eq!(shop.wants.rig.motions, [Move::EscapementHold]);
-            let told = shop.alarms();
+            assert_eq!(mock.output.rig.motions, [Move::EscapementRelease]);
+            let since = mock.now;
+            mock.carried_out(Move::EscapementRelease);
+            mock.now = since + Span::ms(1500);
+            mock.scan();
+            feed = step(feed, &mut mock, true);
+            assert!(mock.output.rig.motions.is_empty() && mock.alarms().is_empty());
+            mock.after(1);
+            feed = step(feed, &mut mock, true);
+            assert_eq!(mock.output.rig.motions, [Move::EscapementHold]);
+            let alarms = mock.alarms();
             let expected = if attempt < 3 {
                 "escapement_retried"
             } else {
                 code
             };
-            assert_eq!(told, [expected]);
-            shop.carried_out(Move::EscapementHold);
-            feed = step(feed, &mut shop, true);
+            assert_eq!(alarms, [expected]);
+            mock.carried_out(Move::EscapementHold);
+            feed = step(feed, &mut mock, true);
         }
-        assert_eq!((feed, shop.ledger.came_in), (Feed::Empty, 0));
+        assert_eq!((feed, mock.ledger.came_in), (Feed::Empty, 0));
     }
 }
 
 #[test]
 fn a_part_in_the_pocket_is_fed_first() {
-    let mut shop = Shop::at_rest();
-    shop.set(DigitalIn::PocketPresent, true);
-    shop.scan();
-    let feed = step(Feed::Empty, &mut shop, true);
+    let mut mock = MockRig::at_rest();
+    mock.set(DigitalIn::PocketPresent, true);
+    mock.scan();
+    let feed = step(Feed::Empty, &mut mock, true);
     assert!(matches!(feed, Feed::Ready));
-    assert!(shop.ledger.holds(Place::Pocket) && shop.ledger.came_in == 1);
+    assert!(mock.ledger.holds(Place::Pocket) && mock.ledger.came_in == 1);
 }
 
 #[test]
@@ -124,79 +124,79 @@ fn the_pusher_starts_only_into_a_free_nest() {
         ("escapement open", &[(DigitalIn::EscapementHold, false)]),
     ];
     for (what, sensors) in occupied {
-        let (feed, mut shop) = ready();
+        let (feed, mut mock) = ready();
         for (point, state) in sensors {
-            shop.set(*point, *state);
+            mock.set(*point, *state);
         }
-        shop.scan();
-        assert_eq!(step(feed, &mut shop, true), Feed::Ready, "{what}");
-        assert!(shop.wants.rig.motions.is_empty(), "{what}");
+        mock.scan();
+        assert_eq!(step(feed, &mut mock, true), Feed::Ready, "{what}");
+        assert!(mock.output.rig.motions.is_empty(), "{what}");
     }
-    let (feed, mut shop) = ready();
-    shop.now = shop.now + units::Span::ms(401);
-    assert_eq!(step(feed, &mut shop, true), Feed::Ready, "stale sensors");
-    let (feed, mut shop) = ready();
-    assert_eq!(step(feed, &mut shop, false), Feed::Pushing, "nest is free");
+    let (feed, mut mock) = ready();
+    mock.now = mock.now + units::Span::ms(401);
+    assert_eq!(step(feed, &mut mock, true), Feed::Ready, "stale sensors");
+    let (feed, mut mock) = ready();
+    assert_eq!(step(feed, &mut mock, false), Feed::Pushing, "nest is free");
 }
 
 #[test]
-fn the_ledger_keeps_a_second_part_out_of_the_nest() {
-    let (feed, mut shop) = ready();
-    shop.ledger.enter_nest(NestId::FIRST, None);
-    shop.ledger.enter_pocket();
-    assert_eq!(step(feed, &mut shop, true), Feed::Ready);
+fn the_ledger_allows_one_part_per_nest() {
+    let (feed, mut mock) = ready();
+    mock.ledger.enter_nest(NestId::FIRST, None);
+    mock.ledger.enter_pocket();
+    assert_eq!(step(feed, &mut mock, true), Feed::Ready);
 }
 
 #[test]
 fn a_pusher_at_an_empty_nest_is_an_alarm() {
-    let (feed, mut shop) = ready();
-    let feed = step(feed, &mut shop, true);
-    shop.carried_out(Move::PusherExtend);
-    assert_eq!(step(feed, &mut shop, true), Feed::Pushing);
-    assert_eq!(shop.alarms(), ["part_not_in_nest"]);
-    assert!(shop.ledger.holds(Place::Pocket) && !shop.ledger.holds(Place::NEST));
+    let (feed, mut mock) = ready();
+    let feed = step(feed, &mut mock, true);
+    mock.carried_out(Move::PusherExtend);
+    assert_eq!(step(feed, &mut mock, true), Feed::Pushing);
+    assert_eq!(mock.alarms(), ["part_not_in_nest"]);
+    assert!(mock.ledger.holds(Place::Pocket) && !mock.ledger.holds(Place::NEST));
 }
 
 #[test]
 fn reference_parts_come_first_in_magazine_order() {
-    let (feed, mut shop) = ready();
-    shop.golden = device().reference_serials().into();
-    let feed = step(feed, &mut shop, true);
-    shop.set(DigitalIn::NestPresent, true);
-    shop.carried_out(Move::PusherExtend);
-    step(feed, &mut shop, true);
+    let (feed, mut mock) = ready();
+    mock.reference_serials = device().reference_serials().into();
+    let feed = step(feed, &mut mock, true);
+    mock.set(DigitalIn::NestPresent, true);
+    mock.carried_out(Move::PusherExtend);
+    step(feed, &mut mock, true);
     assert_eq!(
-        shop.ledger.part(Place::NEST).map(|part| part.kind.clone()),
+        mock.ledger.part(Place::NEST).map(|part| part.kind.clone()),
         Some(Kind::Reference("G-12-1".into()))
     );
-    assert_eq!(shop.golden.len(), 4);
+    assert_eq!(mock.reference_serials.len(), 4);
 }
 
-/// A shop whose escapement was open for the given time without a part; it closes again.
-fn called_in_vain(shop: &mut Shop, attempt: u8) -> Feed {
-    let since = shop.now;
-    shop.now = since + Span::ms(1501);
-    shop.scan();
-    let feed = step(Feed::Releasing { since, attempt }, shop, true);
+/// Attempts to feed for the given time while no part comes; the escapement closes again.
+fn called_in_vain(mock: &mut MockRig, attempt: u8) -> Feed {
+    let since = mock.now;
+    mock.now = since + Span::ms(1501);
+    mock.scan();
+    let feed = step(Feed::Releasing { since, attempt }, mock, true);
     assert_eq!(feed, Feed::Closing { attempts: attempt });
-    shop.carried_out(Move::EscapementHold);
+    mock.carried_out(Move::EscapementHold);
     feed
 }
 
 #[test]
 fn a_late_or_unwanted_part_ends_the_attempts() {
     for attempt in [1, 2] {
-        let mut shop = Shop::at_rest();
-        let closed = called_in_vain(&mut shop, attempt);
-        assert_eq!(step(closed, &mut shop, false), Feed::Empty);
-        let again = step(closed, &mut shop, true);
-        shop.set(DigitalIn::PocketPresent, true);
-        shop.after(50);
+        let mut mock = MockRig::at_rest();
+        let closed = called_in_vain(&mut mock, attempt);
+        assert_eq!(step(closed, &mut mock, false), Feed::Empty);
+        let again = step(closed, &mut mock, true);
+        mock.set(DigitalIn::PocketPresent, true);
+        mock.after(50);
         assert_eq!(
-            step(closed, &mut shop, true),
+            step(closed, &mut mock, true),
             Feed::Empty,
             "it came while it closed"
         );
-        assert_eq!(step(again, &mut shop, true), Feed::Holding);
+        assert_eq!(step(again, &mut mock, true), Feed::Holding);
     }
 }

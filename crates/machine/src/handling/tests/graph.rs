@@ -9,8 +9,8 @@ mod feed;
 mod nest;
 mod sorter;
 
-use super::Shop;
-use super::shop::Asked;
+use super::MockRig;
+use super::mock_rig::Output;
 use crate::handling::moves::Move;
 use crate::rig::point::DigitalIn;
 
@@ -25,12 +25,12 @@ struct Graph {
 
 impl Graph {
     /// Adds a step from one state to another, with its commands.
-    fn add(&mut self, from: &str, to: &str, asked: &Asked) {
+    fn add(&mut self, from: &str, to: &str, output: &Output) {
         self.steps += 1;
-        let motions = asked.rig.motions.iter().map(|movement| named(*movement));
-        let told: Vec<String> = motions.chain(asked.alarms()).collect();
-        if from != to || !told.is_empty() {
-            let label = told.join(", ");
+        let motions = output.rig.motions.iter().map(|movement| named(*movement));
+        let commands: Vec<String> = motions.chain(output.alarms()).collect();
+        if from != to || !commands.is_empty() {
+            let label = commands.join(", ");
             self.edges
                 .insert(format!("  {from} -> {to} [label=\"{label}\"];\n"));
         }
@@ -93,11 +93,11 @@ enum SensedEnd {
 const SEEN: [SensedEnd; 3] = [SensedEnd::Rest, SensedEnd::Far, SensedEnd::Between];
 
 /// Sets the sensors of an actuator.
-fn show(shop: &mut Shop, rest: &[DigitalIn], far: &[DigitalIn], seen: SensedEnd) {
+fn show(mock: &mut MockRig, rest: &[DigitalIn], far: &[DigitalIn], seen: SensedEnd) {
     for point in rest {
-        shop.set(*point, seen == SensedEnd::Rest);
+        mock.set(*point, seen == SensedEnd::Rest);
     }
     for point in far {
-        shop.set(*point, seen == SensedEnd::Far);
+        mock.set(*point, seen == SensedEnd::Far);
     }
 }

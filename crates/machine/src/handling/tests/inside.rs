@@ -1,6 +1,6 @@
 //! A part left by an earlier run is in its place, farther on, or reported.
 
-use super::Shop;
+use super::MockRig;
 use crate::dut::em_relay::bins;
 use crate::handling::inside::Inside;
 use crate::handling::ledger::Ledger;
@@ -47,9 +47,9 @@ fn accounted(left: u8, seen: u8) -> usize {
 fn each_missing_part_is_reported_once() {
     for places in 0..8_u8 {
         for found in 0..8_u8 {
-            let told = left(places).missing(&seen(found)).len();
+            let troubles = left(places).missing(&seen(found)).len();
             let gone = places.count_ones() as usize - accounted(places, found);
-            assert_eq!(told, gone, "left {places:03b}, seen {found:03b}");
+            assert_eq!(troubles, gone, "left {places:03b}, seen {found:03b}");
         }
     }
 }
@@ -61,19 +61,19 @@ fn the_report_names_the_place_of_the_part() {
         (0b110, 0b100, Place::Nest(NestId::FIRST)),
         (0b101, 0b10, Place::Gripper),
     ] {
-        let told = left(places).missing(&seen(found));
-        assert_eq!(told, [Trouble::Gone(place)], "{places:03b} {found:03b}");
+        let troubles = left(places).missing(&seen(found));
+        assert_eq!(troubles, [Trouble::Gone(place)], "{places:03b} {found:03b}");
     }
 }
 
 #[test]
-fn a_released_part_is_reported_unless_the_fingers_hold_it() {
+fn a_released_part_is_reported_unless_still_held() {
     let falling = Inside {
         falling: Some(bins::COIL),
         ..left(0b010)
     };
-    let told = falling.missing(&seen(0b010));
-    assert_eq!(told, [Trouble::FallUnseen(bins::COIL)]);
+    let troubles = falling.missing(&seen(0b010));
+    assert_eq!(troubles, [Trouble::FallUnseen(bins::COIL)]);
     assert!(falling.missing(&seen(0b110)).is_empty());
 }
 
@@ -90,36 +90,36 @@ fn a_removed_lifted_part_is_always_reported() {
         if now.needs_record() {
             written = now;
         }
-        let told = written.missing(&seen(without_it)).len();
-        assert_eq!(told, 1, "{places:03b}");
+        let troubles = written.missing(&seen(without_it)).len();
+        assert_eq!(troubles, 1, "{places:03b}");
     }
 }
 
 #[test]
 fn only_the_first_homing_reports_missing_parts() {
-    let mut shop = Shop::at_rest();
-    shop.ledger = Ledger::after(left(0b110));
-    shop.set(DigitalIn::NestPresent, true);
-    shop.scan();
+    let mut mock = MockRig::at_rest();
+    mock.ledger = Ledger::after(left(0b110));
+    mock.set(DigitalIn::NestPresent, true);
+    mock.scan();
     assert_eq!(
-        shop.ledger.parts_to_find(),
+        mock.ledger.parts_to_find(),
         left(0b110),
         "still to be looked for"
     );
-    let mut told = Vec::new();
+    let mut troubles = Vec::new();
     for _ in 0..2 {
         let mut recovery = Recovery::default();
         for _ in 0..10 {
-            recovery.step(&mut shop.turn(), false);
-            told.extend(shop.alarms());
-            shop.after(20);
+            recovery.step(&mut mock.turn(), false);
+            troubles.extend(mock.alarms());
+            mock.after(20);
         }
     }
-    assert_eq!(told, ["part_lost", "part_found"]);
+    assert_eq!(troubles, ["part_lost", "part_found"]);
     assert_eq!(
-        shop.ledger.parts_to_find(),
+        mock.ledger.parts_to_find(),
         left(0b010),
         "the one that was found"
     );
-    assert_eq!(shop.ledger.lost, 0, "it was none of this run's parts");
+    assert_eq!(mock.ledger.lost, 0, "it was none of this run's parts");
 }

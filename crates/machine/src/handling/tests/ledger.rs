@@ -42,9 +42,9 @@ fn parts_are_numbered_in_order_of_entering_the_nest() {
         (Some("G-12-2"), Kind::Reference("G-12-2".into())),
         (None, Kind::Lot(2)),
     ];
-    for (ordinal, (golden, kind)) in (1..).zip(expected) {
+    for (ordinal, (reference, kind)) in (1..).zip(expected) {
         ledger.enter_pocket();
-        ledger.enter_nest(NestId::FIRST, golden.map(String::from));
+        ledger.enter_nest(NestId::FIRST, reference.map(String::from));
         let part = ledger.part(Place::NEST).cloned().unwrap();
         assert_eq!((part.ordinal, part.kind), (ordinal, kind));
         assert_eq!((part.bin, part.test, part.probed_at), (None, None, None));
@@ -66,7 +66,7 @@ fn a_lost_part_never_counts_as_binned() {
 }
 
 #[test]
-fn nothing_lands_and_nothing_is_lost_when_nothing_falls() {
+fn without_a_fall_no_part_lands() {
     let mut ledger = with_part_in_gripper();
     assert_eq!((ledger.land(), ledger.lose(Place::Falling)), (None, false));
     assert_eq!((ledger.went_out, ledger.lost, ledger.inside()), (0, 0, 1));
@@ -109,7 +109,7 @@ fn the_nest_takes_no_second_part() {
 
 #[test]
 #[should_panic(expected = "no part to take from the nest")]
-fn an_empty_nest_hands_nothing_over() {
+fn an_empty_nest_hands_over_no_part() {
     Ledger::default().lift(NestId::FIRST);
 }
 
@@ -136,8 +136,8 @@ fn a_part_is_always_in_exactly_one_place() {
 fn filled(sockets: u16) -> Ledger {
     let mut ledger = Ledger::default();
     for socket in 0..sockets {
-        let golden = (socket == 0).then(|| "G-12-1".to_owned());
-        ledger.fill_socket(socket, golden);
+        let reference = (socket == 0).then(|| "G-12-1".to_owned());
+        ledger.fill_socket(socket, reference);
     }
     ledger
 }

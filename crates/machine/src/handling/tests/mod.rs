@@ -1,4 +1,4 @@
-//! Tests of feed, nest and sorter, on the default rig with sensors set by hand.
+//! Tests of feed, nest and sorter on the default rig with given sensor states.
 #![allow(clippy::unwrap_used)]
 
 mod feed;
@@ -7,13 +7,13 @@ mod inside;
 
 mod ledger;
 mod mechanism;
+mod mock_rig;
 mod nest;
 mod recovery;
-mod shop;
 mod sort;
 
-pub(crate) use crate::dut::em_relay::tests::{context, device, device_of, golden_parts};
-pub(crate) use shop::{Shop, mechanism as mechanism_of};
+pub(crate) use crate::dut::em_relay::tests::{context, device, device_of, reference_parts};
+pub(crate) use mock_rig::{MockRig, mechanism as mechanism_of};
 
 use crate::rig::settings::RigSettings;
 use crate::rig::wiring::Wiring;

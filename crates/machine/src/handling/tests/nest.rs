@@ -1,13 +1,13 @@
 //! The nest takes a part, tests it and hands it to the gripper, and never releases it in between.
 
-use super::{Shop, context, device};
+use super::{MockRig, context, device};
 use crate::dut::em_relay::points::DigitalOut;
 use crate::dut::{Bin, Reason, Verdict};
 use crate::handling::moves::Move;
 use crate::handling::nest::{self, NestContext, NestState, TestTerms};
+use crate::handling::output::NestJob;
 use crate::handling::place::{NestId, Place};
 use crate::handling::sort::Sort;
-use crate::handling::wants::NestJob;
 use crate::instrument::act::{Job, JobDone};
 use crate::rig::axis::AxisStation;
 use crate::rig::point::DigitalIn;
@@ -15,23 +15,23 @@ use units::{RigTime, Second};
 
 /// A nest with its surroundings.
 struct Nest {
-    shop: Shop,
+    mock: MockRig,
     sort: Sort,
     last_left: Option<RigTime>,
 }
 
 impl Nest {
     /// Makes a nest with a part just pushed in; the pusher is still there, the axis waits over the nest.
-    fn loaded(golden: Option<String>) -> Self {
-        let mut shop = Shop::at_rest();
-        shop.carried_out(Move::AxisTo(AxisStation::Nest));
-        shop.ledger.enter_pocket();
-        shop.ledger.enter_nest(NestId::FIRST, golden);
-        shop.set(DigitalIn::NestPresent, true);
-        shop.stands(Move::PusherExtend);
-        shop.scan();
+    fn loaded(reference: Option<String>) -> Self {
+        let mut mock = MockRig::at_rest();
+        mock.carried_out(Move::AxisTo(AxisStation::Nest));
+        mock.ledger.enter_pocket();
+        mock.ledger.enter_nest(NestId::FIRST, reference);
+        mock.set(DigitalIn::NestPresent, true);
+        mock.stands(Move::PusherExtend);
+        mock.scan();
         Self {
-            shop,
+            mock,
             sort: Sort::OverNest,
             last_left: None,
         }
@@ -51,25 +51,25 @@ impl Nest {
         };
         let id = NestId::FIRST;
         let mut nest = nest::Nest { id, state };
-        nest.step(&mut self.shop.turn(), context);
+        nest.step(&mut self.mock.turn(), context);
         nest.state
     }
 
     fn motions(&self) -> &[Move] {
-        &self.shop.wants.rig.motions
+        &self.mock.output.rig.motions
     }
 
     /// Steps up to the first job of the test.
     fn testing(&mut self) -> NestState {
         let state = self.step(NestState::Empty, None);
         assert_eq!(self.motions(), [Move::ClampClose]);
-        self.shop.carried_out(Move::ClampClose);
+        self.mock.carried_out(Move::ClampClose);
         let state = self.step(state, None);
         assert!(self.motions().is_empty(), "the pusher is not back");
-        self.shop.carried_out(Move::PusherRetract);
+        self.mock.carried_out(Move::PusherRetract);
         let state = self.step(state, None);
         assert_eq!(self.motions(), [Move::ProbesUp]);
-        self.shop.carried_out(Move::ProbesUp);
+        self.mock.carried_out(Move::ProbesUp);
         self.step(state, None)
     }
 
@@ -80,9 +80,9 @@ impl Nest {
     }
 
     fn fails(&mut self, state: NestState) -> NestState {
-        self.shop.after(40);
+        self.mock.after(40);
         let failed = JobDone {
-            at: self.shop.now,
+            at: self.mock.now,
             trouble: Some("measure 05: silent".into()),
         };
         // The first failure ends the stage, the second the switching off after it.
@@ -93,7 +93,7 @@ impl Nest {
 
     /// Lowers the open fingers around the part.
     fn fingers_around(&mut self) {
-        self.shop.carried_out(Move::SortDown);
+        self.mock.carried_out(Move::SortDown);
         self.sort = Sort::AtPart;
     }
 }
@@ -110,9 +110,9 @@ fn pins() -> NestJob {
 }
 
 #[test]
-fn an_empty_nest_asks_for_nothing() {
+fn an_empty_nest_requests_nothing() {
     let mut nest = Nest::loaded(None);
-    nest.shop.ledger = Default::default();
+    nest.mock.ledger = Default::default();
     let state = nest.step(NestState::Empty, None);
     assert!(matches!(state, NestState::Empty) && nest.motions().is_empty());
 }
@@ -122,9 +122,9 @@ fn with_probes_up_the_test_begins_with_the_pins() {
     let mut nest = Nest::loaded(None);
     let state = nest.testing();
     assert!(matches!(state, NestState::Testing(_)));
-    assert_eq!(nest.shop.wants.rig.job, Some(pins()));
-    let part = nest.shop.ledger.part(Place::NEST).unwrap();
-    assert_eq!(part.probed_at, Some(nest.shop.now));
+    assert_eq!(nest.mock.output.rig.job, Some(pins()));
+    let part = nest.mock.ledger.part(Place::NEST).unwrap();
+    assert_eq!(part.probed_at, Some(nest.mock.now));
 }
 
 #[test]
@@ -132,14 +132,14 @@ fn a_failed_job_sends_the_part_to_retest() {
     let mut nest = Nest::loaded(None);
     let state = nest.judged();
     assert!(matches!(state, NestState::Judged));
-    let judged = &nest.shop.wants.parts.judged[0];
+    let judged = &nest.mock.output.parts.judged[0];
     let why = Verdict::Void(vec![Reason::rig_trouble("measure 05: silent")]);
     assert_eq!(
         (&judged.verdict, judged.part.bin),
         (&why, Some(Bin::RETEST))
     );
     assert_eq!(judged.part.test, Some(Second(0.04)));
-    let part = nest.shop.ledger.part(Place::NEST);
+    let part = nest.mock.ledger.part(Place::NEST);
     assert_eq!(part, Some(&judged.part));
 }
 
@@ -148,13 +148,13 @@ fn a_void_reference_part_is_tested_three_times() {
     let mut nest = Nest::loaded(Some("G-12-1".into()));
     let mut state = nest.judged();
     for tests in 1..3 {
-        assert!(nest.shop.wants.parts.judged.is_empty(), "after {tests}");
-        let job = &nest.shop.wants.rig.job;
+        assert!(nest.mock.output.parts.judged.is_empty(), "after {tests}");
+        let job = &nest.mock.output.rig.job;
         assert_eq!(*job, Some(pins()), "from the beginning");
         state = nest.fails(state);
     }
     assert!(matches!(state, NestState::Judged));
-    let part = &nest.shop.wants.parts.judged[0].part;
+    let part = &nest.mock.output.parts.judged[0].part;
     assert_eq!(part.bin, Some(Bin::RETEST));
     assert_eq!(format!("{:?}", part.kind), "Reference(\"G-12-1\")");
 }
@@ -168,13 +168,13 @@ fn the_nest_holds_a_judged_part_until_gripped() {
     nest.fingers_around();
     let state = nest.step(state, None);
     assert_eq!(nest.motions(), [Move::ProbesDown, Move::GripperClose]);
-    nest.shop.carried_out(Move::ProbesDown);
+    nest.mock.carried_out(Move::ProbesDown);
     let state = nest.step(state, None);
     assert!(nest.motions().is_empty(), "the gripper is not closed");
-    nest.shop.carried_out(Move::GripperClose);
+    nest.mock.carried_out(Move::GripperClose);
     let state = nest.step(state, None);
     assert_eq!(nest.motions(), [Move::ClampOpen]);
-    nest.shop.carried_out(Move::ClampOpen);
+    nest.mock.carried_out(Move::ClampOpen);
     let state = nest.step(state, None);
     assert_eq!(nest.motions(), [Move::SortUp]);
     assert!(matches!(state, NestState::Lifting));
@@ -186,10 +186,10 @@ fn lift(nest: &mut Nest) -> NestState {
     nest.fingers_around();
     let mut state = nest.step(state, None);
     for movement in [Move::ProbesDown, Move::GripperClose, Move::ClampOpen] {
-        nest.shop.carried_out(movement);
+        nest.mock.carried_out(movement);
         state = nest.step(state, None);
     }
-    nest.shop.carried_out(Move::SortUp);
+    nest.mock.carried_out(Move::SortUp);
     state
 }
 
@@ -199,12 +199,12 @@ fn the_gripper_owns_the_part_once_z_is_up() {
     let state = lift(&mut nest);
     let state = nest.step(state, None);
     assert!(matches!(state, NestState::Lifting), "nest still occupied");
-    assert!(!nest.shop.ledger.holds(Place::Gripper));
-    nest.shop.set(DigitalIn::NestPresent, false);
-    nest.shop.after(8);
+    assert!(!nest.mock.ledger.holds(Place::Gripper));
+    nest.mock.set(DigitalIn::NestPresent, false);
+    nest.mock.after(8);
     let state = nest.step(state, None);
     assert!(matches!(state, NestState::Empty));
-    assert!(nest.shop.ledger.holds(Place::Gripper) && !nest.shop.ledger.holds(Place::NEST));
+    assert!(nest.mock.ledger.holds(Place::Gripper) && !nest.mock.ledger.holds(Place::NEST));
     assert_eq!(nest.sort, Sort::Loaded);
 }
 
@@ -213,29 +213,29 @@ fn the_cycle_time_begins_with_the_second_part() {
     for (before_ms, cycle) in [(None, None), (Some(500), Some(0.5))] {
         let mut nest = Nest::loaded(None);
         let state = lift(&mut nest);
-        nest.shop.set(DigitalIn::NestPresent, false);
-        nest.shop.after(8);
-        nest.last_left = before_ms.map(|ms: u64| RigTime(nest.shop.now.0 - ms * 1000));
+        nest.mock.set(DigitalIn::NestPresent, false);
+        nest.mock.after(8);
+        nest.last_left = before_ms.map(|ms: u64| RigTime(nest.mock.now.0 - ms * 1000));
         nest.step(state, None);
-        let left = nest.shop.wants.parts.left[0];
+        let left = nest.mock.output.parts.left[0];
         assert_eq!((left.ordinal, left.cycle), (1, cycle.map(Second)));
-        assert_eq!(nest.last_left, Some(nest.shop.now));
+        assert_eq!(nest.last_left, Some(nest.mock.now));
     }
 }
 
 #[test]
 fn an_interrupted_part_is_clamped_and_not_tested() {
     let mut nest = Nest::loaded(None);
-    let part = nest.shop.ledger.part_mut(Place::NEST).unwrap();
+    let part = nest.mock.ledger.part_mut(Place::NEST).unwrap();
     part.interrupted = Some("emergency_stop".into());
     let state = nest.step(NestState::Empty, None);
-    nest.shop.carried_out(Move::ClampClose);
-    nest.shop.carried_out(Move::PusherRetract);
+    nest.mock.carried_out(Move::ClampClose);
+    nest.mock.carried_out(Move::PusherRetract);
     let state = nest.step(state, None);
     assert!(matches!(state, NestState::Judged) && nest.motions().is_empty());
-    let part = nest.shop.ledger.part(Place::NEST).unwrap();
+    let part = nest.mock.ledger.part(Place::NEST).unwrap();
     assert_eq!(
-        (part.bin, nest.shop.wants.parts.judged.len()),
+        (part.bin, nest.mock.output.parts.judged.len()),
         (Some(Bin::RETEST), 1)
     );
 }

@@ -1,6 +1,6 @@
-//! Homing moves in an order that is provably clear, and takes parts to be where the sensors show them.
+//! Homing moves in an order proven clear, and places parts where the sensors show them.
 
-use super::Shop;
+use super::MockRig;
 use crate::handling::ledger::{Kind, Ledger};
 use crate::handling::moves::Move;
 use crate::handling::place::{NestId, Place};
@@ -20,8 +20,8 @@ const ORDER: [Move; 7] = [
 ];
 
 /// Puts every actuator at its far end.
-fn nothing_home() -> Shop {
-    let mut shop = Shop::at_rest();
+fn nothing_home() -> MockRig {
+    let mut mock = MockRig::at_rest();
     for movement in [
         Move::SortDown,
         Move::ProbesUp,
@@ -29,32 +29,32 @@ fn nothing_home() -> Shop {
         Move::EscapementRelease,
         Move::ClampClose,
     ] {
-        shop.stands(movement);
+        mock.stands(movement);
     }
-    shop.set(DigitalIn::GripperOpen, false);
-    shop.scan();
-    shop
+    mock.set(DigitalIn::GripperOpen, false);
+    mock.scan();
+    mock
 }
 
 /// Carries out all commands of homing; returns the motions in order.
-fn carried_out(shop: &mut Shop) -> Vec<Move> {
+fn carried_out(mock: &mut MockRig) -> Vec<Move> {
     let mut recovery = Recovery::default();
     let mut driven = Vec::new();
     for _ in 0..40 {
-        if recovery.step(&mut shop.turn(), false) {
+        if recovery.step(&mut mock.turn(), false) {
             break;
         }
-        let motions = shop.wants.rig.motions.clone();
+        let motions = mock.output.rig.motions.clone();
         assert!(motions.len() < 2, "one at a time");
         if motions.is_empty() {
-            shop.after(20);
+            mock.after(20);
         }
         for movement in motions {
             driven.push(movement);
-            shop.carried_out(movement);
+            mock.carried_out(movement);
         }
     }
-    assert!(recovery.step(&mut shop.turn(), false), "home stays home");
+    assert!(recovery.step(&mut mock.turn(), false), "home stays home");
     driven
 }
 
@@ -65,31 +65,31 @@ fn homing_moves_z_first_then_one_by_one() {
 
 #[test]
 fn homing_moves_only_the_axis_from_rest() {
-    let driven = carried_out(&mut Shop::at_rest());
+    let driven = carried_out(&mut MockRig::at_rest());
     assert_eq!(driven, [Move::AxisTo(AxisStation::Nest)]);
 }
 
 #[test]
 fn a_delivered_part_is_neither_lost_nor_found() {
-    let mut shop = Shop::at_rest();
-    shop.ledger.enter_pocket();
-    shop.set(DigitalIn::NestPresent, true);
-    shop.scan();
-    carried_out(&mut shop);
-    assert!(!shop.ledger.holds(Place::Pocket) && shop.ledger.holds(Place::NEST));
-    assert_eq!((shop.ledger.lost, shop.ledger.found), (0, 0));
+    let mut mock = MockRig::at_rest();
+    mock.ledger.enter_pocket();
+    mock.set(DigitalIn::NestPresent, true);
+    mock.scan();
+    carried_out(&mut mock);
+    assert!(!mock.ledger.holds(Place::Pocket) && mock.ledger.holds(Place::NEST));
+    assert_eq!((mock.ledger.lost, mock.ledger.found), (0, 0));
 }
 
 #[test]
 fn the_drive_is_reset_before_anything_moves() {
-    let mut shop = nothing_home();
+    let mut mock = nothing_home();
     let mut recovery = Recovery::default();
     let mut outputs = Vec::new();
     for _ in 0..4 {
-        recovery.step(&mut shop.turn(), false);
-        assert!(shop.wants.rig.motions.is_empty());
-        outputs.append(&mut shop.wants.rig.outputs);
-        shop.after(20);
+        recovery.step(&mut mock.turn(), false);
+        assert!(mock.output.rig.motions.is_empty());
+        outputs.append(&mut mock.output.rig.outputs);
+        mock.after(20);
     }
     let expected = [
         (DigitalOut::AxisReset, true),
@@ -101,33 +101,33 @@ fn the_drive_is_reset_before_anything_moves() {
 
 #[test]
 fn nothing_moves_before_the_part_sensors_are_read() {
-    let mut shop = Shop::unread();
+    let mut mock = MockRig::unread();
     let mut recovery = Recovery::default();
     for _ in 0..3 {
-        assert!(!recovery.step(&mut shop.turn(), false));
-        assert!(shop.wants.rig.motions.is_empty() && shop.wants.rig.outputs.is_empty());
+        assert!(!recovery.step(&mut mock.turn(), false));
+        assert!(mock.output.rig.motions.is_empty() && mock.output.rig.outputs.is_empty());
     }
 }
 
 #[test]
 fn a_refused_motion_waits_for_the_others() {
-    let mut shop = nothing_home();
-    shop.stands(Move::SortUp);
-    shop.scan();
+    let mut mock = nothing_home();
+    mock.stands(Move::SortUp);
+    mock.scan();
     let mut recovery = Recovery::default();
-    while shop.wants.rig.motions.is_empty() {
-        recovery.step(&mut shop.turn(), false);
-        shop.after(20);
+    while mock.output.rig.motions.is_empty() {
+        recovery.step(&mut mock.turn(), false);
+        mock.after(20);
     }
-    assert_eq!(shop.wants.rig.motions, [Move::ProbesDown]);
+    assert_eq!(mock.output.rig.motions, [Move::ProbesDown]);
     assert!(recovery.refused(Move::ProbesDown), "another one goes first");
-    recovery.step(&mut shop.turn(), false);
-    assert_eq!(shop.wants.rig.motions, [Move::PusherRetract]);
+    recovery.step(&mut mock.turn(), false);
+    assert_eq!(mock.output.rig.motions, [Move::PusherRetract]);
     let mut again = true;
     for _ in 0..6 {
-        let asked = shop.wants.rig.motions.clone();
-        again = asked.iter().all(|movement| recovery.refused(*movement));
-        recovery.step(&mut shop.turn(), false);
+        let requested = mock.output.rig.motions.clone();
+        again = requested.iter().all(|movement| recovery.refused(*movement));
+        recovery.step(&mut mock.turn(), false);
     }
     assert!(
         !again,
@@ -142,17 +142,17 @@ fn fingers_that_hold_a_found_part_stay_closed() {
         (DigitalIn::NestPresent, "nest"),
         (DigitalIn::GripperPart, "gripper"),
     ] {
-        let mut shop = nothing_home();
-        shop.set(point, true);
-        shop.scan();
-        let driven = carried_out(&mut shop);
+        let mut mock = nothing_home();
+        mock.set(point, true);
+        mock.scan();
+        let driven = carried_out(&mut mock);
         let opened = driven.contains(&Move::GripperOpen);
         assert_eq!(opened, place != "gripper", "{place}");
-        let ledger = &shop.ledger;
+        let ledger = &mock.ledger;
         assert!(ledger.balances() && ledger.found == 1 && ledger.inside() == 1);
         let mut parts = ledger.each().filter_map(|(_, part)| part);
-        let told = parts.any(|part| part.interrupted.is_some());
-        assert!(told || ledger.is_pocket_found(), "{place}");
+        let is_recorded = parts.any(|part| part.interrupted.is_some());
+        assert!(is_recorded || ledger.is_pocket_found(), "{place}");
     }
 }
 
@@ -161,20 +161,20 @@ fn fingers_that_hold_a_found_part_stay_closed() {
 fn after_homing_the_ledger_agrees_with_the_sensors() {
     for before in 0..8_u8 {
         for seen in 0..8_u8 {
-            let mut shop = Shop::at_rest();
-            shop.ledger = ledger(before);
-            let came_in = shop.ledger.came_in;
+            let mut mock = MockRig::at_rest();
+            mock.ledger = ledger(before);
+            let came_in = mock.ledger.came_in;
             for (bit, point) in [
                 (1, DigitalIn::PocketPresent),
                 (2, DigitalIn::NestPresent),
                 (4, DigitalIn::GripperPart),
             ] {
-                shop.set(point, seen & bit != 0);
+                mock.set(point, seen & bit != 0);
             }
-            shop.set(DigitalIn::GripperOpen, seen & 4 == 0);
-            shop.scan();
-            carried_out(&mut shop);
-            let after = &shop.ledger;
+            mock.set(DigitalIn::GripperOpen, seen & 4 == 0);
+            mock.scan();
+            carried_out(&mut mock);
+            let after = &mock.ledger;
             let places = [
                 after.holds(Place::Pocket),
                 after.holds(Place::NEST),
@@ -191,27 +191,27 @@ fn after_homing_the_ledger_agrees_with_the_sensors() {
 
 #[test]
 fn a_pushed_part_never_counts_as_the_lost_one() {
-    let mut shop = Shop::at_rest();
-    shop.ledger = ledger(0b101);
-    shop.set(DigitalIn::NestPresent, true);
-    shop.scan();
-    carried_out(&mut shop);
-    let kind = shop.ledger.part(Place::NEST).map(|part| part.kind.clone());
+    let mut mock = MockRig::at_rest();
+    mock.ledger = ledger(0b101);
+    mock.set(DigitalIn::NestPresent, true);
+    mock.scan();
+    carried_out(&mut mock);
+    let kind = mock.ledger.part(Place::NEST).map(|part| part.kind.clone());
     assert_eq!(kind, Some(Kind::Lot(2)), "the first one fell");
-    assert_eq!((shop.ledger.lost, shop.ledger.found), (1, 0));
+    assert_eq!((mock.ledger.lost, mock.ledger.found), (1, 0));
 }
 
 #[test]
 fn a_part_still_in_the_fingers_is_not_lost() {
     for in_the_fingers in [true, false] {
-        let mut shop = Shop::at_rest();
-        shop.ledger = ledger(0b100);
-        shop.ledger.drop_over(Bin::PASS, shop.now, 0);
-        shop.set(DigitalIn::GripperPart, in_the_fingers);
-        shop.set(DigitalIn::GripperOpen, !in_the_fingers);
-        shop.scan();
-        carried_out(&mut shop);
-        let ledger = &shop.ledger;
+        let mut mock = MockRig::at_rest();
+        mock.ledger = ledger(0b100);
+        mock.ledger.drop_over(Bin::PASS, mock.now, 0);
+        mock.set(DigitalIn::GripperPart, in_the_fingers);
+        mock.set(DigitalIn::GripperOpen, !in_the_fingers);
+        mock.scan();
+        carried_out(&mut mock);
+        let ledger = &mock.ledger;
         assert_eq!((ledger.lost, ledger.found, ledger.inside()), (0, 0, 1));
         assert_eq!(ledger.holds(Place::Gripper), in_the_fingers);
     }

@@ -1,6 +1,6 @@
 //! The sorter releases a part only over its bin and after its record, and its beam must count it once.
 
-use super::Shop;
+use super::MockRig;
 use crate::dut::em_relay::bins;
 use crate::handling::moves::Move;
 use crate::handling::place::{NestId, Place};
@@ -12,60 +12,60 @@ use units::RigTime;
 
 const HOME: Move = Move::AxisTo(AxisStation::Nest);
 
-fn step(sort: Sort, shop: &mut Shop, test_running: bool) -> Sort {
-    let table = shop.wiring.axis.clone();
-    let mut turn = shop.turn();
+fn step(sort: Sort, mock: &mut MockRig, test_running: bool) -> Sort {
+    let table = mock.wiring.axis.clone();
+    let mut turn = mock.turn();
     confirm(&mut turn, &table);
     sort.step(&mut turn, &table, test_running)
 }
 
-fn beam(shop: &mut Shop, bin: Bin, count: u16) {
-    let point = shop.wiring.axis.beam(bin);
-    shop.beam(point, count);
+fn beam(mock: &mut MockRig, bin: Bin, count: u16) {
+    let point = mock.wiring.axis.beam(bin);
+    mock.beam(point, count);
 }
 
 /// Makes a sorter whose gripper holds a part for `bin`, with z up.
-fn loaded(bin: Bin) -> Shop {
-    let mut shop = Shop::at_rest();
-    shop.ledger.enter_pocket();
-    shop.ledger.enter_nest(NestId::FIRST, None);
-    shop.ledger.lift(NestId::FIRST);
-    if let Some(part) = shop.ledger.part_mut(Place::Gripper) {
+fn loaded(bin: Bin) -> MockRig {
+    let mut mock = MockRig::at_rest();
+    mock.ledger.enter_pocket();
+    mock.ledger.enter_nest(NestId::FIRST, None);
+    mock.ledger.lift(NestId::FIRST);
+    if let Some(part) = mock.ledger.part_mut(Place::Gripper) {
         part.bin = Some(bin);
     }
-    shop.stands(Move::GripperClose);
-    shop.scan();
-    shop
+    mock.stands(Move::GripperClose);
+    mock.scan();
+    mock
 }
 
 /// Moves over the bin and reads its beam afterwards.
-fn over(bin: Bin, count: u16) -> (Sort, Shop) {
-    let mut shop = loaded(bin);
-    let sort = step(Sort::Loaded, &mut shop, false);
+fn over(bin: Bin, count: u16) -> (Sort, MockRig) {
+    let mut mock = loaded(bin);
+    let sort = step(Sort::Loaded, &mut mock, false);
     assert_eq!(sort, Sort::Carrying(bin));
-    shop.carried_out(Move::AxisTo(AxisStation::Bin(bin)));
-    let sort = step(sort, &mut shop, false);
-    assert_eq!(sort, Sort::OverBin(bin, shop.now));
-    shop.after(8);
-    beam(&mut shop, bin, count);
-    (sort, shop)
+    mock.carried_out(Move::AxisTo(AxisStation::Bin(bin)));
+    let sort = step(sort, &mut mock, false);
+    assert_eq!(sort, Sort::OverBin(bin, mock.now));
+    mock.after(8);
+    beam(&mut mock, bin, count);
+    (sort, mock)
 }
 
 /// Opens the fingers; the part falls.
-fn falling(bin: Bin, count: u16) -> (Sort, Shop) {
-    let (sort, mut shop) = over(bin, count);
-    shop.recorded = 1;
-    let sort = step(sort, &mut shop, false);
-    assert_eq!(shop.wants.rig.motions, [Move::GripperOpen]);
-    let sort = let_go(sort, &mut shop);
-    shop.carried_out(Move::GripperOpen);
-    (sort, shop)
+fn falling(bin: Bin, count: u16) -> (Sort, MockRig) {
+    let (sort, mut mock) = over(bin, count);
+    mock.recorded = 1;
+    let sort = step(sort, &mut mock, false);
+    assert_eq!(mock.output.rig.motions, [Move::GripperOpen]);
+    let sort = let_go(sort, &mut mock);
+    mock.carried_out(Move::GripperOpen);
+    (sort, mock)
 }
 
 /// Drives the opening of the fingers after the guard's clearance.
-fn let_go(sort: Sort, shop: &mut Shop) -> Sort {
+fn let_go(sort: Sort, mock: &mut MockRig) -> Sort {
     assert!(matches!(sort, Sort::LettingGo(..)), "{sort:?}");
-    let sort = sort.driven(Move::GripperOpen, &mut shop.ledger, shop.now);
+    let sort = sort.driven(Move::GripperOpen, &mut mock.ledger, mock.now);
     assert_eq!(sort, Sort::Opening);
     sort
 }
@@ -73,9 +73,9 @@ fn let_go(sort: Sort, shop: &mut Shop) -> Sort {
 #[test]
 fn z_comes_down_only_during_a_test() {
     let ready = || {
-        let mut shop = Shop::at_rest();
-        shop.carried_out(HOME);
-        shop
+        let mut mock = MockRig::at_rest();
+        mock.carried_out(HOME);
+        mock
     };
     for (running, sensor, comes) in [
         (true, None, true),
@@ -83,146 +83,149 @@ fn z_comes_down_only_during_a_test() {
         (true, Some(DigitalIn::PusherRetracted), false),
         (true, Some(DigitalIn::GripperOpen), false),
     ] {
-        let mut shop = ready();
+        let mut mock = ready();
         if let Some(point) = sensor {
-            shop.set(point, false);
+            mock.set(point, false);
         }
-        shop.scan();
-        assert_eq!(step(Sort::Returning, &mut shop, running), Sort::OverNest);
-        let sort = step(Sort::OverNest, &mut shop, running);
+        mock.scan();
+        assert_eq!(step(Sort::Returning, &mut mock, running), Sort::OverNest);
+        let sort = step(Sort::OverNest, &mut mock, running);
         assert_eq!(sort == Sort::Lowering, comes, "{running} {sensor:?}");
-        assert_eq!(shop.wants.rig.motions.contains(&Move::SortDown), comes);
+        assert_eq!(mock.output.rig.motions.contains(&Move::SortDown), comes);
     }
 }
 
 #[test]
 fn the_fingers_surround_the_part_once_z_is_down() {
-    let mut shop = Shop::at_rest();
-    shop.carried_out(HOME);
-    let sort = step(Sort::OverNest, &mut shop, true);
-    shop.carried_out(Move::SortDown);
-    assert!(!sort.is_at_part(&shop.turn()));
-    let sort = step(sort, &mut shop, true);
+    let mut mock = MockRig::at_rest();
+    mock.carried_out(HOME);
+    let sort = step(Sort::OverNest, &mut mock, true);
+    mock.carried_out(Move::SortDown);
+    assert!(!sort.is_at_part(&mock.turn()));
+    let sort = step(sort, &mut mock, true);
     assert_eq!(sort, Sort::AtPart);
-    assert!(sort.is_at_part(&shop.turn()));
-    shop.set(DigitalIn::SortZDown, false);
-    shop.scan();
-    assert!(!sort.is_at_part(&shop.turn()));
+    assert!(sort.is_at_part(&mock.turn()));
+    mock.set(DigitalIn::SortZDown, false);
+    mock.scan();
+    assert!(!sort.is_at_part(&mock.turn()));
 }
 
 #[test]
 fn an_unjudged_part_is_carried_to_retest() {
-    for bin in Shop::at_rest().wiring.axis.bins() {
-        let mut shop = loaded(bin);
-        assert_eq!(step(Sort::Loaded, &mut shop, false), Sort::Carrying(bin));
+    for bin in MockRig::at_rest().wiring.axis.bins() {
+        let mut mock = loaded(bin);
+        assert_eq!(step(Sort::Loaded, &mut mock, false), Sort::Carrying(bin));
         let station = AxisStation::Bin(bin);
-        assert_eq!(shop.wants.rig.motions, [Move::AxisTo(station)]);
+        assert_eq!(mock.output.rig.motions, [Move::AxisTo(station)]);
     }
-    let mut shop = loaded(Bin::PASS);
-    if let Some(part) = shop.ledger.part_mut(Place::Gripper) {
+    let mut mock = loaded(Bin::PASS);
+    if let Some(part) = mock.ledger.part_mut(Place::Gripper) {
         part.bin = None;
     }
-    let sort = step(Sort::Loaded, &mut shop, false);
+    let sort = step(Sort::Loaded, &mut mock, false);
     assert_eq!(sort, Sort::Carrying(Bin::RETEST));
 }
 
 #[test]
 fn a_release_needs_a_durable_record() {
-    let (sort, mut shop) = over(Bin::PASS, 3);
+    let (sort, mut mock) = over(Bin::PASS, 3);
     for recorded in [0, 1] {
-        shop.recorded = recorded;
-        let next = step(sort, &mut shop, false);
+        mock.recorded = recorded;
+        let next = step(sort, &mut mock, false);
         assert_eq!(next == Sort::LettingGo(Bin::PASS, 3), recorded == 1);
     }
 }
 
 #[test]
 fn the_fingers_own_the_part_until_they_open() {
-    let (sort, mut shop) = over(Bin::PASS, 3);
-    shop.recorded = 1;
-    let asked = step(sort, &mut shop, false);
-    let waiting = step(asked, &mut shop, false);
-    assert_eq!(waiting, asked, "a person releases it, or the guard refuses");
+    let (sort, mut mock) = over(Bin::PASS, 3);
+    mock.recorded = 1;
+    let requested = step(sort, &mut mock, false);
+    let waiting = step(requested, &mut mock, false);
     assert_eq!(
-        waiting.driven(Move::SortUp, &mut shop.ledger, shop.now),
+        waiting, requested,
+        "a person releases it, or the guard refuses"
+    );
+    assert_eq!(
+        waiting.driven(Move::SortUp, &mut mock.ledger, mock.now),
         waiting
     );
-    assert!(shop.ledger.holds(Place::Gripper) && shop.ledger.fall().is_none());
-    let_go(waiting, &mut shop);
-    assert!(!shop.ledger.holds(Place::Gripper) && shop.ledger.fall().is_some());
+    assert!(mock.ledger.holds(Place::Gripper) && mock.ledger.fall().is_none());
+    let_go(waiting, &mut mock);
+    assert!(!mock.ledger.holds(Place::Gripper) && mock.ledger.fall().is_some());
 }
 
 #[test]
 fn a_release_needs_a_fresh_count_of_the_beam() {
-    let mut shop = loaded(bins::TIME);
-    shop.recorded = 1;
-    beam(&mut shop, bins::TIME, 5);
-    let since = shop.now;
-    let sort = step(Sort::OverBin(bins::TIME, since), &mut shop, false);
+    let mut mock = loaded(bins::TIME);
+    mock.recorded = 1;
+    beam(&mut mock, bins::TIME, 5);
+    let since = mock.now;
+    let sort = step(Sort::OverBin(bins::TIME, since), &mut mock, false);
     assert_eq!(sort, Sort::OverBin(bins::TIME, since), "read too early");
-    let watched = shop.wiring.axis.beam(bins::TIME);
-    assert_eq!(shop.wants.rig.beam, Some(watched));
-    shop.after(1);
-    beam(&mut shop, bins::TIME, 5);
-    let asked = step(sort, &mut shop, false);
-    let_go(asked, &mut shop);
-    let falling = shop.ledger.fall();
+    let watched = mock.wiring.axis.beam(bins::TIME);
+    assert_eq!(mock.output.rig.beam, Some(watched));
+    mock.after(1);
+    beam(&mut mock, bins::TIME, 5);
+    let requested = step(sort, &mut mock, false);
+    let_go(requested, &mut mock);
+    let falling = mock.ledger.fall();
     assert_eq!(falling.map(|falling| falling.beam_before), Some(5));
 }
 
 #[test]
 fn a_release_waits_for_the_previous_fall() {
-    let (sort, mut shop) = over(Bin::PASS, 0);
-    shop.recorded = 2;
-    shop.ledger.drop_over(bins::COIL, shop.now, 0);
-    shop.ledger.enter_pocket();
-    shop.ledger.enter_nest(NestId::FIRST, None);
-    shop.ledger.lift(NestId::FIRST);
-    assert_eq!(step(sort, &mut shop, false), sort);
-    assert!(shop.wants.rig.motions.is_empty());
+    let (sort, mut mock) = over(Bin::PASS, 0);
+    mock.recorded = 2;
+    mock.ledger.drop_over(bins::COIL, mock.now, 0);
+    mock.ledger.enter_pocket();
+    mock.ledger.enter_nest(NestId::FIRST, None);
+    mock.ledger.lift(NestId::FIRST);
+    assert_eq!(step(sort, &mut mock, false), sort);
+    assert!(mock.output.rig.motions.is_empty());
 }
 
 #[test]
 fn one_count_lands_the_part_across_the_wrap() {
     for (before, after) in [(3, 4), (u16::MAX, 0)] {
-        let (sort, mut shop) = falling(bins::VOLTAGE, before);
-        beam(&mut shop, bins::VOLTAGE, after);
-        let sort = step(sort, &mut shop, false);
+        let (sort, mut mock) = falling(bins::VOLTAGE, before);
+        beam(&mut mock, bins::VOLTAGE, after);
+        let sort = step(sort, &mut mock, false);
         assert_eq!(
-            (sort, &*shop.wants.rig.motions),
+            (sort, &*mock.output.rig.motions),
             (Sort::Returning, &[HOME][..])
         );
         assert!(
-            shop.wants.parts.landed.is_empty(),
+            mock.output.parts.landed.is_empty(),
             "a second body may follow"
         );
-        shop.after(79);
-        beam(&mut shop, bins::VOLTAGE, after);
-        step(sort, &mut shop, false);
-        assert!(shop.wants.parts.landed.is_empty());
-        shop.after(1);
-        step(sort, &mut shop, false);
-        assert!(shop.wants.parts.landed.is_empty(), "that count is too old");
-        beam(&mut shop, bins::VOLTAGE, after);
-        step(sort, &mut shop, false);
-        let landed = &shop.wants.parts.landed[0];
+        mock.after(79);
+        beam(&mut mock, bins::VOLTAGE, after);
+        step(sort, &mut mock, false);
+        assert!(mock.output.parts.landed.is_empty());
+        mock.after(1);
+        step(sort, &mut mock, false);
+        assert!(mock.output.parts.landed.is_empty(), "that count is too old");
+        beam(&mut mock, bins::VOLTAGE, after);
+        step(sort, &mut mock, false);
+        let landed = &mock.output.parts.landed[0];
         assert_eq!((landed.bin, landed.part.ordinal), (bins::VOLTAGE, 1));
-        assert!(shop.ledger.fall().is_none() && shop.ledger.balances());
+        assert!(mock.ledger.fall().is_none() && mock.ledger.balances());
     }
 }
 
 #[test]
 fn a_second_body_behind_the_part_is_an_alarm() {
     for bodies in [2, 3] {
-        let (sort, mut shop) = falling(Bin::PASS, 10);
-        beam(&mut shop, Bin::PASS, 11);
-        step(sort, &mut shop, false);
-        shop.after(20);
-        beam(&mut shop, Bin::PASS, 10 + bodies);
-        step(sort, &mut shop, false);
-        assert_eq!(shop.alarms(), ["bin_beam"], "{bodies}");
+        let (sort, mut mock) = falling(Bin::PASS, 10);
+        beam(&mut mock, Bin::PASS, 11);
+        step(sort, &mut mock, false);
+        mock.after(20);
+        beam(&mut mock, Bin::PASS, 10 + bodies);
+        step(sort, &mut mock, false);
+        assert_eq!(mock.alarms(), ["bin_beam"], "{bodies}");
         assert_eq!(
-            shop.wants.parts.landed.len(),
+            mock.output.parts.landed.len(),
             1,
             "the part itself is in the bin"
         );
@@ -231,112 +234,112 @@ fn a_second_body_behind_the_part_is_an_alarm() {
 
 #[test]
 fn an_uncounted_part_is_lost_after_its_time() {
-    let (sort, mut shop) = falling(Bin::PASS, 10);
-    let since = shop.ledger.fall().map(|f| f.since).unwrap();
-    shop.now = RigTime(since.0 + 1_500_000);
-    shop.scan();
-    beam(&mut shop, Bin::PASS, 10);
-    let sort = step(sort, &mut shop, false);
-    assert!(shop.alarms().is_empty());
-    shop.after(1);
-    step(sort, &mut shop, false);
-    assert_eq!(shop.alarms(), ["bin_beam"]);
-    assert_eq!((shop.ledger.lost, shop.ledger.went_out), (1, 0));
-    assert!(shop.ledger.balances());
+    let (sort, mut mock) = falling(Bin::PASS, 10);
+    let since = mock.ledger.fall().map(|f| f.since).unwrap();
+    mock.now = RigTime(since.0 + 1_500_000);
+    mock.scan();
+    beam(&mut mock, Bin::PASS, 10);
+    let sort = step(sort, &mut mock, false);
+    assert!(mock.alarms().is_empty());
+    mock.after(1);
+    step(sort, &mut mock, false);
+    assert_eq!(mock.alarms(), ["bin_beam"]);
+    assert_eq!((mock.ledger.lost, mock.ledger.went_out), (1, 0));
+    assert!(mock.ledger.balances());
 }
 
 #[test]
 fn a_count_before_the_release_is_ignored() {
-    let (sort, mut shop) = over(Bin::PASS, 10);
-    shop.recorded = 1;
-    let asked = step(sort, &mut shop, false);
-    let sort = let_go(asked, &mut shop);
-    beam(&mut shop, Bin::PASS, 11);
-    step(sort, &mut shop, false);
-    assert!(shop.wants.parts.landed.is_empty());
-    let falling = shop.ledger.fall().unwrap();
+    let (sort, mut mock) = over(Bin::PASS, 10);
+    mock.recorded = 1;
+    let requested = step(sort, &mut mock, false);
+    let sort = let_go(requested, &mut mock);
+    beam(&mut mock, Bin::PASS, 11);
+    step(sort, &mut mock, false);
+    assert!(mock.output.parts.landed.is_empty());
+    let falling = mock.ledger.fall().unwrap();
     assert_eq!(falling.seen, None);
 }
 
 #[test]
 fn open_fingers_return_only_when_empty() {
-    let (sort, mut shop) = falling(Bin::PASS, 0);
-    shop.set(DigitalIn::GripperPart, true);
-    shop.scan();
-    assert_eq!(step(sort, &mut shop, false), Sort::Opening);
-    assert!(shop.wants.rig.motions.is_empty());
-    shop.set(DigitalIn::GripperPart, false);
-    shop.scan();
-    assert_eq!(step(sort, &mut shop, false), Sort::Returning);
-    assert_eq!(shop.wants.rig.motions, [HOME]);
+    let (sort, mut mock) = falling(Bin::PASS, 0);
+    mock.set(DigitalIn::GripperPart, true);
+    mock.scan();
+    assert_eq!(step(sort, &mut mock, false), Sort::Opening);
+    assert!(mock.output.rig.motions.is_empty());
+    mock.set(DigitalIn::GripperPart, false);
+    mock.scan();
+    assert_eq!(step(sort, &mut mock, false), Sort::Returning);
+    assert_eq!(mock.output.rig.motions, [HOME]);
 }
 
 #[test]
 fn a_sticking_part_is_reported_and_kept() {
-    let (sort, mut shop) = falling(Bin::PASS, 0);
-    shop.set(DigitalIn::GripperPart, true);
-    shop.after(500);
-    assert_eq!(step(sort, &mut shop, false), Sort::Opening);
-    assert_eq!(shop.alarms(), ["part_stuck"]);
-    assert!(shop.ledger.fall().is_none() && shop.ledger.holds(Place::Gripper));
-    assert!(shop.ledger.balances());
+    let (sort, mut mock) = falling(Bin::PASS, 0);
+    mock.set(DigitalIn::GripperPart, true);
+    mock.after(500);
+    assert_eq!(step(sort, &mut mock, false), Sort::Opening);
+    assert_eq!(mock.alarms(), ["part_stuck"]);
+    assert!(mock.ledger.fall().is_none() && mock.ledger.holds(Place::Gripper));
+    assert!(mock.ledger.balances());
 }
 
 /// The opening of the fingers is requested, then all outputs go safe: the sensor still shows the part.
-fn never_opened() -> Shop {
-    let (sort, mut shop) = over(Bin::PASS, 3);
-    shop.recorded = 1;
-    let asked = step(sort, &mut shop, false);
-    let_go(asked, &mut shop);
-    shop.mechanism.forget();
-    shop
+fn never_opened() -> MockRig {
+    let (sort, mut mock) = over(Bin::PASS, 3);
+    mock.recorded = 1;
+    let requested = step(sort, &mut mock, false);
+    let_go(requested, &mut mock);
+    mock.mechanism.forget();
+    mock
 }
 
 /// Lets the time pass without a count of the beam.
-fn time_is_over(shop: &mut Shop) {
-    let since = shop.ledger.fall().map(|it| it.since).unwrap();
-    shop.now = RigTime(since.0 + 1_500_001);
+fn time_is_over(mock: &mut MockRig) {
+    let since = mock.ledger.fall().map(|it| it.since).unwrap();
+    mock.now = RigTime(since.0 + 1_500_001);
 }
 
 #[test]
 fn a_part_in_closed_fingers_is_not_lost() {
-    let mut shop = never_opened();
-    time_is_over(&mut shop);
-    shop.scan();
-    beam(&mut shop, Bin::PASS, 3);
-    step(Sort::Returning, &mut shop, false);
-    assert!(shop.alarms().is_empty(), "{:?}", shop.alarms());
-    assert!(shop.ledger.fall().is_none() && shop.ledger.lost == 0);
-    let part = shop.ledger.part(Place::Gripper).unwrap();
+    let mut mock = never_opened();
+    time_is_over(&mut mock);
+    mock.scan();
+    beam(&mut mock, Bin::PASS, 3);
+    step(Sort::Returning, &mut mock, false);
+    assert!(mock.alarms().is_empty(), "{:?}", mock.alarms());
+    assert!(mock.ledger.fall().is_none() && mock.ledger.lost == 0);
+    let part = mock.ledger.part(Place::Gripper).unwrap();
     assert_eq!((part.ordinal, part.bin), (1, Some(Bin::PASS)));
 }
 
 #[test]
 fn a_part_is_not_lost_while_fingers_are_unread() {
-    let mut shop = never_opened();
-    time_is_over(&mut shop);
-    step(Sort::Returning, &mut shop, false);
-    assert!(shop.alarms().is_empty());
-    assert!(shop.ledger.fall().is_some() && shop.ledger.lost == 0);
-    shop.set(DigitalIn::GripperPart, false);
-    shop.scan();
-    step(Sort::Returning, &mut shop, false);
+    let mut mock = never_opened();
+    time_is_over(&mut mock);
+    step(Sort::Returning, &mut mock, false);
+    assert!(mock.alarms().is_empty());
+    assert!(mock.ledger.fall().is_some() && mock.ledger.lost == 0);
+    mock.set(DigitalIn::GripperPart, false);
+    mock.scan();
+    step(Sort::Returning, &mut mock, false);
     assert_eq!(
-        (shop.alarms(), shop.ledger.lost),
+        (mock.alarms(), mock.ledger.lost),
         (vec!["bin_beam".to_owned()], 1)
     );
 }
 
 #[test]
 fn the_next_part_does_not_replace_the_fallen_one() {
-    let (sort, mut shop) = falling(Bin::PASS, 10);
-    step(sort, &mut shop, false);
-    shop.set(DigitalIn::GripperPart, true);
-    time_is_over(&mut shop);
-    shop.scan();
-    step(Sort::AtPart, &mut shop, true);
+    let (sort, mut mock) = falling(Bin::PASS, 10);
+    step(sort, &mut mock, false);
+    mock.set(DigitalIn::GripperPart, true);
+    time_is_over(&mut mock);
+    mock.scan();
+    step(Sort::AtPart, &mut mock, true);
     assert_eq!(
-        (shop.alarms(), shop.ledger.lost),
+        (mock.alarms(), mock.ledger.lost),
         (vec!["bin_beam".to_owned()], 1)
     );
 }

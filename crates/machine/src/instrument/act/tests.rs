@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut};
-use crate::handling::tests::Shop;
+use crate::handling::tests::MockRig;
 use crate::instrument::act::{Act, Doing, Job, JobDone, Read, Runner, Spent};
 use crate::rig::point::Point;
 use units::{RigTime, Span, Volt};
@@ -11,43 +11,43 @@ fn done(at: RigTime) -> JobDone {
     JobDone { at, trouble: None }
 }
 
-/// A test shop that has read every point once, analog and counters included.
-fn read_once() -> Shop {
-    let mut shop = Shop::at_rest();
+/// Returns a test rig that has read every point once, analog and counters included.
+fn read_once() -> MockRig {
+    let mut mock = MockRig::at_rest();
     for (point, volts) in [
         (AnalogIn::CoilVoltageFine, 8.0),
         (AnalogIn::CoilCurrentFine, 7.5),
         (AnalogIn::ContactDrop, 1.1),
     ] {
-        shop.volts(point, volts);
+        mock.volts(point, volts);
     }
-    shop.gate(Counter::Gate0, 7);
-    shop.gate(Counter::Gate1, 9);
-    shop.track(23.0);
-    shop
+    mock.gate(Counter::Gate0, 7);
+    mock.gate(Counter::Gate1, 9);
+    mock.track(23.0);
+    mock
 }
 
-/// Writes one word to the board.
-fn armed(shop: &Shop) -> Act {
-    Act::Set(vec![(shop.points.output(DigitalOut::Arm), true)])
+/// Returns the write of one word to the board.
+fn armed(mock: &MockRig) -> Act {
+    Act::Set(vec![(mock.points.output(DigitalOut::Arm), true)])
 }
 
-fn analog(shop: &Shop, point: AnalogIn) -> Point {
-    Point::Analog(shop.points.analog(point))
+fn analog(mock: &MockRig, point: AnalogIn) -> Point {
+    Point::Analog(mock.points.analog(point))
 }
 
-fn gates(shop: &Shop) -> [Point; 2] {
-    [Counter::Gate0, Counter::Gate1].map(|it| Point::Count(shop.points.counter(it)))
+fn gates(mock: &MockRig) -> [Point; 2] {
+    [Counter::Gate0, Counter::Gate1].map(|it| Point::Count(mock.points.counter(it)))
 }
 
 #[test]
 fn every_bus_act_becomes_one_job() {
-    let shop = read_once();
-    let (points, coil) = (&shop.points, analog(&shop, AnalogIn::CoilVoltageFine));
+    let mock = read_once();
+    let (points, coil) = (&mock.points, analog(&mock, AnalogIn::CoilVoltageFine));
     let outputs = vec![(points.output(DigitalOut::Arm), true)];
     let levels = vec![(points.source(AnalogOut::SupplyLevel), Volt(5.0))];
     let masked = vec![points.analog(AnalogIn::CoilCurrent)];
-    let [gate, other] = gates(&shop);
+    let [gate, other] = gates(&mock);
     let word: Vec<Point> = points
         .board
         .inputs
@@ -65,8 +65,8 @@ fn every_bus_act_becomes_one_job() {
         (Act::Read(Read::Word(points.board.clone())), Job::Read(word)),
         (
             Act::Read(Read::Points {
-                asked: vec![gate],
-                beside: vec![other],
+                read: vec![gate],
+                retained: vec![other],
             }),
             Job::Read(vec![gate]),
         ),
@@ -82,13 +82,13 @@ fn every_bus_act_becomes_one_job() {
         ),
     ];
     for (act, job) in cases {
-        let shop = read_once();
-        let mut runner = Runner::new(vec![act], shop.now);
-        let asked = runner.step(shop.now, None, &shop.image);
-        assert_eq!(asked, Doing::Job(job.clone()));
-        assert_eq!(runner.step(shop.now, None, &shop.image), Doing::Busy);
+        let mock = read_once();
+        let mut runner = Runner::new(vec![act], mock.now);
+        let request = runner.step(mock.now, None, &mock.image);
+        assert_eq!(request, Doing::Job(job.clone()));
+        assert_eq!(runner.step(mock.now, None, &mock.image), Doing::Busy);
         assert!(!runner.is_done(), "{job:?}");
-        let answered = runner.step(shop.now, Some(&done(shop.now)), &shop.image);
+        let answered = runner.step(mock.now, Some(&done(mock.now)), &mock.image);
         assert_eq!(answered, Doing::Done, "{job:?}");
         assert!(runner.is_done(), "{job:?}");
     }
@@ -96,22 +96,22 @@ fn every_bus_act_becomes_one_job() {
 
 #[test]
 fn readings_are_kept_by_point() {
-    let shop = read_once();
-    let (points, [gate, other]) = (&shop.points, gates(&shop));
+    let mock = read_once();
+    let (points, [gate, other]) = (&mock.points, gates(&mock));
     let reads = [
         Read::Word(points.board.clone()),
-        Read::points([analog(&shop, AnalogIn::CoilVoltageFine)]),
+        Read::points([analog(&mock, AnalogIn::CoilVoltageFine)]),
         Read::points([gate, other]),
         Read::Points {
-            asked: vec![gate],
-            beside: vec![other],
+            read: vec![gate],
+            retained: vec![other],
         },
         Read::points([Point::Temperature(points.track)]),
     ];
-    let mut runner = Runner::new(reads.clone().map(Act::Read).to_vec(), shop.now);
-    let mut last = runner.step(shop.now, None, &shop.image);
+    let mut runner = Runner::new(reads.clone().map(Act::Read).to_vec(), mock.now);
+    let mut last = runner.step(mock.now, None, &mock.image);
     for _ in reads {
-        last = runner.step(shop.now, Some(&done(shop.now)), &shop.image);
+        last = runner.step(mock.now, Some(&done(mock.now)), &mock.image);
     }
     assert_eq!(last, Doing::Done);
     let readings = &runner.readings;
@@ -125,11 +125,11 @@ fn readings_are_kept_by_point() {
             .map(|it| it.terminal_volts)
     };
     assert!((volts(AnalogIn::CoilVoltageFine).sum::<f64>() - 8.0).abs() < 0.001);
-    assert_eq!(volts(AnalogIn::CoilCurrentFine).count(), 0, "not asked for");
+    assert_eq!(volts(AnalogIn::CoilCurrentFine).count(), 0, "not requested");
     for (counter, count) in [(Counter::Gate0, 7), (Counter::Gate1, 9)] {
         let counts = readings.counts(points.counter(counter));
         let counts: Vec<u32> = counts.map(|it| it.count).collect();
-        assert_eq!(counts, [count; 2], "read, and kept beside");
+        assert_eq!(counts, [count; 2], "read and retained");
     }
     let track = readings.temperatures(points.track).next().unwrap();
     assert_eq!(track.value, 23.0);
@@ -140,22 +140,22 @@ fn readings_are_kept_by_point() {
 
 #[test]
 fn an_unread_value_is_trouble() {
-    let shop = Shop::unread();
+    let mock = MockRig::unread();
     for (read, name) in [
-        (Read::Word(shop.points.board.clone()), "board"),
+        (Read::Word(mock.points.board.clone()), "board"),
         (
-            Read::points([analog(&shop, AnalogIn::ContactDrop)]),
+            Read::points([analog(&mock, AnalogIn::ContactDrop)]),
             "contact_drop",
         ),
-        (Read::points(gates(&shop)), "gate_0"),
+        (Read::points(gates(&mock)), "gate_0"),
         (
-            Read::points([Point::Temperature(shop.points.track)]),
+            Read::points([Point::Temperature(mock.points.track)]),
             "track_temperature",
         ),
     ] {
-        let mut runner = Runner::new(vec![Act::Read(read)], shop.now);
-        runner.step(shop.now, None, &shop.image);
-        let answered = runner.step(shop.now, Some(&done(shop.now)), &shop.image);
+        let mut runner = Runner::new(vec![Act::Read(read)], mock.now);
+        runner.step(mock.now, None, &mock.image);
+        let answered = runner.step(mock.now, Some(&done(mock.now)), &mock.image);
         let why = format!("{name} was answered without a value");
         assert_eq!(answered, Doing::Trouble(why));
     }
@@ -163,9 +163,9 @@ fn an_unread_value_is_trouble() {
 
 #[test]
 fn waits_count_from_reply_or_mark() {
-    let shop = read_once();
-    let start = shop.now;
-    let board = || armed(&shop);
+    let mock = read_once();
+    let start = mock.now;
+    let board = || armed(&mock);
     let acts = vec![
         Act::Mark,
         board(),
@@ -174,58 +174,58 @@ fn waits_count_from_reply_or_mark() {
         Act::WaitSinceMark(Span::ms(50)),
     ];
     let mut runner = Runner::new(acts, start);
-    runner.step(start, None, &shop.image);
+    runner.step(start, None, &mock.image);
     let at = start + Span::ms(4);
     let late = at + Span::ms(1);
-    let waits = runner.step(late, Some(&done(at)), &shop.image);
+    let waits = runner.step(late, Some(&done(at)), &mock.image);
     assert_eq!(waits, Doing::Wait(start + Span::ms(14)));
-    let again = runner.step(start + Span(13_999), None, &shop.image);
+    let again = runner.step(start + Span(13_999), None, &mock.image);
     assert_eq!(again, Doing::Wait(start + Span::ms(14)));
-    let next = runner.step(start + Span::ms(14), None, &shop.image);
+    let next = runner.step(start + Span::ms(14), None, &mock.image);
     assert!(matches!(next, Doing::Job(_)));
     let at = start + Span::ms(18);
-    let waits = runner.step(at, Some(&done(at)), &shop.image);
+    let waits = runner.step(at, Some(&done(at)), &mock.image);
     assert_eq!(waits, Doing::Wait(start + Span::ms(50)));
-    let last = runner.step(start + Span::ms(50), None, &shop.image);
+    let last = runner.step(start + Span::ms(50), None, &mock.image);
     assert_eq!(last, Doing::Done);
 }
 
 #[test]
 fn an_elapsed_wait_since_mark_costs_nothing() {
-    let shop = read_once();
+    let mock = read_once();
     let acts = vec![
         Act::Mark,
         Act::Wait(Span::ms(30)),
         Act::WaitSinceMark(Span::ms(20)),
     ];
-    let mut runner = Runner::new(acts, shop.now);
-    let end = shop.now + Span::ms(30);
-    assert_eq!(runner.step(shop.now, None, &shop.image), Doing::Wait(end));
-    assert_eq!(runner.step(end, None, &shop.image), Doing::Done);
+    let mut runner = Runner::new(acts, mock.now);
+    let end = mock.now + Span::ms(30);
+    assert_eq!(runner.step(mock.now, None, &mock.image), Doing::Wait(end));
+    assert_eq!(runner.step(end, None, &mock.image), Doing::Done);
     assert_eq!(runner.spent().settling, Span::ms(30));
 }
 
-fn until(shop: &Shop, within: Span) -> Vec<Act> {
+fn until(mock: &MockRig, within: Span) -> Vec<Act> {
     vec![Act::Until {
-        point: shop.points.input(DigitalIn::Latch),
-        word: shop.points.board.clone(),
+        point: mock.points.input(DigitalIn::Latch),
+        word: mock.points.board.clone(),
         within,
     }]
 }
 
 #[test]
 fn until_polls_until_the_point_is_active() {
-    let mut shop = read_once();
-    let mut runner = Runner::new(until(&shop, Span::ms(60)), shop.now);
-    runner.step(shop.now, None, &shop.image);
+    let mut mock = read_once();
+    let mut runner = Runner::new(until(&mock, Span::ms(60)), mock.now);
+    runner.step(mock.now, None, &mock.image);
     for _ in 0..5 {
-        shop.after(5);
-        let asked = runner.step(shop.now, Some(&done(shop.now)), &shop.image);
-        assert!(matches!(asked, Doing::Job(Job::Read(_))), "{asked:?}");
+        mock.after(5);
+        let request = runner.step(mock.now, Some(&done(mock.now)), &mock.image);
+        assert!(matches!(request, Doing::Job(Job::Read(_))), "{request:?}");
     }
-    shop.set_board(DigitalIn::Latch, true);
-    shop.after(5);
-    let last = runner.step(shop.now, Some(&done(shop.now)), &shop.image);
+    mock.set_board(DigitalIn::Latch, true);
+    mock.after(5);
+    let last = runner.step(mock.now, Some(&done(mock.now)), &mock.image);
     assert_eq!((last, &*runner.readings.seen), (Doing::Done, &[true][..]));
     assert_eq!(runner.spent().ramp, Span::ms(30));
 }
@@ -233,20 +233,20 @@ fn until_polls_until_the_point_is_active() {
 /// Polls every `poll_ms`, so that the second poll shows the latch, and starts the ramp `sent_ms` later; returns the
 /// time in ms after the mark at which a 40 ms wait since the mark ends.
 fn ramp_behind_an_event(poll_ms: u64, sent_ms: u64) -> u64 {
-    let mut shop = read_once();
-    let mut acts = until(&shop, Span::ms(200));
-    let ramp = vec![(shop.points.source(AnalogOut::SupplyCoarse), Volt(1.0))];
+    let mut mock = read_once();
+    let mut acts = until(&mock, Span::ms(200));
+    let ramp = vec![(mock.points.source(AnalogOut::SupplyCoarse), Volt(1.0))];
     acts.extend([Act::Mark, Act::Ramp(ramp), Act::RampSinceMark(Span::ms(40))]);
-    let mut runner = Runner::new(acts, shop.now);
-    runner.step(shop.now, None, &shop.image);
-    shop.after(3);
-    runner.step(shop.now, Some(&done(shop.now)), &shop.image);
-    shop.set_board(DigitalIn::Latch, true);
-    shop.after(poll_ms);
-    runner.step(shop.now, Some(&done(shop.now)), &shop.image);
-    let mark = shop.now;
-    shop.after(sent_ms);
-    match runner.step(shop.now, Some(&done(shop.now)), &shop.image) {
+    let mut runner = Runner::new(acts, mock.now);
+    runner.step(mock.now, None, &mock.image);
+    mock.after(3);
+    runner.step(mock.now, Some(&done(mock.now)), &mock.image);
+    mock.set_board(DigitalIn::Latch, true);
+    mock.after(poll_ms);
+    runner.step(mock.now, Some(&done(mock.now)), &mock.image);
+    let mark = mock.now;
+    mock.after(sent_ms);
+    match runner.step(mock.now, Some(&done(mock.now)), &mock.image) {
         Doing::Wait(until) => until.since(mark).0 / 1_000,
         other => panic!("{other:?}"),
     }
@@ -259,20 +259,20 @@ fn a_late_ramp_doubles_its_delay() {
     assert_eq!(
         ramp_behind_an_event(3, 34),
         40 + 2 * 24,
-        "the write was asked again"
+        "the write was requested again"
     );
     assert_eq!(ramp_behind_an_event(33, 4), 40 + 2 * 24, "a poll was");
 }
 
 #[test]
 fn until_gives_up_after_its_longest_wait() {
-    let mut shop = read_once();
-    let mut runner = Runner::new(until(&shop, Span::ms(60)), shop.now);
-    runner.step(shop.now, None, &shop.image);
+    let mut mock = read_once();
+    let mut runner = Runner::new(until(&mock, Span::ms(60)), mock.now);
+    runner.step(mock.now, None, &mock.image);
     let mut polls = 0;
     while runner.readings.seen.is_empty() && polls < 100 {
-        shop.after(5);
-        runner.step(shop.now, Some(&done(shop.now)), &shop.image);
+        mock.after(5);
+        runner.step(mock.now, Some(&done(mock.now)), &mock.image);
         polls += 1;
     }
     assert_eq!((polls, &*runner.readings.seen), (12, &[false][..]));
@@ -281,68 +281,68 @@ fn until_gives_up_after_its_longest_wait() {
 
 #[test]
 fn until_reports_a_stale_board_as_trouble() {
-    let shop = read_once();
-    let mut runner = Runner::new(until(&shop, Span::ms(200)), shop.now);
-    runner.step(shop.now, None, &shop.image);
-    let board = shop
+    let mock = read_once();
+    let mut runner = Runner::new(until(&mock, Span::ms(200)), mock.now);
+    runner.step(mock.now, None, &mock.image);
+    let board = mock
         .wiring
-        .digital_in(shop.points.input(DigitalIn::Latch))
+        .digital_in(mock.points.input(DigitalIn::Latch))
         .module;
-    let line = shop.wiring.module(board).line;
-    let later = shop.now + shop.wiring.answer_max_age(line) + Span(1);
-    let answered = runner.step(later, Some(&done(later)), &shop.image);
+    let line = mock.wiring.module(board).line;
+    let later = mock.now + mock.wiring.answer_max_age(line) + Span(1);
+    let answered = runner.step(later, Some(&done(later)), &mock.image);
     assert!(matches!(answered, Doing::Trouble(_)));
 }
 
 #[test]
 fn a_job_in_trouble_ends_the_acts() {
-    let shop = read_once();
+    let mock = read_once();
     let [coil, drop] = [AnalogIn::CoilVoltageFine, AnalogIn::ContactDrop]
-        .map(|it| Act::Read(Read::points([analog(&shop, it)])));
+        .map(|it| Act::Read(Read::points([analog(&mock, it)])));
     let acts = vec![coil, drop];
-    let mut runner = Runner::new(acts, shop.now);
-    runner.step(shop.now, None, &shop.image);
+    let mut runner = Runner::new(acts, mock.now);
+    runner.step(mock.now, None, &mock.image);
     let failed = JobDone {
-        at: shop.now,
+        at: mock.now,
         trouble: Some("measure 01 #01: silent".into()),
     };
-    let answered = runner.step(shop.now, Some(&failed), &shop.image);
+    let answered = runner.step(mock.now, Some(&failed), &mock.image);
     assert_eq!(answered, Doing::Trouble("measure 01 #01: silent".into()));
-    let coil = shop.points.analog(AnalogIn::CoilVoltageFine);
+    let coil = mock.points.analog(AnalogIn::CoilVoltageFine);
     assert_eq!(runner.readings.analog(coil).count(), 0);
 }
 
 #[test]
 fn the_four_times_add_up_to_the_elapsed_time() {
-    let mut shop = read_once();
-    let start = shop.now;
+    let mut mock = read_once();
+    let start = mock.now;
     let mut acts = vec![
-        armed(&shop),
+        armed(&mock),
         Act::Mark,
         Act::Wait(Span::ms(3)),
-        Act::Read(Read::points(gates(&shop))),
+        Act::Read(Read::points(gates(&mock))),
         Act::WaitSinceMark(Span::ms(20)),
         Act::Mark,
-        Act::Read(Read::Word(shop.points.board.clone())),
+        Act::Read(Read::Word(mock.points.board.clone())),
         Act::ConvertSinceMark(Span::ms(28)),
-        Act::Read(Read::points([analog(&shop, AnalogIn::CoilVoltageFine)])),
+        Act::Read(Read::points([analog(&mock, AnalogIn::CoilVoltageFine)])),
     ];
-    acts.extend(until(&shop, Span::ms(15)));
+    acts.extend(until(&mock, Span::ms(15)));
     let mut runner = Runner::new(acts, start);
-    let mut doing = runner.step(start, None, &shop.image);
+    let mut doing = runner.step(start, None, &mock.image);
     while doing != Doing::Done {
         let answer = match doing {
             Doing::Wait(instant) => {
-                shop.now = instant;
+                mock.now = instant;
                 None
             }
             Doing::Job(_) => {
-                shop.after(4);
-                Some(done(shop.now))
+                mock.after(4);
+                Some(done(mock.now))
             }
             Doing::Busy | Doing::Done | Doing::Trouble(_) => panic!("{doing:?}"),
         };
-        doing = runner.step(shop.now, answer.as_ref(), &shop.image);
+        doing = runner.step(mock.now, answer.as_ref(), &mock.image);
     }
     let Spent {
         bus,
@@ -355,7 +355,7 @@ fn the_four_times_add_up_to_the_elapsed_time() {
     assert_eq!(bound, Span::ms(64));
     assert_eq!(
         bus.0 + settling.0 + conversion.0 + ramp.0,
-        shop.now.since(start).0
+        mock.now.since(start).0
     );
     assert_eq!((bus, ramp), (Span::ms(16), Span::ms(16)));
     assert!(settling > Span(0) && conversion > Span(0));

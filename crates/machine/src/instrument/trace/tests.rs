@@ -3,10 +3,10 @@
 
 use super::*;
 use crate::dut::em_relay::points::{AnalogOut, DigitalOut, Points};
-use crate::handling::tests::Shop;
+use crate::handling::tests::MockRig;
 
 #[test]
-fn a_poll_that_changes_nothing_takes_two_looks() {
+fn a_poll_without_changes_keeps_two_samples() {
     let mut trace = Trace::default();
     for at in 0..100 {
         let made = at >= 90;
@@ -23,21 +23,21 @@ fn a_poll_that_changes_nothing_takes_two_looks() {
 
 #[test]
 fn the_trace_keeps_its_first_samples() {
-    let wiring = Shop::unread().wiring;
+    let wiring = MockRig::unread().wiring;
     let points = Points::resolve(&wiring).unwrap();
     let mut trace = Trace::default();
     let levels = [
         (points.source(AnalogOut::SupplyLevel), Volt(1.0)),
         (points.source(AnalogOut::SupplyFine), Volt(0.5)),
     ];
-    trace.asked(&wiring, &levels, RigTime(7));
+    trace.commanded(&wiring, &levels, RigTime(7));
     for (at, output) in [(8, DigitalOut::CoilDrive), (9, DigitalOut::Arm)] {
         trace.switched(&wiring, &[(points.output(output), true)], RigTime(at));
     }
     let names: Vec<_> = trace.samples().iter().map(|it| it.signal.name).collect();
     assert_eq!(names, ["supply_level", "supply_fine", "coil_drive"]);
     let mut much = trace.clone();
-    (0..MAX_SAMPLES).for_each(|_| much.asked(&wiring, &levels, RigTime(11)));
+    (0..MAX_SAMPLES).for_each(|_| much.commanded(&wiring, &levels, RigTime(11)));
     assert_eq!(much.samples().len(), MAX_SAMPLES);
     trace.append(much);
     assert_eq!(trace.samples().len(), MAX_SAMPLES);

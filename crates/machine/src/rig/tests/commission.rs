@@ -3,12 +3,12 @@
 use super::{text, wiring};
 use crate::rig::commission::{judge, verification};
 
-/// Judges the answer `reply` to `asked`; `None` when verification does not ask that.
-fn judged(asked: &str, reply: &str) -> Option<Option<String>> {
+/// Judges the answer `reply` to `request`; `None` when verification sends no such request.
+fn judged(request: &str, reply: &str) -> Option<Option<String>> {
     let wiring = wiring();
     let check = verification(&wiring)
         .into_iter()
-        .find(|check| text(&check.command) == asked)?;
+        .find(|check| text(&check.command) == request)?;
     let reply = check
         .command
         .decode(format!("{reply}\r").as_bytes(), false)
@@ -18,7 +18,7 @@ fn judged(asked: &str, reply: &str) -> Option<Option<String>> {
 
 #[test]
 fn a_module_as_wired_passes() {
-    for (asked, reply) in [
+    for (request, reply) in [
         ("$012", "!01080A62"),
         ("$01M", "!017017F"),
         ("$016", "!0160"),
@@ -32,14 +32,14 @@ fn a_module_as_wired_passes() {
         ("$13M", "!13PRESS"),
         ("$115", "!111"),
     ] {
-        assert_eq!(judged(asked, reply), Some(None), "{asked}");
+        assert_eq!(judged(request, reply), Some(None), "{request}");
     }
     assert_eq!(judged("$035", "!031"), None);
 }
 
 #[test]
 fn a_mismatch_names_line_and_address() {
-    for (asked, reply, message) in [
+    for (request, reply, message) in [
         (
             "$052",
             "!05400A40",
@@ -77,9 +77,9 @@ fn a_mismatch_names_line_and_address() {
         ),
     ] {
         assert_eq!(
-            judged(asked, reply),
+            judged(request, reply),
             Some(Some(message.to_owned())),
-            "{asked}"
+            "{request}"
         );
     }
 }

@@ -52,13 +52,13 @@ fn answer(
 fn every_point_is_read_at_its_own_terminal() {
     let wiring = wiring();
     let track = wiring.thermometer("track_temperature").unwrap();
-    for (point, asked) in [
+    for (point, request) in [
         (Point::Analog(analog(&wiring, "contact_drop")), "#090"),
         (Point::Analog(analog(&wiring, "coil_current_fine")), "#016"),
         (Point::Temperature(track), "#052"),
         (Point::Count(counter(&wiring, "gate_1")), "#031"),
     ] {
-        assert_eq!(texts(&wiring, &[point]), [asked]);
+        assert_eq!(texts(&wiring, &[point]), [request]);
     }
     let beam = |name| wiring.digital_input(name).unwrap();
     assert_eq!(text(&wiring.read_events(beam("beam_pass"))), "#129");

@@ -1,4 +1,4 @@
-//! Alarms that stand: states of ISA-18.2, first-out, repeats, shelf.
+//! Alarms in the list: states of ISA-18.2, first-out, repeats, shelf.
 
 use crate::handling::Move;
 use crate::rig::bin::Bin;
@@ -24,7 +24,7 @@ fn states(list: &Annunciator) -> Vec<(String, Condition)> {
 }
 
 #[test]
-fn an_alarm_is_normal_again_only_when_it_was_seen_and_its_cause_is_gone() {
+fn an_alarm_ends_when_acknowledged_and_without_cause() {
     for seen_first in [true, false] {
         let mut list = Annunciator::default();
         assert!(list.raise(&door(), RigTime(1)));
@@ -52,7 +52,7 @@ fn an_alarm_is_normal_again_only_when_it_was_seen_and_its_cause_is_gone() {
 }
 
 #[test]
-fn a_cause_that_a_sensor_still_shows_is_not_cleared_by_a_person() {
+fn an_order_does_not_clear_a_sensed_cause() {
     let mut list = Annunciator::default();
     list.raise(&door(), RigTime(1));
     list.cleared();
@@ -68,7 +68,7 @@ fn a_cause_that_a_sensor_still_shows_is_not_cleared_by_a_person() {
 }
 
 #[test]
-fn what_no_sensor_shows_goes_when_a_person_says_so() {
+fn an_order_clears_a_cause_without_sensor() {
     let mut list = Annunciator::default();
     list.raise(&jam(), RigTime(1));
     list.sensed(&[]);
@@ -84,24 +84,24 @@ fn what_no_sensor_shows_goes_when_a_person_says_so() {
 }
 
 #[test]
-fn the_first_alarm_after_quiet_is_pinned_and_repeats_are_counted() {
+fn the_first_alarm_is_first_out_and_repeats_count() {
     let mut list = Annunciator::default();
     list.raise(&jam(), RigTime(1));
     list.raise(&door(), RigTime(2));
     assert!(!list.raise(&jam(), RigTime(3)), "it stands already");
-    let told: Vec<_> = list
+    let listed: Vec<_> = list
         .standing()
         .iter()
         .map(|one| (one.first_out, one.count))
         .collect();
-    assert_eq!(told, [(true, 2), (false, 1)]);
+    assert_eq!(listed, [(true, 2), (false, 1)]);
     list.cleared();
     assert!(list.raise(&jam(), RigTime(4)), "it came again");
     assert!(!list.standing()[0].first_out, "the door was open before");
 }
 
 #[test]
-fn a_shelved_alarm_comes_back_when_its_time_is_over() {
+fn a_shelved_alarm_returns_after_its_time() {
     let mut list = Annunciator::default();
     list.raise(&door(), RigTime(0));
     let until = RigTime(0) + Span::ms(60_000);
@@ -113,7 +113,7 @@ fn a_shelved_alarm_comes_back_when_its_time_is_over() {
 }
 
 #[test]
-fn what_nobody_had_seen_before_a_restart_is_still_unseen_after_it() {
+fn unacknowledged_alarms_survive_a_restart() {
     let mut list = Annunciator::default();
     list.inherit(jam(), 3, Some(RigTime(10)));
     assert_eq!(
@@ -131,7 +131,7 @@ fn what_nobody_had_seen_before_a_restart_is_still_unseen_after_it() {
 }
 
 #[test]
-fn a_second_body_that_no_beam_saw_is_told_although_the_first_alarm_stands() {
+fn every_miscounted_part_raises_its_own_alarm() {
     let mut list = Annunciator::default();
     assert!(list.raise(&Alarm::beam(Bin::RETEST, 2), RigTime(1)));
     assert!(list.raise(&Alarm::beam(Bin::PASS, 0), RigTime(2)));

@@ -1,7 +1,7 @@
-//! What opens and closes the gates of a lot.
+//! Events that open and close the gates of a lot.
 
-use super::golden_parts;
 use super::machine::{Machine, Specimen};
+use super::reference_parts;
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::measure::TestRecord;
 use crate::dut::em_relay::reference_part::check;
@@ -11,16 +11,16 @@ use crate::handling::ledger::Kind;
 use crate::handling::place::Place;
 use crate::handling::wear::Uses;
 use crate::rig::sample::Sample;
-use crate::station::Doing;
+use crate::station::Activity;
 use crate::station::catalogue::AlarmCode;
 use crate::station::gates::{CheckSettings, LotSettings, WearSettings};
 use crate::station::orders::Order;
 use crate::station::packml::{Command, State};
-use crate::station::wants::Ending;
+use crate::station::turn::Ending;
 
 const BAD: Specimen = Specimen::OpenCoil;
 
-/// What a test finds on a reference part that is so many standard deviations off in one parameter.
+/// Record of a reference part with one parameter `deviations` standard deviations off its certificate.
 fn read(part: &ReferencePart, off: Parameter, deviations: f64) -> TestRecord {
     let mut record = TestRecord::default();
     for (parameter, certified) in [
@@ -41,8 +41,8 @@ fn read(part: &ReferencePart, off: Parameter, deviations: f64) -> TestRecord {
 }
 
 #[test]
-fn a_golden_part_agrees_with_its_certificate_within_three_standard_deviations() {
-    let part = &golden_parts()[0];
+fn a_reference_part_agrees_within_three_standard_deviations() {
+    let part = &reference_parts()[0];
     for parameter in [
         Parameter::CoilResistance,
         Parameter::OperateVoltage,
@@ -64,10 +64,10 @@ fn a_golden_part_agrees_with_its_certificate_within_three_standard_deviations() 
     assert!(nothing.is_err_and(|why| why.to_string().contains("Coil resistance")));
 }
 
-/// Every part of this magazine has a broken coil, the golden one too: no check can be passed.
+/// A machine whose parts, the reference part included, all have an open coil, so that every check fails.
 fn checked(settings: CheckSettings, attended: bool) -> Machine {
     let lot = LotSettings {
-        golden_check: settings,
+        reference_check: settings,
         ..LotSettings::default()
     };
     Machine::of_lot(Some(6), vec![BAD; 9], lot, attended)
@@ -83,9 +83,9 @@ fn after_parts(parts: u64) -> CheckSettings {
 fn kinds(machine: &mut Machine) -> Vec<String> {
     let mut kinds = Vec::new();
     for _ in 0..20_000 {
-        let wants = machine.turn();
+        let output = machine.turn();
         kinds.extend(
-            wants
+            output
                 .record
                 .parts
                 .judged
@@ -96,7 +96,7 @@ fn kinds(machine: &mut Machine) -> Vec<String> {
                 }),
         );
         let rests = machine.station.outer() == State::Held;
-        if wants.record.ending.is_some() || rests {
+        if output.record.ending.is_some() || rests {
             break;
         }
     }
@@ -104,7 +104,7 @@ fn kinds(machine: &mut Machine) -> Vec<String> {
 }
 
 #[test]
-fn nothing_but_a_golden_part_is_judged_after_a_check_that_failed() {
+fn after_a_failed_check_only_reference_parts_run() {
     let mut machine = checked(after_parts(2), true);
     assert_eq!(kinds(&mut machine), ["1", "2", "golden"]);
     assert_eq!(machine.station.outer(), State::Held);
@@ -115,13 +115,13 @@ fn nothing_but_a_golden_part_is_judged_after_a_check_that_failed() {
 }
 
 #[test]
-fn without_a_person_a_check_that_failed_ends_the_run() {
+fn a_failed_check_ends_an_unattended_run() {
     let mut machine = checked(after_parts(2), false);
     assert_eq!(machine.run().record.ending, Some(Ending::Alarm));
 }
 
 #[test]
-fn a_check_at_the_start_comes_before_the_first_part() {
+fn a_start_check_precedes_the_first_part() {
     let settings = CheckSettings {
         at_start: true,
         ..CheckSettings::default()
@@ -131,7 +131,7 @@ fn a_check_at_the_start_comes_before_the_first_part() {
 }
 
 #[test]
-fn after_so_many_hours_the_line_holds_and_asks_for_the_golden_part() {
+fn a_check_due_by_time_holds_the_line() {
     let settings = CheckSettings {
         after_h: Some(2.0 / 3600.0),
         ..CheckSettings::default()
@@ -152,7 +152,7 @@ fn after_so_many_hours_the_line_holds_and_asks_for_the_golden_part() {
 }
 
 #[test]
-fn a_golden_part_that_was_interrupted_has_said_nothing() {
+fn an_interrupted_reference_check_begins_again() {
     let mut machine = checked(after_parts(1), true);
     while machine
         .station
@@ -178,7 +178,7 @@ fn a_golden_part_that_was_interrupted_has_said_nothing() {
 }
 
 #[test]
-fn the_reject_rate_limit_alarms_once_at_the_first_excess() {
+fn the_reject_rate_limit_alarms_once() {
     let lot = LotSettings {
         reject_rate_limit_pct: Some(34.0),
         ..LotSettings::default()
@@ -205,43 +205,43 @@ fn wear_of_earlier_runs_counts() {
     };
     let mut machine = Machine::of_lot(Some(3), vec![BAD; 3], lot, false);
     machine.wore(worn);
-    let mut told = Vec::new();
+    let mut codes = Vec::new();
     loop {
-        let wants = machine.turn();
-        told.extend(
-            wants
+        let output = machine.turn();
+        codes.extend(
+            output
                 .record
                 .alarms
                 .iter()
                 .map(|alarm| (alarm.code.name(), machine.station.uses().probe_touches)),
         );
-        if wants.record.ending.is_some() {
+        if output.record.ending.is_some() {
             break;
         }
     }
-    assert_eq!(told, [("probes_worn".to_owned(), 2)]);
+    assert_eq!(codes, [("probes_worn".to_owned(), 2)]);
 }
 
 #[test]
-fn a_calibration_that_runs_out_stops_the_lot_and_the_next_start_calibrates() {
+fn an_expired_calibration_stops_the_lot() {
     let mut machine = Machine::of_lot(Some(6), vec![BAD; 6], LotSettings::default(), true);
     while machine.landed.is_empty() {
         machine.turn();
     }
     machine.calibration_runs_out();
-    let told: Vec<String> = machine
+    let codes: Vec<String> = machine
         .turn()
         .record
         .alarms
         .into_iter()
         .map(|alarm| alarm.code.name())
         .collect();
-    assert_eq!(told, ["calibration_overdue"]);
+    assert_eq!(codes, ["calibration_overdue"]);
     for command in [Command::Clear, Command::Reset, Command::Start] {
         while machine.station.may(command).is_err() {
             machine.turn();
         }
         machine.order(Order::Command(command)).unwrap();
     }
-    assert_eq!(machine.station.doing(), Doing::Calibrating);
+    assert_eq!(machine.station.activity(), Activity::Calibrating);
 }

@@ -1,12 +1,12 @@
-//! A machine whose actuators always arrive and whose parts are bad in a known way, with its station.
+//! A station with a machine whose actuators always arrive and whose parts have known defects.
 
-use super::{Shop, context, device, device_of};
+use super::{MockRig, context, device, device_of};
 use crate::dut::em_relay::bins;
 use crate::dut::em_relay::points::{self, AnalogIn};
 use crate::handling::inside::Inside;
 use crate::handling::moves::Move;
+use crate::handling::output::{NestDone, NestJob};
 use crate::handling::tests::mechanism_of;
-use crate::handling::wants::{NestDone, NestJob};
 use crate::handling::wear::Uses;
 use crate::instrument::act::{Job, JobDone};
 use crate::rig::axis::AxisStation;
@@ -16,24 +16,24 @@ use crate::rig::point::{DigitalIn, DigitalInput, DigitalOut, Point};
 use crate::station::gates::LotSettings;
 use crate::station::orders::{Order, Refused};
 use crate::station::trouble::Alarm;
-use crate::station::wants::{Ending, Inputs, Wants};
+use crate::station::turn::{Ending, Inputs, TurnOutput};
 use crate::station::{Plan, Station};
 use std::collections::{BTreeMap, VecDeque};
 use units::{RigTime, Span};
 
-/// How a part of the magazine is bad.
+/// Defect of a part of the magazine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Specimen {
     /// No pin at NO: void.
     MissingPin,
     /// NO is welded: fails at rest.
     StuckNo,
-    /// Its coil is broken: no current.
+    /// Its coil is open: no current.
     OpenCoil,
 }
 
 impl Specimen {
-    /// Where it belongs.
+    /// Returns the bin in which it belongs.
     pub fn bin(self) -> Bin {
         match self {
             Self::MissingPin => Bin::RETEST,
@@ -43,8 +43,8 @@ impl Specimen {
     }
 }
 
-/// What the station was told in one turn, and what was driven after it.
-pub struct Told {
+/// Inputs of the station in one turn, and the motions driven after it.
+pub struct TurnRecord {
     pub now: RigTime,
     pub image: Image,
     pub job: Option<NestDone>,
@@ -52,13 +52,13 @@ pub struct Told {
     pub bus: Option<Alarm>,
     pub stop: bool,
     pub driven: Vec<Move>,
-    pub wants: String,
+    pub output: String,
 }
 
 /// A station with its machine.
 pub struct Machine {
     pub station: Station,
-    pub shop: Shop,
+    pub mock: MockRig,
     pub bus: Option<Alarm>,
     pub stop: bool,
     pub abort: bool,
@@ -77,17 +77,17 @@ pub struct Machine {
     verify: bool,
     /// Outputs of the last turn.
     pub last_outputs: Vec<(DigitalOut, bool)>,
-    /// Every turn.
-    pub told: Vec<Told>,
+    /// Record of every turn.
+    pub turns: Vec<TurnRecord>,
     /// Ordinals and bins in the order of landing.
     pub landed: Vec<(u64, Bin)>,
-    /// Parts that left the nest.
+    /// Number of parts that left the nest.
     pub left: usize,
-    /// How the run ended.
+    /// End of the run.
     pub ending: Option<Ending>,
 }
 
-/// Nothing ordered, nothing to answer, every output confirmed.
+/// Returns inputs without orders or answers, every output confirmed.
 pub fn quiet(image: &Image) -> Inputs<'_> {
     Inputs {
         image,
@@ -102,9 +102,9 @@ pub fn quiet(image: &Image) -> Inputs<'_> {
     }
 }
 
-/// A calibrated station that knows nothing yet.
-pub fn station(count: Option<u64>, shop: &Shop) -> Station {
-    of_plan(plan(count), shop)
+/// Returns a calibrated station before its first turn.
+pub fn station(count: Option<u64>, mock: &MockRig) -> Station {
+    of_plan(plan(count), mock)
 }
 
 fn plan(count: Option<u64>) -> Plan {
@@ -113,7 +113,7 @@ fn plan(count: Option<u64>) -> Plan {
         between_lots: None,
         simulated: true,
         count,
-        golden: Vec::new(),
+        reference_serials: Vec::new(),
         calibrated: true,
         valid_us: 0,
         epoch_us: 0,
@@ -123,18 +123,18 @@ fn plan(count: Option<u64>) -> Plan {
     }
 }
 
-fn of_plan(plan: Plan, shop: &Shop) -> Station {
-    let mechanism = mechanism_of(&shop.wiring);
-    Station::new(plan, device(), shop.wiring.axis.clone(), mechanism)
+fn of_plan(plan: Plan, mock: &MockRig) -> Station {
+    let mechanism = mechanism_of(&mock.wiring);
+    Station::new(plan, device(), mock.wiring.axis.clone(), mechanism)
 }
 
 impl Machine {
     pub fn new(count: Option<u64>, magazine: Vec<Specimen>) -> Self {
-        let mut shop = Shop::at_rest();
-        shop.track(23.0);
+        let mut mock = MockRig::at_rest();
+        mock.track(23.0);
         Self {
-            station: station(count, &shop),
-            shop,
+            station: station(count, &mock),
+            mock,
             bus: None,
             stop: false,
             abort: false,
@@ -151,25 +151,25 @@ impl Machine {
             answers: Vec::new(),
             verify: false,
             last_outputs: Vec::new(),
-            told: Vec::new(),
+            turns: Vec::new(),
             landed: Vec::new(),
             left: 0,
             ending: None,
         }
     }
 
-    /// The same with a person at a screen.
+    /// Returns the same machine, attended.
     pub fn attended(count: Option<u64>, magazine: Vec<Specimen>) -> Self {
         let mut machine = Self::new(count, magazine);
         let plan = Plan {
             attended: true,
             ..plan(count)
         };
-        machine.station = of_plan(plan, &machine.shop);
+        machine.station = of_plan(plan, &machine.mock);
         machine
     }
 
-    /// Between lots, with a person at a screen.
+    /// Returns an attended machine between lots.
     pub fn between_lots() -> Self {
         let mut machine = Self::new(Some(0), Vec::new());
         let plan = Plan {
@@ -177,11 +177,11 @@ impl Machine {
             between_lots: Some(crate::station::packml::State::Stopped),
             ..plan(Some(0))
         };
-        machine.station = of_plan(plan, &machine.shop);
+        machine.station = of_plan(plan, &machine.mock);
         machine
     }
 
-    /// Behind these gates, with the reference parts of the default plant.
+    /// Returns a machine with these gates and the reference parts of the default plant.
     pub fn of_lot(
         count: Option<u64>,
         magazine: Vec<Specimen>,
@@ -192,70 +192,70 @@ impl Machine {
         let plan = Plan {
             attended,
             lot,
-            golden: device().reference_serials(),
+            reference_serials: device().reference_serials(),
             ..plan(count)
         };
-        machine.station = of_plan(plan, &machine.shop);
+        machine.station = of_plan(plan, &machine.mock);
         machine
     }
 
-    /// The calibration may not be used any more from now on.
+    /// Makes the calibration expire now.
     pub fn calibration_runs_out(&mut self) {
         let mut context = context();
         std::sync::Arc::make_mut(&mut context.calibration).due_at_us =
-            i64::try_from(self.shop.now.0).unwrap();
+            i64::try_from(self.mock.now.0).unwrap();
         self.station.device = device_of(context);
     }
 
-    /// What wears was used so often before.
+    /// Sets the uses of wearing parts before the run.
     pub fn wore(&mut self, worn: Uses) {
         self.station.plan.worn = worn;
     }
 
-    /// Gives an order and has it answered in the next turn.
+    /// Gives an order and returns its answer in the next turn.
     pub fn order(&mut self, order: Order) -> Result<(), Refused> {
         self.orders.push(order);
         self.turn();
         self.answers.pop().unwrap()
     }
 
-    /// One more part into the magazine.
+    /// Adds one part to the magazine.
     pub fn fill(&mut self, specimen: Specimen) {
         self.magazine.push_back(specimen);
     }
 
-    /// Motions driven so far.
+    /// Returns the number of motions driven so far.
     pub fn driven(&self) -> usize {
-        self.told.iter().map(|told| told.driven.len()).sum()
+        self.turns.iter().map(|turn| turn.driven.len()).sum()
     }
 
-    /// 4 ms pass, everything is read, the station has its turn and gets what it asks for.
-    pub fn turn(&mut self) -> Wants {
-        self.shop.now = self.shop.now + Span::ms(4);
-        let now = self.shop.now;
+    /// Advances 4 ms: reads every point, performs the station's turn and its commands.
+    pub fn turn(&mut self) -> TurnOutput {
+        self.mock.now = self.mock.now + Span::ms(4);
+        let now = self.mock.now;
         let (there, still): (Vec<_>, Vec<_>) =
             self.under_way.iter().partition(|(at, _)| *at <= now);
         self.under_way = still;
         there.into_iter().for_each(|(_, m)| self.arrive(m));
-        self.shop.scan();
+        self.mock.scan();
         if let Some(beam) = self.beam {
             let count = self.beams.get(&beam).copied().unwrap_or(0);
-            self.shop.beam(beam, count);
+            self.mock.beam(beam, count);
         }
         self.turn_without_scan()
     }
 
-    /// A turn on what was read before.
-    pub fn turn_without_scan(&mut self) -> Wants {
+    /// Performs a turn on the previous samples.
+    pub fn turn_without_scan(&mut self) -> TurnOutput {
         let job = self.job.take().map(|NestJob { nest, job }| NestDone {
             nest,
             done: self.answer(&job),
         });
-        let image = self.shop.image.clone();
-        let (now, recorded, stop) = (self.shop.now, self.recorded, self.stop);
+        let image = self.mock.image.clone();
+        let (now, recorded, stop) = (self.mock.now, self.recorded, self.stop);
         let bus = self.bus.take();
         let level = !self.magazine.is_empty();
-        self.shop.set(DigitalIn::TrackLevel, level);
+        self.mock.set(DigitalIn::TrackLevel, level);
         let inputs = Inputs {
             orders: std::mem::take(&mut self.orders),
             verified: std::mem::take(&mut self.verify),
@@ -267,32 +267,32 @@ impl Machine {
             abort: self.abort,
             ..quiet(&image)
         };
-        let mut wants = self.station.step(now, inputs);
-        self.answers.append(&mut wants.answers);
-        self.verify = wants.rig.verify;
-        self.ending = wants.record.ending.clone().or(self.ending.take());
-        self.last_outputs.clone_from(&wants.rig.outputs);
-        if wants.rig.safe {
+        let mut output = self.station.step(now, inputs);
+        self.answers.append(&mut output.answers);
+        self.verify = output.rig.verify;
+        self.ending = output.record.ending.clone().or(self.ending.take());
+        self.last_outputs.clone_from(&output.rig.outputs);
+        if output.rig.safe {
             self.make_safe();
         }
-        for movement in &wants.rig.motions {
+        for movement in &output.rig.motions {
             self.drive(*movement);
         }
-        self.obey(&wants);
-        self.told.push(Told {
+        self.obey(&output);
+        self.turns.push(TurnRecord {
             now,
             image,
             job,
             recorded,
             bus,
             stop,
-            driven: wants.rig.motions.clone(),
-            wants: format!("{wants:?}"),
+            driven: output.rig.motions.clone(),
+            output: format!("{output:?}"),
         });
-        wants
+        output
     }
 
-    /// Springs and brakes: bistable cylinders stay, the others go to rest.
+    /// Goes safe: bistable cylinders stay, the others go to rest.
     fn make_safe(&mut self) {
         self.under_way.clear();
         self.job = None;
@@ -302,66 +302,66 @@ impl Machine {
             Move::PusherRetract,
             Move::EscapementHold,
         ] {
-            self.shop.stands(movement);
+            self.mock.stands(movement);
         }
-        self.shop.set(DigitalIn::AxisInPosition, false);
+        self.mock.set(DigitalIn::AxisInPosition, false);
     }
 
-    fn obey(&mut self, wants: &Wants) {
-        if wants.rig.job.is_some() {
+    fn obey(&mut self, output: &TurnOutput) {
+        if output.rig.job.is_some() {
             assert!(self.job.is_none(), "two jobs at once");
-            self.job.clone_from(&wants.rig.job);
+            self.job.clone_from(&output.rig.job);
         }
-        self.beam = wants.rig.beam;
-        for judged in &wants.record.parts.judged {
+        self.beam = output.rig.beam;
+        for judged in &output.record.parts.judged {
             self.recorded = judged.part.ordinal;
         }
-        let landed = wants.record.parts.landed.iter();
+        let landed = output.record.parts.landed.iter();
         self.landed
             .extend(landed.map(|landed| (landed.part.ordinal, landed.bin)));
-        self.left += wants.record.parts.left.len();
+        self.left += output.record.parts.left.len();
     }
 
     fn drive(&mut self, movement: Move) {
         self.station
-            .driven(movement, self.shop.now, &self.shop.image);
+            .driven(movement, self.mock.now, &self.mock.image);
         if let Move::AxisTo(_) = movement {
-            self.shop.set(DigitalIn::AxisInPosition, false);
+            self.mock.set(DigitalIn::AxisInPosition, false);
         }
         if self.sticking != Some(movement.actuator_key()) {
-            let at = self.shop.now + Span::ms(60);
+            let at = self.mock.now + Span::ms(60);
             self.under_way.push((at, movement));
         }
     }
 
     fn arrive(&mut self, movement: Move) {
         let held = self.station.ledger().fall().is_some();
-        self.shop.stands(movement);
+        self.mock.stands(movement);
         match movement {
             Move::EscapementRelease if !self.magazine.is_empty() => {
-                self.shop.set(DigitalIn::PocketPresent, true);
+                self.mock.set(DigitalIn::PocketPresent, true);
             }
             Move::PusherExtend => {
-                self.shop.set(DigitalIn::PocketPresent, false);
-                self.shop.set(DigitalIn::NestPresent, true);
+                self.mock.set(DigitalIn::PocketPresent, false);
+                self.mock.set(DigitalIn::NestPresent, true);
                 self.insert();
             }
-            Move::SortUp if self.shop.is_on(DigitalIn::GripperPart) => {
-                self.shop.set(DigitalIn::NestPresent, false);
+            Move::SortUp if self.mock.is_on(DigitalIn::GripperPart) => {
+                self.mock.set(DigitalIn::NestPresent, false);
             }
             Move::AxisTo(station) => self.axis = station,
             Move::GripperOpen if held => {
                 let AxisStation::Bin(bin) = self.axis else {
                     panic!("a part was let go over {:?}", self.axis);
                 };
-                let beam = self.shop.wiring.axis.beam(bin);
+                let beam = self.mock.wiring.axis.beam(bin);
                 *self.beams.entry(beam).or_default() += 1;
             }
             _ => {}
         }
     }
 
-    /// The next part of the magazine lies in the nest.
+    /// Places the next part of the magazine in the nest.
     fn insert(&mut self) {
         let specimen = self.magazine.pop_front().unwrap();
         let kelvin = [
@@ -371,60 +371,60 @@ impl Machine {
             points::DigitalIn::KelvinNo,
             points::DigitalIn::KelvinNc,
         ];
-        self.shop.set_board(points::DigitalIn::ProbeChain, true);
+        self.mock.set_board(points::DigitalIn::ProbeChain, true);
         for point in kelvin {
-            self.shop.set_board(point, true);
+            self.mock.set_board(point, true);
         }
         let missing = specimen == Specimen::MissingPin;
-        self.shop.set_board(points::DigitalIn::KelvinNo, !missing);
+        self.mock.set_board(points::DigitalIn::KelvinNo, !missing);
         let stuck = specimen == Specimen::StuckNo;
-        self.shop.set_board(points::DigitalIn::NoClosed, stuck);
+        self.mock.set_board(points::DigitalIn::NoClosed, stuck);
     }
 
     fn answer(&mut self, job: &Job) -> JobDone {
         match job {
             Job::Set(outputs) => {
-                let reverse = self.shop.points.output(points::DigitalOut::SourceReverse);
+                let reverse = self.mock.points.output(points::DigitalOut::SourceReverse);
                 for (_, state) in outputs.iter().filter(|(point, _)| *point == reverse) {
                     self.reversed = *state;
                 }
             }
-            Job::Read(asked) => asked.iter().for_each(|point| self.read(*point)),
+            Job::Read(points) => points.iter().for_each(|point| self.read(*point)),
             Job::Level(_) | Job::Restarts | Job::Mask(_) => {}
         }
         JobDone {
-            at: self.shop.now,
+            at: self.mock.now,
             trouble: None,
         }
     }
 
-    /// The coil is open, contacts are good, nothing is timed.
+    /// Reads a point: the coil is open, the contacts are good, no gate counts.
     fn read(&mut self, point: Point) {
-        let known = |input| self.shop.points.analog(input);
+        let known = |input| self.mock.points.analog(input);
         match point {
             Point::Analog(input) if input == known(AnalogIn::CoilVoltageFine) => {
-                self.shop.volts_at(input, 8.0);
+                self.mock.volts_at(input, 8.0);
             }
             Point::Analog(input) if input == known(AnalogIn::ContactDrop) => {
                 let volts = if self.reversed { -1.1 } else { 1.1 };
-                self.shop.volts_at(input, volts);
+                self.mock.volts_at(input, volts);
             }
-            Point::Analog(input) => self.shop.volts_at(input, 0.0),
-            Point::Count(counter) => self.shop.count(counter, 0),
-            Point::Temperature(_) => self.shop.track(23.0),
+            Point::Analog(input) => self.mock.volts_at(input, 0.0),
+            Point::Count(counter) => self.mock.count(counter, 0),
+            Point::Temperature(_) => self.mock.track(23.0),
             Point::Input(_) => {}
         }
     }
 
-    /// Turns until the run is over.
-    pub fn run(&mut self) -> Wants {
+    /// Takes turns until the run is over.
+    pub fn run(&mut self) -> TurnOutput {
         for _ in 0..10_000 {
-            let wants = self.turn();
+            let output = self.turn();
             assert!(self.station.ledger().balances());
-            if wants.record.ending.is_some() {
-                return wants;
+            if output.record.ending.is_some() {
+                return output;
             }
         }
-        panic!("the run does not end: {:?}", self.station.doing());
+        panic!("the run does not end: {:?}", self.station.activity());
     }
 }

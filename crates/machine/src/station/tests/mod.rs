@@ -1,4 +1,4 @@
-//! Facts about the sequence, on the default rig with sensors set by hand.
+//! Tests of the sequence on the default rig with given sensor states.
 #![allow(clippy::unwrap_used)]
 
 mod annunciator;
@@ -11,4 +11,4 @@ mod run;
 mod safety;
 mod trouble;
 
-pub(crate) use crate::handling::tests::{Shop, context, device, device_of, golden_parts};
+pub(crate) use crate::handling::tests::{MockRig, context, device, device_of, reference_parts};

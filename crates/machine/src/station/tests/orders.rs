@@ -1,4 +1,4 @@
-//! Orders at a screen: what is taken, what is refused and why, and what a person can bring about.
+//! Orders from a screen: accepted or refused with a reason, and their effects.
 
 use super::machine::{Machine, Specimen};
 use crate::rig::bin::Bin;
@@ -6,7 +6,7 @@ use crate::rig::point::{DigitalIn, DigitalOut};
 use crate::station::orders::Order;
 use crate::station::packml::{Command, Mode, State};
 use crate::station::trouble::Alarm;
-use crate::station::wants::Ending;
+use crate::station::turn::Ending;
 use texts::Lang;
 
 fn said(why: &crate::station::orders::Refused) -> String {
@@ -37,7 +37,7 @@ fn until(machine: &mut Machine, state: State) {
 
 fn testing(machine: &mut Machine) {
     for _ in 0..6000 {
-        if machine.station.doing().stage().is_some() {
+        if machine.station.activity().stage().is_some() {
             return;
         }
         machine.turn();
@@ -82,16 +82,16 @@ fn a_held_line_keeps_its_parts_and_goes_on() {
 }
 
 #[test]
-fn after_an_emergency_stop_the_part_inside_goes_to_retest_and_the_lot_goes_on() {
+fn an_emergency_stop_sends_the_part_to_retest() {
     let mut machine = attended(3);
     testing(&mut machine);
-    machine.shop.set(DigitalIn::EmergencyStopOk, false);
-    let wants = machine.turn();
-    assert!(wants.rig.safe && wants.rig.motions.is_empty());
+    machine.mock.set(DigitalIn::EmergencyStopOk, false);
+    let output = machine.turn();
+    assert!(output.rig.safe && output.rig.motions.is_empty());
     until(&mut machine, State::Aborted);
     let early = machine.order(Order::Command(Command::Clear)).unwrap_err();
     assert!(said(&early).contains("still there"), "{}", said(&early));
-    machine.shop.set(DigitalIn::EmergencyStopOk, true);
+    machine.mock.set(DigitalIn::EmergencyStopOk, true);
     machine.turn();
     give(&mut machine, Command::Clear);
     until(&mut machine, State::Stopped);
@@ -107,12 +107,12 @@ fn after_an_emergency_stop_the_part_inside_goes_to_retest_and_the_lot_goes_on() 
 }
 
 #[test]
-fn a_part_that_the_fingers_did_not_let_go_goes_to_retest_and_its_one_row_says_so() {
+fn a_stuck_part_goes_to_retest_with_one_row() {
     let mut machine = Machine::attended(Some(1), vec![Specimen::StuckNo]);
     while machine.station.ledger().fall().is_none() {
         machine.turn();
     }
-    // The module that drives the fingers has tripped: they never open.
+    // The module of the fingers has tripped: they never open.
     machine.bus = Some(Alarm::bus("the module ignored the output"));
     machine.turn();
     until(&mut machine, State::Aborted);
@@ -121,19 +121,23 @@ fn a_part_that_the_fingers_did_not_let_go_goes_to_retest_and_its_one_row_says_so
     give(&mut machine, Command::Reset);
     until(&mut machine, State::Idle);
     assert_eq!(machine.landed, [(1, Bin::RETEST)]);
-    let told = |what: &str| {
+    let turns_with = |what: &str| {
         machine
-            .told
+            .turns
             .iter()
-            .filter(|it| it.wants.contains(what))
+            .filter(|it| it.output.contains(what))
             .count()
     };
-    assert_eq!(told("Interrupted { ordinal: 1"), 1, "its row is corrected");
-    assert_eq!(told("judged: [Judged"), 1, "it was judged once");
+    assert_eq!(
+        turns_with("Interrupted { ordinal: 1"),
+        1,
+        "its row is corrected"
+    );
+    assert_eq!(turns_with("judged: [Judged"), 1, "it was judged once");
 }
 
 #[test]
-fn every_command_is_taken_or_refused_with_a_reason_in_both_languages() {
+fn every_refused_command_has_a_bilingual_reason() {
     let mut machine = attended(4);
     testing(&mut machine);
     for command in Command::ALL {
@@ -211,14 +215,14 @@ fn a_lamp_test_lights_everything_and_ends() {
     assert!(lit.iter().any(|(point, _)| *point == DigitalOut::LampRed));
     let mut dark = false;
     for _ in 0..800 {
-        let wants = machine.turn();
-        dark |= wants.rig.outputs.contains(&(DigitalOut::LampRed, false));
+        let output = machine.turn();
+        dark |= output.rig.outputs.contains(&(DigitalOut::LampRed, false));
     }
     assert!(dark);
 }
 
 #[test]
-fn a_beam_that_counts_wrong_holds_the_line_until_a_person_says_go_on() {
+fn a_miscount_holds_the_line_until_unhold() {
     let mut machine = attended(4);
     testing(&mut machine);
     machine.bus = Some(Alarm::beam(Bin::PASS, 0));
@@ -229,7 +233,7 @@ fn a_beam_that_counts_wrong_holds_the_line_until_a_person_says_go_on() {
 }
 
 #[test]
-fn an_empty_magazine_suspends_the_line_until_there_are_parts_again() {
+fn an_empty_magazine_suspends_the_line() {
     let mut machine = Machine::attended(Some(2), vec![Specimen::MissingPin]);
     until(&mut machine, State::Suspended);
     for _ in 0..500 {
@@ -242,10 +246,13 @@ fn an_empty_magazine_suspends_the_line_until_there_are_parts_again() {
 }
 
 #[test]
-fn between_lots_nothing_begins_by_itself_and_there_is_nothing_to_start() {
+fn between_lots_nothing_starts() {
     let mut machine = Machine::between_lots();
     for _ in 0..500 {
-        assert!(machine.turn().rig.motions.is_empty(), "nobody asked for it");
+        assert!(
+            machine.turn().rig.motions.is_empty(),
+            "no motion without an order"
+        );
     }
     assert_eq!(machine.station.outer(), State::Stopped);
     give(&mut machine, Command::Reset);
@@ -260,14 +267,14 @@ fn between_lots_nothing_begins_by_itself_and_there_is_nothing_to_start() {
 }
 
 #[test]
-fn a_lot_is_left_while_the_machine_rests_and_at_no_other_time() {
+fn a_lot_is_left_only_at_rest() {
     let mut machine = attended(3);
     testing(&mut machine);
     let why = machine.order(Order::Leave).unwrap_err();
     assert!(said(&why).contains("stop it first"), "{}", said(&why));
-    machine.shop.set(DigitalIn::DoorClosed, false);
+    machine.mock.set(DigitalIn::DoorClosed, false);
     until(&mut machine, State::Aborted);
-    machine.shop.set(DigitalIn::DoorClosed, true);
+    machine.mock.set(DigitalIn::DoorClosed, true);
     let why = machine.order(Order::Leave).unwrap_err();
     assert!(said(&why).contains("clear it first"), "{}", said(&why));
     give(&mut machine, Command::Clear);
@@ -290,7 +297,7 @@ fn a_lot_is_left_while_the_machine_rests_and_at_no_other_time() {
 }
 
 #[test]
-fn a_lot_that_is_closed_finishes_the_parts_inside_and_is_complete() {
+fn a_closed_lot_finishes_the_parts_inside() {
     let mut machine = attended(9);
     testing(&mut machine);
     assert_eq!(machine.order(Order::Close), Ok(()));
@@ -302,7 +309,7 @@ fn a_lot_that_is_closed_finishes_the_parts_inside_and_is_complete() {
 }
 
 #[test]
-fn a_lot_that_is_closed_at_rest_is_complete_at_once() {
+fn a_lot_closed_at_rest_completes_immediately() {
     let mut machine = attended(9);
     testing(&mut machine);
     give(&mut machine, Command::Stop);

@@ -1,4 +1,4 @@
-//! The outer machine, enumerated: every state under every command, and the drawing of it.
+//! The outer machine: every state with every command, and its drawing.
 
 use crate::station::packml::{Command, On, State, TRANSITIONS, dot, next};
 use std::collections::BTreeSet;
@@ -14,7 +14,7 @@ fn the_outer_machine_is_the_drawing() {
 }
 
 #[test]
-fn there_are_seventeen_states_and_each_can_be_reached_from_stopped() {
+fn each_of_seventeen_states_is_reachable_from_stopped() {
     let mut known = BTreeSet::from([State::Stopped]);
     for _ in State::ALL {
         for from in known.clone() {
@@ -26,7 +26,7 @@ fn there_are_seventeen_states_and_each_can_be_reached_from_stopped() {
 }
 
 #[test]
-fn abort_leads_out_of_everywhere_and_only_clear_leads_out_of_aborted() {
+fn every_state_aborts_and_only_clear_ends_it() {
     for state in State::ALL {
         let aborted = matches!(state, State::Aborting | State::Aborted);
         let to = next(*state, On::Command(Command::Abort));
@@ -51,7 +51,7 @@ fn a_reset_never_starts_anything() {
 }
 
 #[test]
-fn a_state_that_waits_for_a_person_is_never_left_by_itself() {
+fn waiting_states_end_only_by_command() {
     for state in [
         State::Stopped,
         State::Idle,
@@ -64,7 +64,7 @@ fn a_state_that_waits_for_a_person_is_never_left_by_itself() {
 }
 
 #[test]
-fn no_row_of_the_table_stands_twice() {
+fn no_row_of_the_table_occurs_twice() {
     for (n, row) in TRANSITIONS.iter().enumerate() {
         let same = TRANSITIONS[..n]
             .iter()

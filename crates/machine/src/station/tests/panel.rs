@@ -5,12 +5,12 @@ use crate::rig::point::DigitalIn;
 use crate::station::catalogue::AlarmCode;
 use crate::station::orders::Refused;
 use crate::station::packml::{Command, State};
-use crate::station::wants::Ending;
+use crate::station::turn::Ending;
 use units::Span;
 
 type Pressed = Vec<(Command, Result<(), Refused>)>;
 
-/// With a person at a screen, in Stopped.
+/// Returns an attended machine in `Stopped`.
 fn stopped() -> Machine {
     let mut machine = Machine::attended(None, vec![Specimen::MissingPin; 50]);
     turns(&mut machine, 2_000);
@@ -25,19 +25,19 @@ fn stopped() -> Machine {
 }
 
 fn turns(machine: &mut Machine, ms: u64) -> Pressed {
-    let end = machine.shop.now + Span::ms(ms);
+    let end = machine.mock.now + Span::ms(ms);
     let mut pressed = Vec::new();
-    while machine.shop.now < end {
+    while machine.mock.now < end {
         pressed.extend(machine.turn().pressed);
     }
     pressed
 }
 
-/// Down for so long, then up for long enough.
+/// Holds a button down for `ms`, then releases it until it settles.
 fn hold(machine: &mut Machine, button: DigitalIn, ms: u64) -> Pressed {
-    machine.shop.set(button, true);
+    machine.mock.set(button, true);
     let mut pressed = turns(machine, ms);
-    machine.shop.set(button, false);
+    machine.mock.set(button, false);
     pressed.extend(turns(machine, 100));
     pressed
 }
@@ -61,10 +61,10 @@ fn stop_reset_and_start_are_orders_of_the_panel() {
 }
 
 #[test]
-fn after_an_abort_the_reset_button_clears_once_the_cause_is_gone() {
+fn the_reset_button_clears_an_abort_without_cause() {
     let mut machine = Machine::attended(None, vec![Specimen::MissingPin; 50]);
     turns(&mut machine, 2_000);
-    machine.shop.set(DigitalIn::DoorClosed, false);
+    machine.mock.set(DigitalIn::DoorClosed, false);
     turns(&mut machine, 500);
     assert_eq!(machine.station.outer(), State::Aborted);
     let early = hold(&mut machine, DigitalIn::ButtonReset, 100);
@@ -72,17 +72,17 @@ fn after_an_abort_the_reset_button_clears_once_the_cause_is_gone() {
         matches!(&early[..], [(Command::Clear, Err(_))]),
         "{early:?}"
     );
-    machine.shop.set(DigitalIn::DoorClosed, true);
+    machine.mock.set(DigitalIn::DoorClosed, true);
     turns(&mut machine, 100);
     let clear = hold(&mut machine, DigitalIn::ButtonReset, 100);
     assert_eq!(clear, [(Command::Clear, Ok(()))]);
 }
 
 #[test]
-fn a_bouncing_contact_orders_once_and_a_twitch_not_at_all() {
+fn a_bouncing_contact_orders_once() {
     let mut machine = stopped();
     for down in [true, false, true, false] {
-        machine.shop.set(DigitalIn::ButtonReset, down);
+        machine.mock.set(DigitalIn::ButtonReset, down);
         assert!(turns(&mut machine, 12).is_empty(), "a twitch");
     }
     let pressed = hold(&mut machine, DigitalIn::ButtonReset, 400);
@@ -90,9 +90,9 @@ fn a_bouncing_contact_orders_once_and_a_twitch_not_at_all() {
 }
 
 #[test]
-fn a_held_button_orders_once_and_is_told_until_it_is_let_go() {
+fn a_held_button_orders_once_and_raises_an_alarm() {
     let mut machine = stopped();
-    machine.shop.set(DigitalIn::ButtonStart, true);
+    machine.mock.set(DigitalIn::ButtonStart, true);
     let pressed = turns(&mut machine, 6_000);
     assert_eq!(pressed.len(), 1, "{pressed:?}");
     let active = |machine: &Machine| {
@@ -104,17 +104,17 @@ fn a_held_button_orders_once_and_is_told_until_it_is_let_go() {
     };
     assert!(active(&machine));
     assert_eq!(machine.station.outer(), State::Stopped, "it stops nothing");
-    machine.shop.set(DigitalIn::ButtonStart, false);
+    machine.mock.set(DigitalIn::ButtonStart, false);
     turns(&mut machine, 100);
     assert!(!active(&machine));
 }
 
 #[test]
-fn a_button_that_is_down_at_the_start_orders_nothing_until_it_was_let_go() {
+fn a_button_down_at_start_orders_nothing() {
     let mut machine = Machine::attended(None, vec![Specimen::MissingPin; 50]);
-    machine.shop.set(DigitalIn::ButtonStop, true);
+    machine.mock.set(DigitalIn::ButtonStop, true);
     assert!(turns(&mut machine, 1_000).is_empty());
-    machine.shop.set(DigitalIn::ButtonStop, false);
+    machine.mock.set(DigitalIn::ButtonStop, false);
     assert!(turns(&mut machine, 100).is_empty());
     assert_eq!(hold(&mut machine, DigitalIn::ButtonStop, 100).len(), 1);
 }
@@ -122,17 +122,17 @@ fn a_button_that_is_down_at_the_start_orders_nothing_until_it_was_let_go() {
 #[test]
 fn stop_and_start_at_once_is_stop() {
     let mut machine = stopped();
-    machine.shop.set(DigitalIn::ButtonStart, true);
+    machine.mock.set(DigitalIn::ButtonStart, true);
     let pressed = hold(&mut machine, DigitalIn::ButtonStop, 100);
     let commands: Vec<Command> = pressed.iter().map(|(command, _)| *command).collect();
     assert_eq!(commands, [Command::Stop]);
 }
 
 #[test]
-fn with_nobody_at_a_screen_the_stop_button_ends_the_run() {
+fn the_stop_button_ends_an_unattended_run() {
     let mut machine = Machine::new(None, vec![Specimen::MissingPin; 50]);
     turns(&mut machine, 2_000);
-    machine.shop.set(DigitalIn::ButtonStop, true);
+    machine.mock.set(DigitalIn::ButtonStop, true);
     let ending = (0..6_000).find_map(|_| machine.turn().record.ending);
     assert_eq!(ending, Some(Ending::Stopped));
     assert!(machine.station.ledger().balances());

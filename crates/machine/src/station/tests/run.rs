@@ -1,9 +1,9 @@
-//! Whole runs: every part lands, a stop finishes what is inside, the same inputs give the same wants.
+//! Whole runs: every part lands, a stop finishes the parts inside, equal inputs give equal outputs.
 
 use super::machine::{Machine, Specimen, quiet, station};
 use crate::handling::moves::Move;
 use crate::handling::place::Place;
-use crate::station::wants::{Ending, Inputs};
+use crate::station::turn::{Ending, Inputs};
 
 const MIXED: [Specimen; 4] = [
     Specimen::MissingPin,
@@ -13,7 +13,7 @@ const MIXED: [Specimen; 4] = [
 ];
 
 #[test]
-fn every_part_of_a_lot_lands_in_its_bin_in_order_and_the_run_is_complete() {
+fn every_part_lands_in_its_bin_in_order() {
     let mut machine = Machine::new(Some(4), MIXED.to_vec());
     let ended = machine.run();
     assert_eq!(ended.record.ending, Some(Ending::Complete));
@@ -24,7 +24,7 @@ fn every_part_of_a_lot_lands_in_its_bin_in_order_and_the_run_is_complete() {
 }
 
 #[test]
-fn the_next_part_waits_in_the_pocket_while_one_is_tested() {
+fn the_next_part_waits_in_the_pocket() {
     let mut machine = Machine::new(Some(4), MIXED.to_vec());
     let mut most = 0;
     for _ in 0..10_000 {
@@ -53,7 +53,7 @@ fn an_order_to_stop_finishes_the_parts_inside() {
 }
 
 #[test]
-fn a_second_order_to_stop_waits_for_nobody_at_any_instant_of_a_cycle() {
+fn a_second_stop_ends_the_run_at_once() {
     for turns in (0..600).step_by(23) {
         let mut machine = Machine::new(None, vec![Specimen::MissingPin; 50]);
         while machine.landed.is_empty() {
@@ -63,11 +63,11 @@ fn a_second_order_to_stop_waits_for_nobody_at_any_instant_of_a_cycle() {
         machine.stop = true;
         assert_eq!(machine.turn().record.ending, None, "{turns} turns");
         machine.abort = true;
-        let wants = machine.turn();
-        assert_eq!(wants.record.ending, Some(Ending::Stopped), "{turns} turns");
+        let output = machine.turn();
+        assert_eq!(output.record.ending, Some(Ending::Stopped), "{turns} turns");
         assert!(
-            wants.rig.safe && wants.rig.motions.is_empty(),
-            "{turns}: {wants:?}"
+            output.rig.safe && output.rig.motions.is_empty(),
+            "{turns}: {output:?}"
         );
     }
 }
@@ -82,8 +82,8 @@ fn more_turns_than_needed_change_nothing() {
     }
     assert_eq!(once.landed, twice.landed);
     let driven = |machine: &Machine| -> Vec<Move> {
-        let told = machine.told.iter();
-        told.flat_map(|told| told.driven.clone()).collect()
+        let turns = machine.turns.iter();
+        turns.flat_map(|turn| turn.driven.clone()).collect()
     };
     assert_eq!(driven(&once).len(), driven(&twice).len());
 }
@@ -92,21 +92,21 @@ fn more_turns_than_needed_change_nothing() {
 fn the_same_inputs_give_the_same_wants() {
     let mut machine = Machine::new(Some(4), MIXED.to_vec());
     machine.run();
-    let mut again = station(Some(4), &machine.shop);
-    for told in &machine.told {
+    let mut again = station(Some(4), &machine.mock);
+    for turn in &machine.turns {
         let inputs = Inputs {
-            image: &told.image,
-            job: told.job.clone(),
-            recorded: told.recorded,
-            bus: told.bus.clone(),
-            stop: told.stop,
-            ..quiet(&told.image)
+            image: &turn.image,
+            job: turn.job.clone(),
+            recorded: turn.recorded,
+            bus: turn.bus.clone(),
+            stop: turn.stop,
+            ..quiet(&turn.image)
         };
-        let wants = again.step(told.now, inputs);
-        assert_eq!(format!("{wants:?}"), told.wants, "at {:?}", told.now);
-        for movement in &told.driven {
-            again.driven(*movement, told.now, &told.image);
+        let output = again.step(turn.now, inputs);
+        assert_eq!(format!("{output:?}"), turn.output, "at {:?}", turn.now);
+        for movement in &turn.driven {
+            again.driven(*movement, turn.now, &turn.image);
         }
     }
-    assert!(machine.told.len() > 500);
+    assert!(machine.turns.len() > 500);
 }

@@ -1,12 +1,12 @@
-//! Trouble makes everything safe, ends the run and voids the part inside.
+//! Trouble makes the outputs safe, ends the run and voids the part inside.
 
 use super::machine::{Machine, Specimen};
 use crate::dut::{Reason, Verdict};
 use crate::rig::bin::Bin;
 use crate::rig::point::{DigitalIn, DigitalOut};
-use crate::station::Doing;
+use crate::station::Activity;
 use crate::station::trouble::Alarm;
-use crate::station::wants::{Ending, Wants};
+use crate::station::turn::{Ending, TurnOutput};
 use texts::Lang;
 use units::Span;
 
@@ -15,76 +15,76 @@ fn under_test() -> Machine {
     let mut machine = Machine::new(Some(3), vec![Specimen::MissingPin; 3]);
     for _ in 0..3000 {
         machine.turn();
-        if machine.station.doing().stage().is_some() {
+        if machine.station.activity().stage().is_some() {
             return machine;
         }
     }
-    panic!("no test began: {:?}", machine.station.doing());
+    panic!("no test began: {:?}", machine.station.activity());
 }
 
-fn assert_safe(wants: &Wants, code: &str) {
-    assert!(wants.rig.safe, "{code}");
+fn assert_safe(output: &TurnOutput, code: &str) {
+    assert!(output.rig.safe, "{code}");
     assert!(
-        wants.rig.motions.is_empty() && wants.rig.job.is_none(),
+        output.rig.motions.is_empty() && output.rig.job.is_none(),
         "{code}"
     );
-    assert!(wants.rig.outputs.contains(&(DigitalOut::LampRed, true)));
-    assert_eq!(wants.record.ending, Some(Ending::Alarm));
-    assert_eq!(wants.record.alarms[0].code.name(), code);
+    assert!(output.rig.outputs.contains(&(DigitalOut::LampRed, true)));
+    assert_eq!(output.record.ending, Some(Ending::Alarm));
+    assert_eq!(output.record.alarms[0].code.name(), code);
 }
 
 #[test]
-fn an_open_safety_input_makes_everything_safe_and_voids_the_part_inside() {
+fn an_open_safety_input_voids_the_part_inside() {
     for (point, code) in [
         (DigitalIn::EmergencyStopOk, "emergency_stop"),
         (DigitalIn::DoorClosed, "door_open"),
         (DigitalIn::AirOk, "air_lost"),
     ] {
         let mut machine = under_test();
-        machine.shop.set(point, false);
-        let wants = machine.turn();
-        assert_safe(&wants, code);
-        let judged = &wants.record.parts.judged[0];
+        machine.mock.set(point, false);
+        let output = machine.turn();
+        assert_safe(&output, code);
+        let judged = &output.record.parts.judged[0];
         let why = Verdict::Void(vec![Reason::interrupted(code)]);
         assert_eq!(
             (&judged.verdict, judged.part.bin),
             (&why, Some(Bin::RETEST))
         );
         assert!(machine.station.ledger().balances());
-        assert_eq!(machine.station.doing(), Doing::Ended);
+        assert_eq!(machine.station.activity(), Activity::Ended);
     }
 }
 
 #[test]
-fn after_the_end_the_station_wants_nothing_whatever_happens() {
+fn after_the_end_the_station_commands_nothing() {
     let mut machine = under_test();
-    machine.shop.set(DigitalIn::EmergencyStopOk, false);
+    machine.mock.set(DigitalIn::EmergencyStopOk, false);
     machine.turn();
-    machine.shop.set(DigitalIn::EmergencyStopOk, true);
+    machine.mock.set(DigitalIn::EmergencyStopOk, true);
     for _ in 0..20 {
-        let wants = format!("{:?}", machine.turn());
-        assert_eq!(wants, format!("{:?}", Wants::default()));
+        let output = format!("{:?}", machine.turn());
+        assert_eq!(output, format!("{:?}", TurnOutput::default()));
     }
 }
 
 #[test]
-fn trouble_of_a_line_ends_the_run_like_an_emergency_stop() {
+fn line_trouble_ends_the_run() {
     let mut machine = under_test();
     machine.bus = Some(Alarm::bus("line motion is silent"));
-    let wants = machine.turn();
-    assert_safe(&wants, "bus_trouble");
-    assert_eq!(wants.record.parts.judged.len(), 1);
+    let output = machine.turn();
+    assert_safe(&output, "bus_trouble");
+    assert_eq!(output.record.parts.judged.len(), 1);
 }
 
 #[test]
-fn a_part_that_is_on_its_way_to_its_bin_when_the_run_ends_is_told() {
+fn a_part_falling_at_the_end_is_reported() {
     let mut machine = Machine::new(Some(2), vec![Specimen::StuckNo; 2]);
     while machine.station.ledger().fall().is_none() {
         machine.turn();
     }
     machine.bus = Some(Alarm::bus("line motion is silent"));
-    let wants = machine.turn();
-    let codes: Vec<String> = wants
+    let output = machine.turn();
+    let codes: Vec<String> = output
         .record
         .alarms
         .iter()
@@ -92,10 +92,10 @@ fn a_part_that_is_on_its_way_to_its_bin_when_the_run_ends_is_told() {
         .collect();
     assert_eq!(codes, ["bus_trouble", "bin_beam"]);
     assert!(
-        wants.record.alarms[1].text(Lang::En).contains("contact"),
-        "{wants:?}"
+        output.record.alarms[1].text(Lang::En).contains("contact"),
+        "{output:?}"
     );
-    assert!(wants.record.alarms_changed && wants.record.ending == Some(Ending::Alarm));
+    assert!(output.record.alarms_changed && output.record.ending == Some(Ending::Alarm));
     let ledger = machine.station.ledger();
     assert!(ledger.balances() && ledger.lost == 1);
 }
@@ -103,15 +103,15 @@ fn a_part_that_is_on_its_way_to_its_bin_when_the_run_ends_is_told() {
 #[test]
 fn a_refused_motion_makes_everything_safe() {
     let mut machine = under_test();
-    let mut wants = Wants::default();
+    let mut output = TurnOutput::default();
     let movement = crate::handling::moves::Move::PusherExtend;
-    let now = machine.shop.now;
+    let now = machine.mock.now;
     machine
         .station
-        .refused(movement, "probes are up", now, &mut wants);
-    assert_safe(&wants, "motion_refused");
+        .refused(movement, "probes are up", now, &mut output);
+    assert_safe(&output, "motion_refused");
     assert!(
-        wants.record.alarms[0]
+        output.record.alarms[0]
             .text(Lang::En)
             .contains("probes are up")
     );
@@ -120,36 +120,38 @@ fn a_refused_motion_makes_everything_safe() {
 #[test]
 fn safety_inputs_that_are_no_longer_read_are_trouble() {
     let mut machine = Machine::new(None, vec![Specimen::MissingPin; 50]);
-    let start = machine.shop.now;
-    while machine.shop.now.since(start) < Span::ms(3100) {
+    let start = machine.mock.now;
+    while machine.mock.now.since(start) < Span::ms(3100) {
         machine.turn();
     }
-    machine.shop.now = machine.shop.now + machine.shop.wiring.emergency_stop_max_age();
+    machine.mock.now = machine.mock.now + machine.mock.wiring.emergency_stop_max_age();
     assert!(machine.turn_without_scan().record.alarms.is_empty());
-    machine.shop.now = machine.shop.now + Span(1);
-    let wants = machine.turn_without_scan();
-    assert_safe(&wants, "sensor_stale");
-    let stale = wants.record.alarms[0].text(Lang::En);
+    machine.mock.now = machine.mock.now + Span(1);
+    let output = machine.turn_without_scan();
+    assert_safe(&output, "sensor_stale");
+    let stale = output.record.alarms[0].text(Lang::En);
     assert!(stale.contains("emergency_stop_ok"), "{stale}");
 }
 
 #[test]
-fn before_the_first_scan_the_station_waits_but_not_for_ever() {
+fn the_station_waits_briefly_for_the_first_scan() {
     let mut machine = Machine::new(Some(1), Vec::new());
-    machine.shop = super::Shop::unread();
-    let wants = machine.turn_without_scan();
+    machine.mock = super::MockRig::unread();
+    let output = machine.turn_without_scan();
     assert!(
-        wants.rig.motions.is_empty() && wants.rig.job.is_none() && wants.record.alarms.is_empty()
+        output.rig.motions.is_empty()
+            && output.rig.job.is_none()
+            && output.record.alarms.is_empty()
     );
-    assert_eq!(machine.station.doing(), Doing::WaitingForSensors);
-    machine.shop.now = machine.shop.now + Span::ms(3000);
+    assert_eq!(machine.station.activity(), Activity::WaitingForSensors);
+    machine.mock.now = machine.mock.now + Span::ms(3000);
     assert!(machine.turn_without_scan().record.alarms.is_empty());
-    machine.shop.now = machine.shop.now + Span(1);
+    machine.mock.now = machine.mock.now + Span(1);
     assert_safe(&machine.turn_without_scan(), "sensor_stale");
 }
 
 #[test]
-fn an_actuator_that_sticks_ends_the_run_under_its_name() {
+fn a_sticking_actuator_ends_the_run_by_name() {
     let mut machine = Machine::new(Some(1), vec![Specimen::MissingPin]);
     machine.sticking = Some("pusher");
     let ended = machine.run();
@@ -161,31 +163,31 @@ fn an_actuator_that_sticks_ends_the_run_under_its_name() {
 }
 
 #[test]
-fn an_empty_magazine_that_nobody_fills_ends_the_run_after_a_minute() {
+fn an_empty_magazine_ends_the_run_after_a_minute() {
     let mut machine = Machine::new(Some(2), vec![Specimen::MissingPin]);
-    let mut told = Vec::new();
-    let start = machine.shop.now;
+    let mut codes = Vec::new();
+    let start = machine.mock.now;
     let ending = loop {
-        let wants = machine.turn();
-        told.extend(wants.record.alarms.iter().map(|alarm| alarm.code.name()));
-        if let Some(ending) = wants.record.ending {
+        let output = machine.turn();
+        codes.extend(output.record.alarms.iter().map(|alarm| alarm.code.name()));
+        if let Some(ending) = output.record.ending {
             break ending;
         }
-        assert!(machine.shop.now.since(start) < Span::ms(120_000));
+        assert!(machine.mock.now.since(start) < Span::ms(120_000));
     };
     assert_eq!(
-        (ending, told.last().map(String::as_str)),
+        (ending, codes.last().map(String::as_str)),
         (Ending::Alarm, Some("magazine_empty"))
     );
     assert_eq!(machine.station.ledger().came_in, 1);
 }
 
-/// Codes of what came anew while `machine` runs for so long.
-fn told(machine: &mut Machine, ms: u64) -> Vec<String> {
-    let end = machine.shop.now + Span::ms(ms);
-    let mut told = Vec::new();
-    while machine.shop.now < end {
-        told.extend(
+/// Codes of the alarms that begin while `machine` runs for `ms`.
+fn new_alarms(machine: &mut Machine, ms: u64) -> Vec<String> {
+    let end = machine.mock.now + Span::ms(ms);
+    let mut codes = Vec::new();
+    while machine.mock.now < end {
+        codes.extend(
             machine
                 .turn()
                 .record
@@ -194,29 +196,32 @@ fn told(machine: &mut Machine, ms: u64) -> Vec<String> {
                 .map(|alarm| alarm.code.name()),
         );
     }
-    told
+    codes
 }
 
 #[test]
-fn an_emergency_stop_that_vents_the_air_is_one_alarm() {
+fn venting_by_emergency_stop_raises_one_alarm() {
     let mut machine = Machine::attended(None, vec![Specimen::MissingPin; 50]);
-    told(&mut machine, 2_000);
-    machine.shop.set(DigitalIn::EmergencyStopOk, false);
-    machine.shop.set(DigitalIn::AirOk, false);
-    assert_eq!(told(&mut machine, 5_000), ["emergency_stop"]);
-    machine.shop.set(DigitalIn::EmergencyStopOk, true);
-    assert!(told(&mut machine, 1_500).is_empty(), "pressure comes back");
-    machine.shop.set(DigitalIn::AirOk, true);
-    assert!(told(&mut machine, 5_000).is_empty());
+    new_alarms(&mut machine, 2_000);
+    machine.mock.set(DigitalIn::EmergencyStopOk, false);
+    machine.mock.set(DigitalIn::AirOk, false);
+    assert_eq!(new_alarms(&mut machine, 5_000), ["emergency_stop"]);
+    machine.mock.set(DigitalIn::EmergencyStopOk, true);
+    assert!(
+        new_alarms(&mut machine, 1_500).is_empty(),
+        "pressure comes back"
+    );
+    machine.mock.set(DigitalIn::AirOk, true);
+    assert!(new_alarms(&mut machine, 5_000).is_empty());
 }
 
 #[test]
-fn air_that_stays_away_after_an_emergency_stop_is_told() {
+fn missing_air_after_an_emergency_stop_is_reported() {
     let mut machine = Machine::attended(None, vec![Specimen::MissingPin; 50]);
-    told(&mut machine, 2_000);
-    machine.shop.set(DigitalIn::EmergencyStopOk, false);
-    machine.shop.set(DigitalIn::AirOk, false);
-    told(&mut machine, 1_000);
-    machine.shop.set(DigitalIn::EmergencyStopOk, true);
-    assert_eq!(told(&mut machine, 3_000), ["air_lost"]);
+    new_alarms(&mut machine, 2_000);
+    machine.mock.set(DigitalIn::EmergencyStopOk, false);
+    machine.mock.set(DigitalIn::AirOk, false);
+    new_alarms(&mut machine, 1_000);
+    machine.mock.set(DigitalIn::EmergencyStopOk, true);
+    assert_eq!(new_alarms(&mut machine, 3_000), ["air_lost"]);
 }

@@ -138,7 +138,7 @@ fn every_alarm_that_ends_a_test_names_the_interruption() {
 }
 
 #[test]
-fn a_stroke_that_does_not_arrive_is_told_with_its_sensors() {
+fn a_missed_stroke_is_reported_with_its_sensors() {
     for movement in MOVES {
         let alarm = Alarm::from(Trouble::NotReached(movement, Span::ms(900)));
         let code = format!("{}_not_reached", movement.actuator_key());
@@ -154,7 +154,7 @@ fn a_stroke_that_does_not_arrive_is_told_with_its_sensors() {
 }
 
 #[test]
-fn cause_consequence_and_action_are_told_in_both_languages() {
+fn cause_consequence_and_action_have_both_languages() {
     for code in AlarmCode::all() {
         for (en, zh) in code.help(Lang::En).into_iter().zip(code.help(Lang::Zh)) {
             assert!(en.ends_with('.') && en.is_ascii(), "{code}: {en}");
@@ -171,7 +171,7 @@ fn is_chinese(c: char) -> bool {
 }
 
 #[test]
-fn what_a_chinese_text_is_about_is_named_in_chinese() {
+fn chinese_texts_have_chinese_names() {
     for alarm in every_alarm() {
         let names = ["place", "bin", "motion"];
         if names.iter().any(|it| alarm.args.get(it).is_some()) {
@@ -186,7 +186,7 @@ fn what_a_chinese_text_is_about_is_named_in_chinese() {
 }
 
 #[test]
-fn an_alarm_that_was_stored_without_its_arguments_says_its_cause() {
+fn an_alarm_without_arguments_shows_its_cause() {
     let left = Alarm::from(AlarmCode::BinBeam);
     assert_eq!(left.text(Lang::Zh), left.code.help(Lang::Zh)[0]);
 }

@@ -1,10 +1,10 @@
-//! What the acts of a stage are on the default rig, and how their readings are put together again.
+//! Acts of a stage on the default rig, and the readings that they return.
 #![allow(clippy::unwrap_used)]
 
 use super::{Act, Read};
 use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Counter};
 use crate::dut::em_relay::readings::Readings;
-use crate::handling::tests::Shop;
+use crate::handling::tests::MockRig;
 use crate::instrument::act::{self, Doing, Job, JobDone, Runner};
 use dcon::Command;
 use units::{Span, Volt};
@@ -19,7 +19,7 @@ fn text(command: &Command) -> String {
 
 #[test]
 fn each_reading_takes_the_transactions_of_its_points() {
-    let shop = Shop::unread();
+    let mock = MockRig::unread();
     for (read, sent) in [
         (Read::Board, vec!["@08"]),
         (Read::Coil, vec!["#01"]),
@@ -29,12 +29,12 @@ fn each_reading_takes_the_transactions_of_its_points() {
         (Read::Gate, vec!["#030"]),
         (Read::Track, vec!["#052"]),
     ] {
-        let acts = shop.points.wired(vec![Act::Read(read)], &FINE);
-        let mut runner = Runner::new(acts, shop.now);
-        let Doing::Job(Job::Read(points)) = runner.step(shop.now, None, &shop.image) else {
+        let acts = mock.points.wired(vec![Act::Read(read)], &FINE);
+        let mut runner = Runner::new(acts, mock.now);
+        let Doing::Job(Job::Read(points)) = runner.step(mock.now, None, &mock.image) else {
             panic!("{read:?} is no reading");
         };
-        let reads = shop.wiring.reads(&points);
+        let reads = mock.wiring.reads(&points);
         let texts: Vec<String> = reads.iter().map(|(_, command)| text(command)).collect();
         assert_eq!(texts, sent, "{read:?}");
     }
@@ -42,7 +42,7 @@ fn each_reading_takes_the_transactions_of_its_points() {
 
 #[test]
 fn the_level_steps_and_the_other_outputs_ramp() {
-    let points = Shop::unread().points;
+    let points = MockRig::unread().points;
     let wired = |output| {
         let acts = vec![Act::Supply(vec![(output, Volt(1.0))])];
         points.wired(acts, &FINE).remove(0)
@@ -59,31 +59,31 @@ fn the_level_steps_and_the_other_outputs_ramp() {
 }
 
 #[test]
-fn readings_are_put_together_as_the_stage_has_asked_for_them() {
-    let mut shop = Shop::at_rest();
+fn readings_follow_the_order_of_their_acts() {
+    let mut mock = MockRig::at_rest();
     let reads = [Read::Board, Read::Gates, Read::Coil, Read::Gate, Read::Coil];
-    let acts = shop.points.wired(reads.map(Act::Read).to_vec(), &FINE);
-    let mut runner = Runner::new(acts, shop.now);
-    let mut doing = runner.step(shop.now, None, &shop.image);
+    let acts = mock.points.wired(reads.map(Act::Read).to_vec(), &FINE);
+    let mut runner = Runner::new(acts, mock.now);
+    let mut doing = runner.step(mock.now, None, &mock.image);
     for n in 0..5_u32 {
         assert!(matches!(doing, Doing::Job(_)), "{doing:?}");
-        shop.after(4);
-        shop.gate(Counter::Gate0, n);
-        // The second counter is not asked again.
+        mock.after(4);
+        mock.gate(Counter::Gate0, n);
+        // The rig reads the second counter only twice.
         if n < 2 {
-            shop.gate(Counter::Gate1, 100);
+            mock.gate(Counter::Gate1, 100);
         }
         for channel in FINE {
-            shop.volts(channel, f64::from(n));
+            mock.volts(channel, f64::from(n));
         }
         let done = JobDone {
-            at: shop.now,
+            at: mock.now,
             trouble: None,
         };
-        doing = runner.step(shop.now, Some(&done), &shop.image);
+        doing = runner.step(mock.now, Some(&done), &mock.image);
     }
     assert_eq!(doing, Doing::Done);
-    let readings = Readings::of(&runner.readings, &shop.points, None);
+    let readings = Readings::of(&runner.readings, &mock.points, None);
     assert!(readings.boards[0].nc_closed && !readings.boards[0].no_closed);
     assert!(!readings.boards[0].probe_chain && readings.boards.len() == 1);
     let counts = |pair: &[_; 2]| {
@@ -100,7 +100,7 @@ fn readings_are_put_together_as_the_stage_has_asked_for_them() {
     assert_eq!(volts.collect::<Vec<_>>(), [[2.0; 2], [4.0; 2]]);
     let carried = Readings::of(
         &runner.readings,
-        &shop.points,
+        &mock.points,
         readings.gates.last().cloned(),
     );
     assert_eq!(carried.gates.len(), 3, "behind those of the stage before");

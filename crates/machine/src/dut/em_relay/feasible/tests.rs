@@ -1,4 +1,4 @@
-//! What a recipe may not ask of modules that cannot give it, and what is not worth judging.
+//! Recipes that the modules cannot perform, and limits too narrow to judge.
 #![allow(clippy::unwrap_used)]
 
 use super::super::bins;
@@ -52,7 +52,7 @@ fn module<'a>(wiring: &'a mut Wiring, name: &str) -> &'a mut Module {
     modules.find(|module| module.name == name).unwrap()
 }
 
-/// Key, what was found and what was expected, of a plant that has been changed.
+/// Key, found and expected of the fault of a changed plant.
 fn refused(strategy: Strategy, change: impl Fn(&mut Wiring)) -> [String; 3] {
     let (mut wiring, accuracy) = plant();
     change(&mut wiring);
@@ -60,7 +60,7 @@ fn refused(strategy: Strategy, change: impl Fn(&mut Wiring)) -> [String; 3] {
     [fault.key, fault.found, fault.expected]
 }
 
-/// Strategies that the plant, changed so, cannot perform.
+/// Strategies that the changed plant cannot perform.
 fn hindered(change: impl Fn(&mut Wiring)) -> Vec<Strategy> {
     let (mut wiring, accuracy) = plant();
     change(&mut wiring);
@@ -106,7 +106,7 @@ fn a_rig_without_a_bin_for_relays_is_refused() {
 }
 
 #[test]
-fn a_ramp_on_an_output_without_slew_code_is_refused_and_steps_are_not() {
+fn only_ramps_need_a_slew_code() {
     for name in ["ao_coarse", "ao_fine"] {
         let steps = |wiring: &mut Wiring| {
             let code_0 = module(wiring, "ao_level").slew;
@@ -157,7 +157,7 @@ fn a_masked_contact_channel_hinders_every_strategy() {
 }
 
 #[test]
-fn a_converter_out_of_fast_mode_is_refused_unless_nobody_counts_on_it() {
+fn a_converter_must_convert_as_fast_as_promised() {
     for name in ["contact_ai", "coil_ai"] {
         let slow = |wiring: &mut Wiring| module(wiring, name).fast = false;
         assert_eq!(hindered(slow), Strategy::ALL);
@@ -174,7 +174,7 @@ fn a_converter_out_of_fast_mode_is_refused_unless_nobody_counts_on_it() {
 }
 
 #[test]
-fn closures_cannot_stop_early_where_no_limit_says_when() {
+fn an_early_stop_needs_a_limit() {
     let (wiring, accuracy) = plant();
     let mut recipe = recipe(Strategy::CoarseFine);
     let DeviceRecipe::EmRelay(relay) = &mut recipe.device else {
@@ -189,7 +189,7 @@ fn closures_cannot_stop_early_where_no_limit_says_when() {
 }
 
 #[test]
-fn outputs_refreshed_every_two_milliseconds_ramp_and_slower_ones_only_step() {
+fn ramps_need_a_refresh_every_two_milliseconds() {
     let (wiring, mut accuracy) = plant();
     accuracy.ao_refresh_ms = 2.0;
     assert_eq!(
@@ -206,7 +206,7 @@ fn outputs_refreshed_every_two_milliseconds_ramp_and_slower_ones_only_step() {
 }
 
 #[test]
-fn limits_that_the_guard_bands_fill_are_refused_with_what_they_leave() {
+fn limits_narrower_than_the_guard_bands_are_refused() {
     let (wiring, accuracy) = plant();
     let around = |nominal: f64, width: f64| {
         let table = format!(
@@ -218,7 +218,7 @@ fn limits_that_the_guard_bands_fill_are_refused_with_what_they_leave() {
         recipe.limits = toml::from_str(&table).unwrap();
         recipe.feasible(&wiring, &accuracy)
     };
-    // 0.18 K of thermometer and part are 0.28 ohm of a 400 ohm coil: 2 U are 1.12 ohm.
+    // 0.18 K of thermometer and part are 0.28 ohm of a 400 ohm coil: 2 U is 1.12 ohm.
     around(400.0, 1.3).unwrap();
     let fault = around(400.0, 0.9).unwrap_err();
     assert_eq!(fault.key, format!("limits.{}", Parameter::CoilResistance));

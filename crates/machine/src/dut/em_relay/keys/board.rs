@@ -3,7 +3,7 @@
 use crate::dut::keys::table;
 use crate::form::{Key, above_zero, from_to, key};
 
-/// `[reference]`.
+/// Keys of `[reference]`.
 pub const REFERENCE: &[Key] = table! {
     key("coil_ohm", above_zero(100_000.0, "ohm"), "gauge", "reference resistor in place of the coil");
     key("coil_tolerance_pct", from_to(0.0, 10.0, "%"), "gauge", "its tolerance");
@@ -16,7 +16,7 @@ pub const REFERENCE: &[Key] = table! {
     key("counter_clock_tolerance_ppm", from_to(0.0, 10_000.0, "ppm"), "gauge", "its tolerance");
 };
 
-/// Key of `[accuracy]`.
+/// Key of `[accuracy]`: delay of the counter gates.
 pub const GATE_DELAY: Key = key(
     "gate_delay_us",
     from_to(0.0, 1000.0, "us"),
@@ -24,7 +24,7 @@ pub const GATE_DELAY: Key = key(
     "delay of the counter gates",
 );
 
-/// Key of `[accuracy]`.
+/// Key of `[accuracy]`: scatter of a threshold from operation to operation.
 pub const OPERATION_SCATTER: Key = key(
     "operation_scatter_mv",
     from_to(0.0, 1000.0, "mV"),

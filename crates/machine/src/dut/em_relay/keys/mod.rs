@@ -1,5 +1,5 @@
-//! Keys that only a relay and its board bring to the files of `config/`.
+//! Keys of the files in `config/` that only relays and their board need.
 
 pub mod board;
-pub mod golden;
 pub mod recipe;
+pub mod reference_part;

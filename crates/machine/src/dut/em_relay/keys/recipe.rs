@@ -5,7 +5,7 @@ use crate::dut::em_relay::sampling::Polarities;
 use crate::dut::keys::{BODY, PIN_LENGTH, REFERENCE_TEMPERATURE, Sections, limit, table};
 use crate::form::{Form, Key, above_zero, key, optional, whole};
 
-/// `[part]`, `[limits]`, `[test]`.
+/// Keys of `[part]`, `[limits]`, `[test]`.
 pub const SECTIONS: Sections = Sections {
     part: PART,
     limits: LIMITS,

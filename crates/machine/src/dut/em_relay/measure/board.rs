@@ -1,8 +1,8 @@
 //! State of interface board, coil supply and armature between two stages of a test.
 //!
-//! The acts of a stage begin from the state that the stage before leaves, and return the state that they leave.
-//! The conclusion corrects it when the part has not moved as planned. A mark outlives its stage:
-//! "the mark" is the last instant that any stage has marked.
+//! Each stage builds its acts on the state that the stage before left, and returns the state that they leave. Its
+//! conclusion corrects that state when the part has not moved as planned. "The mark" is the last instant marked by any
+//! stage.
 
 use super::{Context, INTERLOCK, set};
 use crate::dut::em_relay::act::Act;
@@ -13,7 +13,7 @@ use crate::dut::em_relay::recipe::Suppression;
 use crate::dut::em_relay::supply::Supply;
 use units::{Span, Volt};
 
-/// Difference of two sums of the same three voltages.
+/// Rounding error of a difference between two sums of the same three voltages.
 const ROUNDING_V: f64 = 1e-6;
 
 /// State of board and supply between two stages.
@@ -25,41 +25,41 @@ pub struct BoardState {
     pub armature: Armature,
     /// The ramp that the present stage sends.
     pub ramp: Option<SentRamp>,
-    /// Time after the mark until the last ramp without a wait has ended.
+    /// Time from the mark until the last ramp that no stage has waited for ends.
     pub still_ramping: Span,
 }
 
 /// State of drive and armature.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Armature {
-    /// Unknown: the next stage first takes the drive off, or seals the armature.
+    /// Unknown: the next stage first takes the drive off or seals the armature.
     Unknown,
-    /// At rest, drive off, supply at nominal, source on, board armed and counters read: a timed operation needs only the
-    /// drive.
+    /// At rest, drive off, supply at nominal, source on, board armed, counters read: switching the drive on starts a
+    /// timed operation.
     ReadyForTiming,
     /// At rest on the pre-bias, armed in ramp mode: the coarse operate ramp may begin.
     ReadyForRamp,
-    /// Operated since the mark, and driven.
+    /// Operated after the mark, and driven.
     Operated,
-    /// Drive off since the mark or before it.
+    /// Released: the drive went off at the mark or before it.
     Released,
     /// Released, and the supply at the start level of the next part: the last stage only checks the coil current.
     Rested,
 }
 
-/// A ramp from ARM to its end.
+/// Ramp from ARM to its end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SentRamp {
     /// Supply when the board was armed.
     pub start: Volt,
-    /// How far the supply moves from there, positive.
+    /// Distance that the supply moves from `start`, positive.
     pub span: Volt,
-    /// Longest time until the output has arrived.
+    /// Longest time until the output arrives.
     pub takes: Span,
 }
 
 impl Armature {
-    /// Returns true when the drive is off since the mark or before it.
+    /// Returns true when the drive went off at the mark or before it.
     pub fn is_released(self) -> bool {
         match self {
             Self::ReadyForTiming | Self::Released | Self::Rested => true,
@@ -87,7 +87,7 @@ impl BoardState {
         ramp
     }
 
-    /// Panics when the supply contradicts the state of the armature.
+    /// Panics when the commanded supply contradicts the state of the armature.
     pub fn check(&self, context: &Context) {
         let test = &context.relay.test;
         let supply_v = match self.armature {
@@ -106,8 +106,8 @@ impl BoardState {
     }
 }
 
-/// Selects the coil suppression of the recipe for the next release, or the zener again; no act where that is the zener.
-/// The board switches it only below 1 mA of coil current.
+/// Selects the coil suppression of the recipe, or the zener again; returns no act when the recipe uses the zener. The
+/// board switches the suppression only below 1 mA of coil current.
 pub(super) fn select_diode(context: &Context, on: bool) -> Option<Act> {
     match context.relay.test.suppression {
         Suppression::Zener => None,
@@ -115,7 +115,7 @@ pub(super) fn select_diode(context: &Context, on: bool) -> Option<Act> {
     }
 }
 
-/// Takes the drive off and marks the instant; returns no acts when it is off.
+/// Takes the drive off and marks the instant; returns no acts when the drive is off already.
 pub(super) fn drive_off(armature: Armature) -> Vec<Act> {
     if armature.is_released() {
         return Vec::new();

@@ -1,5 +1,5 @@
-//! Coil resistance at the pre-bias, below pickup: the armature is open and L/R short. The pre-bias is
-//! also where the operate ramp starts, so the coil stays on.
+//! Coil resistance at the pre-bias, where the armature is open and L/R short. The operate ramp starts from the
+//! pre-bias too, so the coil stays on.
 
 use super::board::{Armature, BoardState, select_diode};
 use super::state::TestState;
@@ -21,17 +21,17 @@ use units::{Ohm, Span, Volt};
 
 /// Channels of the coil converter that a recipe has enabled.
 const CHANNELS: usize = 2;
-/// Below this fraction of the pre-bias the supply or the probe-up chain is in trouble, not the coil.
+/// Below this fraction of the pre-bias, supply or probe-up chain are faulty, not the coil.
 const LEAST_PREBIAS: f64 = 0.5;
-/// Below this terminal voltage of the fine current channel (0.25 mA) no current flows.
+/// Terminal voltage of the fine current channel (0.25 mA) below which the coil counts as open.
 const NO_CURRENT: Volt = Volt(0.15);
-/// Below this coil current the board switches the suppression and the probes may leave, ampere.
+/// Coil current below which the board can switch the suppression and the probes may leave, ampere.
 const OFF_CURRENT_A: f64 = 0.001;
-/// Time from the mark until the drive is off and the coil current gone.
+/// Time from the mark until the drive is off and the coil current has decayed.
 const FREED: Span = Span::ms(6);
-/// The same where a diode takes over the current of a sealed armature at nominal voltage.
+/// [`FREED`] with the diode, after a sealed armature at nominal voltage.
 const FREED_BY_DIODE: Span = Span::ms(60);
-/// Nothing driven, nothing selected, ready for the Kelvin check with which the next test begins.
+/// Outputs with nothing driven or selected: the Kelvin check of the next test starts from them.
 const IDLE: [(DigitalOut, bool); 8] = [
     (SourceOn, false),
     (SourceReverse, false),
@@ -43,8 +43,8 @@ const IDLE: [(DigitalOut, bool); 8] = [
     (KelvinTest, true),
 ];
 
-/// Prepares the board for the operate ramp while the coil is converted: nothing moves the supply
-/// between arming and the ramp. Where the stage is repeated, the relay drops and the ramps come down first.
+/// Converts the coil and meanwhile prepares the board for the operate ramp: the supply stays still between ARM and
+/// ramp. A repeated stage first releases the relay and takes the ramps down.
 pub(super) fn acts(context: &Context, board: BoardState, repeated: bool) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let prebias = Volt(context.relay.test.prebias_v);
@@ -104,7 +104,7 @@ pub(super) fn acts_off(
     acts.extend(select_diode(context, false));
     if board.armature != Armature::Rested {
         acts.extend((!board.armature.is_released()).then_some(Act::Mark));
-        // The line skips an unchanged value; a change of level shows a module that ignores writes on this part.
+        // The line skips unchanged values: the step to 0 V shows a module that ignores writes.
         acts.extend(stopped.then(|| board.supply.step_to(Volt(0.0))));
         acts.extend(rest(context, &mut board.supply));
     }
@@ -116,8 +116,8 @@ pub(super) fn acts_off(
     (acts, board)
 }
 
-/// Sets the supply to the start level of the next part (pre-bias, both ramps down) and checks every module with outputs
-/// for a restart.
+/// Sets the supply to the start level of the next part (pre-bias, both ramps down) and reads the restart flag of every
+/// module with outputs.
 pub(super) fn rest(context: &Context, supply: &mut Supply) -> [Act; 4] {
     let (coarse, _) = supply.ramp_coarse(Volt(0.0));
     let (fine, _) = supply.ramp_fine(Volt(0.0));
@@ -197,7 +197,7 @@ pub(super) fn conclude(
     None
 }
 
-/// Returns the resistance between the supply and the pins of `coil`, from the calibrated input and supply.
+/// Returns the series resistance of supply and pins of `coil`, from the calibrated input and supply.
 fn probe_contact(context: &Context, scans: &[CoilScan], coil: Ohm) -> Option<Ohm> {
     let at_pins = |scan: &CoilScan| {
         let Sample {

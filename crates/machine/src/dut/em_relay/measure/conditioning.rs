@@ -1,6 +1,6 @@
 //! Conditioning: operations before the first measurement, at nominal voltage and without contact load.
 //!
-//! Nothing is measured; a relay that does not move shows it on its timed operation.
+//! Conditioning measures nothing; the timed operation finds a relay that does not move.
 
 use super::board::{Armature, BoardState};
 use super::{Context, set};
@@ -8,12 +8,12 @@ use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::points::DigitalOut::{Arm, CoilDrive, KelvinTest, RampMode, SourceOn};
 use units::{Span, Volt};
 
-/// Drive on, and as long off: the armature rests after operation or release and bounce, into a diode too.
+/// Drive on for this time, then off for as long: operation, release and bounce end within it, with a diode too.
 const HALF: Span = Span::ms(40);
-/// Longest time of an operation on a line that repeats requests.
+/// Longest time of one operation on a line that repeats requests.
 const OPERATION: Span = Span::ms(250);
 
-/// Operates the relay as often as the recipe says.
+/// Operates the relay as often as the recipe demands.
 pub(super) fn acts(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let idle = [
@@ -42,7 +42,7 @@ pub(super) fn acts(context: &Context, board: BoardState) -> (Vec<Act>, BoardStat
     (acts, left)
 }
 
-/// Longest time of `operations`.
+/// Returns the longest time of `operations`.
 pub(super) fn longest(operations: u32) -> Span {
     Span(OPERATION.0 * u64::from(operations))
 }

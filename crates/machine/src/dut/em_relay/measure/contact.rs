@@ -1,5 +1,5 @@
-//! Contact resistance of a closure: source on, the polarities of the recipe, each read from a conversion that
-//! began after the source had settled.
+//! Contact resistance of a closure: source on, then one conversion per polarity of the recipe, each begun after the
+//! source has settled.
 
 use super::board::{Armature, BoardState};
 use super::state::TestState;
@@ -14,11 +14,11 @@ use crate::dut::em_relay::sampling::Polarities;
 use crate::rig::sample::{Quality, Sample};
 use units::{Celsius, Span, Volt};
 
-/// No contact of 10 A class is below this, milliohms; a source that is off reads about 0.
+/// Smallest resistance of any contact of the 10 A class, milliohms; with the source off the drop reads about 0.
 const LEAST_MOHM: f64 = 0.5;
-/// The thermal EMF may have moved by 30 uV between two closures; at the terminal, behind the gain of 50.
+/// Change of the thermal EMF between two closures (30 uV), volts at the terminal behind the gain of 50.
 const EMF_MOVES_V: f64 = 30e-6 * 50.0;
-/// Current and amplifier have settled.
+/// Settling time of source and amplifier.
 pub(super) const SOURCE_SETTLES: Span = Span::ms(1);
 
 /// Sets the direction of the source and reads the drop.
@@ -31,7 +31,7 @@ fn directed(context: &Context, reverse: bool) -> [Act; 4] {
     ]
 }
 
-/// Reads the polarities after the first forward one; the source stays on in its last direction.
+/// Reads the polarities after the first forward one and leaves the source on in its last direction.
 pub(super) fn reversed(context: &Context) -> Vec<Act> {
     let mut acts = directed(context, true).to_vec();
     match context.relay.test.strategy.contact.polarities {
@@ -48,8 +48,8 @@ pub(super) fn reversed(context: &Context) -> Vec<Act> {
     acts
 }
 
-/// Reads both polarities at rest. During the first conversion the stage reads the temperature and prepares the timed
-/// operation: ARM, counters, supply at nominal with the drive off.
+/// Reads the polarities of the NC contact at rest. During the first conversion the stage reads the temperature and
+/// prepares the timed operation: ARM, counters, supply at nominal with the drive off.
 pub(super) fn acts_nc(context: &Context, mut board: BoardState) -> (Vec<Act>, BoardState) {
     let mut acts = vec![
         set(&[(KelvinTest, false), (SourceOn, true), (Arm, true)]),
@@ -66,7 +66,7 @@ pub(super) fn acts_nc(context: &Context, mut board: BoardState) -> (Vec<Act>, Bo
     (acts, board)
 }
 
-/// Returns the drop of a reading.
+/// Returns the drop of a reading, or why it has none.
 pub(super) fn drop_of(sample: Option<&Sample>, compliance: bool) -> Result<Volt, Unread> {
     let Some(sample) = sample else {
         return Err(Unread::Missing);
@@ -79,13 +79,13 @@ pub(super) fn drop_of(sample: Option<&Sample>, compliance: bool) -> Result<Volt,
     }
 }
 
-/// Why a drop could not be read.
+/// Reason for a drop that is not read.
 pub(super) enum Unread {
     /// No usable sample.
     Missing,
-    /// Over range though the source drives its current: far too high.
+    /// Over range while the source drives its current: resistance far above the limit.
     OverRange,
-    /// Over range with the source in compliance: open or far too high.
+    /// Over range with the source in compliance: open, or resistance far above the limit.
     OpenContact,
 }
 
@@ -161,7 +161,7 @@ pub(super) fn is_clear(context: &Context, state: &TestState, parameter: Paramete
     sampling.is_clear(&values_mohm, u_mohm, &recipe.limits.of(parameter))
 }
 
-/// Adds one NC closure; the result is the mean of all closures read.
+/// Adds one NC closure; the result is the mean of all NC closures.
 pub(super) fn add_nc(context: &Context, drop: Volt, samples: &[Sample], state: &mut TestState) {
     let (drops, record) = (&mut state.plan.nc_drops, &mut state.record);
     drops.push(drop);

@@ -1,4 +1,4 @@
-//! Context of a test: recipe, calibration, and what the makers of the instruments promise.
+//! Context of a test: recipe, calibration, and the accuracies of the instruments.
 
 use crate::dut::Recipe;
 use crate::dut::accuracy::AccuracySettings;
@@ -17,14 +17,14 @@ use crate::instrument::act;
 use std::sync::Arc;
 use units::{Celsius, Ohm, Span};
 
-/// Span of a +-10 V input of 12 bits, volts per step.
+/// Resolution of a +-10 V input of 12 bits, volts per step.
 const LSB_V: f64 = 20.0 / 4096.0;
 
-/// Guessed overshoot of a 96 V/s ramp before the first reference part, volts; it only places the first fine ramp.
+/// Assumed overshoot of a 96 V/s ramp before the first reference part, volts; it only places the first fine ramp.
 const UNTAUGHT_OPERATE_V: f64 = 0.85;
 const UNTAUGHT_RELEASE_V: f64 = -1.05;
 
-/// Guessed overshoot of a 1.5 V/s ramp, operate and release, volts.
+/// Assumed overshoot of a 1.5 V/s ramp, operate and release, volts.
 pub const UNTAUGHT_FINE_V: (f64, f64) = (0.03, -0.02);
 
 /// Recipe, calibration and instrument data of a test.
@@ -40,7 +40,7 @@ pub struct Context {
     pub points: Points,
     /// References on the interface board.
     pub reference: ReferenceSettings,
-    /// Accuracies of the makers.
+    /// Accuracies that the makers specify.
     pub accuracy: AccuracySettings,
     /// Nominal rates of the coarse and the fine ramp at the coil, volts per second.
     pub nominal_v_per_s: [f64; 2],
@@ -48,13 +48,13 @@ pub struct Context {
     pub probe_contact: Option<Ohm>,
     /// True for a reference check or a first article: every result gets confirmation measurements.
     pub thorough: bool,
-    /// The reference part in the nest while it teaches the overshoot: its certificate places its fine ramps.
+    /// The reference part in the nest while the overshoot is being learned: its certificate places its fine ramps.
     pub teaching: Option<ReferencePart>,
 }
 
 impl Context {
-    /// Returns the time until every one of `channels` enabled channels holds a conversion begun from now on: one round, one
-    /// more conversion, and 3 % for the converter's clock.
+    /// Returns the time until each of `channels` holds a conversion begun from now on: one round, one conversion, and
+    /// 3 % for the tolerance of the converter's clock.
     pub fn fresh(&self, channels: usize) -> Span {
         Span::seconds(1.03 * (channels + 1) as f64 / self.accuracy.conversions_per_s)
     }
@@ -96,8 +96,8 @@ impl Context {
         self.accuracy.operation_v(self.relay.part.nominal_v)
     }
 
-    /// Returns the relative uncertainty of a threshold from the change of the probe contact since the reference parts (1 sd);
-    /// no correction removes it.
+    /// Returns the relative standard uncertainty of a threshold caused by the change of the probe contact since the
+    /// reference parts; no correction removes it.
     pub fn contact_share(&self) -> f64 {
         let then_ohm = self.calibration.probe_contact_ohm;
         let changed = self.probe_contact.map_or(0.0, |Ohm(now)| now - then_ohm);
@@ -117,8 +117,8 @@ impl Context {
         Celsius(self.relay.part.reference_temperature_c)
     }
 
-    /// Returns the strategy for a threshold. Reference parts, and the first parts of a lot under `adaptive`, get both ramps
-    /// because they teach the overshoot.
+    /// Returns the strategy for a threshold. Reference parts, and the first parts of a lot under `adaptive`, get both
+    /// ramps: the overshoot model learns from them.
     pub fn strategy(&self, parameter: Parameter) -> Strategy {
         let overshoot = self.overshoot(match parameter == Parameter::ReleaseVoltage {
             true => Direction::Falling,
@@ -133,7 +133,7 @@ impl Context {
         }
     }
 
-    /// Returns the overshoot of the ramps of a direction; before any reference part, a guess with a wide scatter.
+    /// Returns the overshoot of a direction; before any reference part an assumed one with a wide scatter.
     pub fn overshoot(&self, direction: Direction) -> Overshoot {
         let (operate, release) = untaught();
         match (direction, self.calibration.overshoots) {

@@ -1,4 +1,4 @@
-//! What comes of a fine ramp: the threshold, or another ramp or a search where it has missed the event.
+//! Conclusion of a fine ramp: the threshold, or the next stage when the ramp has missed the event.
 
 use super::board::Armature;
 use super::indication::{fine_reading, gate0};
@@ -15,11 +15,11 @@ use units::{Second, Span, Volt};
 /// Fine ramps that may miss the threshold before the test is void.
 const ATTEMPTS: u8 = 5;
 
-/// What came of a fine ramp.
+/// Outcome of a fine ramp.
 enum Met {
-    /// The indicated voltage at the contact event, and the length of the gate.
+    /// Indicated voltage at the contact event, and length of the gate.
     At(Volt, Second),
-    /// It has missed the event; the next ramp looks where the plan expects it now.
+    /// Event missed; the plan holds the interval for the next ramp.
     Again,
 }
 
@@ -54,7 +54,7 @@ pub(super) fn conclude(
     None
 }
 
-/// Compares a fine ramp with its event; `None` once the test is void.
+/// Compares a fine ramp with the contact event; returns `None` when that ends the test.
 fn meet(
     context: &Context,
     readings: &Readings,
@@ -77,7 +77,7 @@ fn meet(
     let stopped = stopped_at(sent.start, sent.span, seen);
     let left = sent.takes.0.saturating_sub(Span::seconds(gate.0).0);
     board.still_ramping = Span(if met { left } else { 0 });
-    // Before the interval the ramp had hardly begun: the step before it has moved the armature.
+    // An event before the interval comes from the approach, not from the ramp.
     let settled = match direction {
         Direction::Rising => Pace::of(record).run_up(v_per_s),
         Direction::Falling => SETTLED_DOWN,
@@ -101,8 +101,8 @@ fn meet(
     None
 }
 
-/// The stage after a miss: first the neighbouring interval; after a second miss, or where that interval is wide, a
-/// search by halves.
+/// Returns the stage after a miss: a ramp over the neighbouring interval; after the second miss, or when that interval
+/// is wide, a search by halves.
 fn again(context: &Context, state: &mut TestState, (direction, attempt): (Direction, u8)) -> Stage {
     let expected = state.plan.expected(direction);
     let wide = expected.is_some_and(|interval| interval.is_wide());

@@ -24,7 +24,7 @@ pub(super) fn gate0(context: &Context, readings: &Readings) -> Option<Second> {
     ))
 }
 
-/// Returns the threshold from a coarse ramp by the overshoot model; `None` for a part unlike those that taught it.
+/// Returns the threshold from a coarse ramp by the overshoot model; `None` for a part unlike those that taught the model.
 ///
 /// The learned scatter already contains resolution, repeatability and slope error, so the budget does not add them.
 pub(super) fn coarse_reading(
@@ -34,7 +34,7 @@ pub(super) fn coarse_reading(
     direction: Direction,
 ) -> Option<Reading> {
     let predicted = overshoot.coarse.of(&seen);
-    // The learned scatter contains that of the fine operation too, which does not belong to this value.
+    // The learned scatter includes that of the fine operation, which this value does not have.
     let operation_v = context.operation_v();
     let own_v = (predicted.u_v.powi(2) - operation_v.powi(2)).max(operation_v.powi(2));
     let doubt = RampDoubt {
@@ -42,7 +42,7 @@ pub(super) fn coarse_reading(
         slope_known: true,
         operation_v: 0.0,
         refresh: Second(0.0),
-        // The model follows the indication, gain error included.
+        // The model is learned from indications, gain error included.
         level_share: 0.0,
         ..doubt(context)
     };
@@ -61,7 +61,7 @@ pub(super) fn coarse_reading(
     predicted.alike.then_some(reading)
 }
 
-/// Returns the threshold from a fine ramp, corrected by the overshoot of reference parts or, by two rates, from both ramps.
+/// Returns the threshold from a fine ramp by the overshoot of reference parts, or from both ramps by two rates.
 pub(super) fn fine_reading(
     context: &Context,
     (ramps, gate): (Ramp, Second),
@@ -86,7 +86,7 @@ pub(super) fn fine_reading(
             context.calibration.fine_v_per_s.value,
         ];
         let sign = direction.sign();
-        // Growth time from the overshoot at both rates on reference parts; their common offset cancels.
+        // The overshoots at both rates on reference parts give the growth time; their common offset cancels.
         let predicted = overshoot.coarse.of(&ramps.coarse);
         let fine_v = overshoot.fine_v.value + overshoot.own_v(predicted.volts, direction).value;
         let overshoots = [predicted.volts + fine_v, fine_v];

@@ -1,10 +1,10 @@
-//! Kelvin check and pin map: every pin has its force and sense contact, and the contacts rest.
+//! Kelvin check and pin map: each pin has its force and sense contact, and both contacts are in their rest position.
 //!
 //! | seen | meaning |
 //! |---|---|
 //! | one bit open | missing pin or dirty probe: void |
 //! | COM open, the other four good | a misoriented part, or a dirty COM probe: void |
-//! | five good, NC open or NO closed | a contact that does not rest: fail, contact |
+//! | five good, NC open or NO closed | a contact out of its rest position: fail, contact |
 
 use super::state::TestState;
 use super::{Stage, set};

@@ -1,30 +1,29 @@
-//! The test of one part: the order of its stages, and when it repeats or leaves out some.
+//! Test of one part: the order of its stages, and which of them it repeats or omits.
 //!
 //! ```text
 //! kelvin -> conditioning -> NC contact -> timed operate + NO contact -> timed release + NC contact -> coil
 //!        -> operate coarse -> release coarse -> operate fine -> release fine -> off -> verdict
 //! ```
-//! Conditioning takes part where the recipe asks for operations before the first measurement.
-//! Each release follows on the operation before it, so that a part operates three times and not five.
-//! The times come first: a relay that is late on a step is late on a ramp, and its times and its coil predict by how much
-//! ([`crate::dut::em_relay::overshoot`]), which places the fine ramps. The test so finds a contact that does not move at nominal
-//! voltage before any ramp, and still measures the coil, which may be the cause.
+//! Conditioning runs when the recipe demands operations before the first measurement. Each release follows the
+//! operation before it, so that a part operates three times and not five. The times come first: they show a contact
+//! that does not move at nominal voltage, and operate time and coil resistance predict the overshoot of the ramps
+//! ([`crate::dut::em_relay::overshoot`]). After such a contact the test still measures the coil, which may be the
+//! cause.
 //!
-//! A stage consists of acts and a conclusion; `state.rs` calls both. The acts begin from the state of the board (`board.rs`)
-//! and come with the state that they leave. The conclusion writes results into the record (`record.rs`) and what later
-//! stages go by into the plan (`plan.rs`), and may put a stage before the planned ones.
+//! A stage consists of acts and a conclusion; `state.rs` calls both. The acts build on the state of the board
+//! (`board.rs`) and return the state that they leave. The conclusion writes results into the record (`record.rs`) and
+//! data for later stages into the plan (`plan.rs`), and may insert a stage before the planned ones.
 //!
-//! A stage does what needs no waiting (arming, counters, selections) while something else settles or converts;
-//! a mark therefore outlives the stage that set it, and so does the last reading of the counters.
-//! The board takes the source off by itself, 2 ms ahead of a change of drive, selection or direction;
-//! the acts that make such a change wait for it ([`INTERLOCK`]).
+//! While something settles or converts, a stage prepares the next one (arming, counters, selections); the mark and the
+//! last counter readings therefore remain valid across stages. The board takes the source off 2 ms before a change of
+//! drive, selection or direction; acts that make such a change wait for it ([`INTERLOCK`]).
 //!
-//! The recipe says how to find a threshold ([`crate::dut::em_relay::strategy`]): the line above is that of
-//! `coarse_fine`, a search (`search/mod.rs`) takes the place of the ramps.
+//! The recipe selects the strategy of each threshold ([`crate::dut::em_relay::strategy`]): the diagram shows
+//! `coarse_fine`; a search (`search/mod.rs`) replaces the ramps.
 //!
-//! A stage that finds the part unfit for the rest (open coil, contact that does not move) says why
-//! and the test goes straight to `off`. Confirmation measurements repeat results inside the guard band: the same stage
-//! `slow_repeats` times, averaged. What is then still conditional fails.
+//! A stage that finds an open coil or a contact that does not move records the finding, and the test goes straight to
+//! `off`. Confirmation measurements repeat results inside the guard band: the same stage `slow_repeats` times,
+//! averaged. A result that is still conditional then fails.
 
 mod board;
 mod coil;
@@ -67,12 +66,12 @@ use state::TestState;
 use std::collections::VecDeque;
 use units::{RigTime, Span};
 
-/// Release, bounce and the swing of the armature are over after this long without drive.
+/// Time without drive after which release, bounce and swing of the armature are over.
 const OFF: Span = Span::ms(12);
-/// A change of drive, selection or direction comes so late while the source is on.
+/// Delay of a change of drive, selection or direction while the source is on.
 const INTERLOCK: Span = Span::ms(2);
 
-/// Stages of confirmation measurements in the order of the test.
+/// Stages that confirmation measurements repeat, in the order of the test.
 const SLOW: [Stage; 5] = [
     Stage::TimedOperate,
     Stage::TimedRelease,
@@ -81,7 +80,7 @@ const SLOW: [Stage; 5] = [
     Stage::ReleaseFine(0),
 ];
 
-/// Longest time that a ramp which the test before has cut off still runs: one that was placed anew takes 0.3 s.
+/// Longest remaining time of a ramp that the previous test has left running: one over a new interval takes 0.3 s.
 const CUT_OFF: Span = Span::ms(400);
 
 /// A test under way.
@@ -95,7 +94,7 @@ pub struct Test {
     slow_done: bool,
     gates: Option<[CountSample; 2]>,
     began: RigTime,
-    /// Tests of this part so far, this one included.
+    /// Tests of this part so far, including this one.
     number: u8,
 }
 
@@ -118,39 +117,39 @@ impl Test {
         }
     }
 
-    /// The same as another test of a part that was tested just now: a ramp that was cut off may still run.
+    /// Marks this as a further test of the same part: a ramp of the previous test may still run.
     pub fn another(mut self, number: u8) -> Self {
         self.number = number;
         self.state.board.still_ramping = CUT_OFF;
         self
     }
 
-    /// Tests of this part so far, this one included.
+    /// Returns the number of tests of this part so far, including this one.
     pub fn number(&self) -> u8 {
         self.number
     }
 
-    /// Longest time of the conditioning, 0 without.
+    /// Returns the longest time of the conditioning, 0 without any.
     pub fn conditioning(&self) -> Span {
         conditioning::longest(self.context.relay.test.conditioning_operations)
     }
 
-    /// Stage under way, for screens.
+    /// Returns the stage under way, for views.
     pub fn stage(&self) -> Stage {
         self.stage
     }
 
-    /// What was measured so far.
+    /// Returns the record so far.
     pub fn record(&self) -> &TestRecord {
         &self.state.record
     }
 
-    /// Hands over what was found; the test is over.
+    /// Takes the record out of a finished test.
     pub fn take_record(&mut self) -> TestRecord {
         std::mem::take(&mut self.state.record)
     }
 
-    /// Goes on as far as it can.
+    /// Advances the test as far as `done` and `image` allow.
     pub fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress {
         let mut done = done;
         loop {
@@ -183,7 +182,7 @@ impl Test {
         }
     }
 
-    /// Gives up the stage under way: its acts have not left the board as they were to.
+    /// Aborts the stage under way, whose acts have not all run: the state of the board becomes unknown.
     fn abandon(&mut self, why: String) {
         let seen = std::mem::take(&mut self.runner.readings.trace);
         self.state.record.trace.append(seen);
@@ -197,7 +196,7 @@ impl Test {
         self.runner = Runner::after(self.context.wired(acts), now, &self.runner);
     }
 
-    /// Draws the conclusions of the stage that has just ended.
+    /// Concludes the stage that has just ended and plans the next ones.
     fn conclude(&mut self, now: RigTime) {
         let record = &mut self.state.record;
         record.spent.add(self.runner.spent());
@@ -212,7 +211,7 @@ impl Test {
             self.stages = VecDeque::from([Stage::Off]);
         } else if let Some(stage) = again {
             if matches!(self.stage, Stage::Search(_)) {
-                // The ramp that the search has placed is the one that was to come anyway.
+                // The search places the fine ramp that is planned already.
                 self.stages.retain(|waiting| {
                     stage.is_fine().is_none() || waiting.is_fine() != stage.is_fine()
                 });
@@ -221,7 +220,7 @@ impl Test {
         }
     }
 
-    /// Another timed closure of both contacts, while the recipe asks for one.
+    /// Plans another timed closure of both contacts while the recipe asks for one.
     fn add_closure(&mut self) {
         let record = &self.state.record;
         let sampling = self.context.relay.test.strategy.contact;
@@ -240,7 +239,7 @@ impl Test {
         self.stages.push_front(Stage::TimedOperate);
     }
 
-    /// Repeats the stages whose results lie inside the guard band (of a thorough test: all), once per test.
+    /// Plans the repeats of stages with results inside the guard band (in a thorough test: of all), once per test.
     fn add_slow_repeats(&mut self) {
         if self.slow_done || self.state.record.stopped() {
             return;
@@ -252,22 +251,22 @@ impl Test {
             .filter(|(_, judgement)| self.context.thorough || doubtful(judgement))
             .map(|(parameter, _)| parameter.facts().stage)
             .collect();
-        // In the order of the test: a fine release ramp right after the timed operation would start from
-        // another flux than the one its overshoot was learned from.
+        // In the order of the test: a fine release ramp right after the timed operation would start from another flux
+        // than the ramps that taught its overshoot.
         for _ in 0..self.context.recipe.decision.slow_repeats {
             let round = SLOW.iter().rev().filter(|stage| again.contains(stage));
             round.for_each(|stage| self.stages.push_front(*stage));
         }
     }
 
-    /// Each result against its limit.
+    /// Returns each result against its limit.
     pub fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
         let judged = verdict::judged(&self.context, &self.state.record);
         let general = |(parameter, judgement): (Parameter, _)| (parameter.into(), judgement);
         judged.into_iter().map(general).collect()
     }
 
-    /// Verdict of the part.
+    /// Returns the verdict of the part.
     pub fn verdict(&self) -> Verdict {
         let expected = Parameter::ALL.map(Characteristic::from);
         let stop = self.state.record.why_stopped();
@@ -275,7 +274,7 @@ impl Test {
     }
 }
 
-/// One write of the interface board.
+/// Returns one write of outputs of the interface board.
 fn set(outputs: &[(DigitalOut, bool)]) -> Act {
     Act::Board(outputs.to_vec())
 }

@@ -1,4 +1,4 @@
-//! Operate voltage on the coarse ramp from the pre-bias: an estimate to some 10 mV that places the fine ramp.
+//! Operate voltage on the coarse ramp from the pre-bias: an estimate within some 10 mV that places the fine ramp.
 
 use super::board::{Armature, BoardState, SentRamp, drive_off};
 use super::indication::gate0;
@@ -14,24 +14,24 @@ use crate::dut::em_relay::supply::RAMP_MARGIN;
 use crate::dut::em_relay::threshold::{Direction, indicated};
 use units::{Span, Volt};
 
-/// The coarse release ramp begins so far above the highest threshold of the lot, volts.
+/// Start of the coarse release ramp above the highest threshold of the lot, volts.
 const RELEASE_HEADROOM_V: f64 = 0.8;
-/// Flux and armature are in equilibrium with the start level after this time.
+/// Time for flux and armature to reach equilibrium at the start level.
 pub(super) const SETTLES: Span = Span::ms(25);
-/// Poll of the latch and write of the turn, at the longest.
+/// Longest time to poll the latch and write the ramp's reversal.
 const TURNS: Span = Span::ms(10);
-/// Slowest operation after the end of a ramp that still counts as its event.
+/// Latest contact event after the end of a ramp that still counts.
 pub(super) const LATE: Span = Span::ms(25);
 
-/// Height of the coarse output at which the release ramp begins.
+/// Returns the height of the coarse output at which the release ramp begins.
 pub(super) fn release_start(context: &Context) -> Volt {
     let test = &context.relay.test;
     let above = test.expected_release_v + 4.0 * test.expected_release_sd_v + RELEASE_HEADROOM_V;
     Volt(above.min(test.coarse_span_v))
 }
 
-/// The coil stage has armed the board while the coil was converted. Once the contact has made, the ramp turns round to
-/// where the release begins; the armature stays.
+/// Ramps up until NO makes, then reverses the ramp to the start of the release ramp; the armature stays operated. The
+/// coil stage has armed the board already.
 pub(super) fn acts_coarse(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
     let (mut acts, mut board) = match board.armature {
         Armature::ReadyForRamp => (Vec::new(), board),
@@ -60,7 +60,7 @@ pub(super) fn acts_coarse(context: &Context, board: BoardState) -> (Vec<Act>, Bo
     (acts, board)
 }
 
-/// From rest to the pre-bias, armed: what the coil stage leaves behind, when another stage came between.
+/// Returns the acts from rest to the armed pre-bias, for a coarse ramp that does not follow the coil stage directly.
 fn prepared(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let mut acts = drive_off(board.armature);
@@ -91,7 +91,7 @@ pub(super) fn conclude_coarse(
 ) -> Option<Stage> {
     let (board, record) = (&mut state.board, &mut state.record);
     if readings.seen.first() != Some(&true) {
-        // It has operated at nominal voltage.
+        // The part has operated at nominal voltage before.
         record.stop(match readings.boards.last() {
             Some(board) if board.no_closed => Finding::MadeOutsideWindow,
             Some(_) => Finding::AboveCoarseRamp,
@@ -115,8 +115,8 @@ pub(super) fn conclude_coarse(
         .then_some(Stage::OperateFine(0))
 }
 
-/// How long the coarse ramp needs from its event back down to [`release_start`]: it has gone on during the poll that
-/// has seen the event and the write that turns it round.
+/// Returns the time from the event until the coarse ramp is back at [`release_start`]; it rises during the poll that
+/// detects the event and the write that reverses it.
 fn turning(context: &Context, climbed: Volt) -> Span {
     let per_s = context.calibration.coarse_v_per_s.value;
     let over = climbed.0 + per_s * TURNS.as_seconds();

@@ -1,7 +1,7 @@
-//! Operate voltage on the fine ramp, around the estimate of the coarse one.
+//! Operate voltage on the fine ramp, around the estimate of the coarse ramp.
 //!
-//! Between both the relay drops. The approach has two steps (0.93 of the start, then the start) because
-//! a step from zero picks up some 30 mV below the quasi-static threshold: the armature swings over.
+//! The relay releases between the two. The approach has two steps (0.93 of the start, then the start): after a single
+//! step from zero the armature swings over some 30 mV below the quasi-static threshold.
 
 use super::board::{Armature, BoardState, SentRamp, drive_off};
 use super::operate::LATE;
@@ -31,7 +31,7 @@ pub(super) fn acts(
     acts.extend(make_room(context, &mut supply, falls, placed.start));
     acts.extend([
         supply.step_to(placed.start * APPROACH),
-        // At the first step the supply may still fall.
+        // During the first step the supply may still fall.
         Act::WaitSinceMark(OFF.max(Span(falls.0.saturating_sub(pace.approaches().0)))),
         set(&[
             (SourceOn, false),
@@ -75,7 +75,7 @@ pub(super) fn acts(
     (acts, left)
 }
 
-/// How long after the mark the ramp before goes on falling; one that rises turns round at once.
+/// Returns how long after the mark the previous ramp falls; 0 for a rising one, which this stage reverses at once.
 fn falling(board: BoardState) -> Span {
     match board.armature.is_released() {
         true => board.still_ramping,
@@ -83,8 +83,8 @@ fn falling(board: BoardState) -> Span {
     }
 }
 
-/// Takes the coarse ramp back where it is higher than the approach needs, and the fine one wherever it is: further down
-/// than where it `falls` to already.
+/// Lowers the coarse output to what the approach leaves room for, and the fine output to 0. The previous ramp has been
+/// falling for `falls` already.
 fn make_room(context: &Context, supply: &mut Supply, falls: Span, start: Volt) -> Vec<Act> {
     let mut acts = Vec::new();
     let mut wait = Span(0);

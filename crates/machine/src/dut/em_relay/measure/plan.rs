@@ -1,4 +1,4 @@
-//! Data that earlier stages pass to later ones; the test record does not keep it.
+//! Data that earlier stages pass to later ones and that the test record does not keep.
 
 use super::TestRecord;
 use super::ramp::Expected;
@@ -7,7 +7,7 @@ use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::threshold::Direction;
 use units::Volt;
 
-/// Scatter of a repeated fine ramp around the first, volts (1 sd).
+/// Scatter of repeated fine ramps around the first, volts (1 sd).
 const REPEAT_SD_V: f64 = 0.008;
 
 /// Data of earlier stages for later ones.
@@ -21,12 +21,12 @@ pub struct Plan {
     pub drop_zero: Option<Volt>,
     /// NC drops of the closures read so far, free of offset.
     pub nc_drops: Vec<Volt>,
-    /// The contact that does not move at nominal voltage: the part fails by it unless its coil is the cause.
+    /// A contact that does not move at nominal voltage: the part fails for it unless the coil is the cause.
     pub unmoved: Option<Finding>,
 }
 
 impl Plan {
-    /// Sends the next fine ramp of a direction over this interval.
+    /// Sets the interval for the next fine ramp of a direction.
     pub fn expect(&mut self, direction: Direction, interval: Expected) {
         match direction {
             Direction::Rising => self.operate = Some(interval),
@@ -34,7 +34,7 @@ impl Plan {
         }
     }
 
-    /// Where the stages so far expect the event of a direction.
+    /// Returns the interval in which the stages so far expect the event of a direction.
     pub fn expected(&self, direction: Direction) -> Option<Expected> {
         match direction {
             Direction::Rising => self.operate,
@@ -42,8 +42,8 @@ impl Plan {
         }
     }
 
-    /// The interval of the next fine ramp: around the indication of the first one where it repeats that.
-    /// Panics without an expectation: no stage sends a fine ramp at random.
+    /// Returns the interval of the next fine ramp: around the first indication for a repeat. Panics without an
+    /// expectation.
     pub fn interval(&self, record: &TestRecord, direction: Direction) -> Expected {
         let repeated = record
             .ramp(direction)

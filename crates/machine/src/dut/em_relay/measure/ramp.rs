@@ -1,5 +1,5 @@
-//! What operate and release share: where a fine ramp is placed, around which estimate, and where it is placed anew when
-//! the contact changed before the window opened or not at all.
+//! Placement of fine ramps, for operate and release: around an estimate, and anew after a ramp that has missed the
+//! event.
 
 use super::Context;
 use super::indication::coarse_reading;
@@ -12,43 +12,42 @@ use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::threshold::Direction;
 use units::{Celsius, Volt};
 
-/// The level jumps by this much between ARM and ramp: the window opens after [`WINDOW_V`], and on the fine
-/// ramp alone that would take 33 ms. What is left keeps the comparator's tolerance out of the way. Flux and
-/// armature settle after the jump, so that the ramp begins at rest.
+/// Step of the level between ARM and ramp: the window opens after [`WINDOW_V`], which the fine ramp alone reaches in
+/// 33 ms. The difference covers the comparator's tolerance. Flux and armature settle after the step.
 pub(super) const JUMP: Volt = Volt(0.045);
-/// Way of a falling ramp before the interval that it searches: the flux of a sealed armature follows at 6 to 9 ms and
-/// still falls from the seal.
+/// Distance of a falling ramp before the interval that it searches: the flux of a sealed armature follows at 6 to 9 ms
+/// and still decays from the seal.
 const RUN_DOWN: Volt = Volt(0.085);
-/// After so much of it a millivolt is left of the seal: an event there is that of the ramp.
+/// Distance after which 1 mV remains of the seal's effect: a later event belongs to the ramp.
 pub(super) const SETTLED_DOWN: Volt = Volt(0.068);
-/// Beyond the far end of the estimate, for the overshoot's own scatter.
+/// Length of a ramp beyond the far end of its interval, for the scatter of the overshoot.
 const FAR_MARGIN: Volt = Volt(0.015);
-/// Half width of a placed ramp in standard deviations of its estimate. One in four hundred misses and
-/// costs a second ramp of 0.2 s; each further half deviation would cost every part some 7 ms.
+/// Half width of an interval in standard deviations of its estimate: one ramp in four hundred misses and costs a
+/// second one of 0.2 s; each further half deviation costs every part 7 ms.
 const COVERAGE: f64 = 3.0;
-/// What is less sure gets no wider ramp than one of this (1 sd): each further 10 mV of half width would cost every such
-/// part 7 ms, and a second ramp costs 0.3 s where it is needed, one part in some dozens.
+/// Largest standard deviation that widens an interval: each further 10 mV costs every such part 7 ms, and a miss (one
+/// part in some dozens) costs 0.3 s.
 const WIDEST_SD_V: f64 = 0.02;
-/// Widest half width of a ramp that is placed anew; beyond it a search by halves is quicker.
+/// Widest half width that a ramp searches; a search by halves is quicker beyond it.
 const WIDEST: Volt = Volt(0.2);
-/// Uncertainty of the guessed overshoot of a fine ramp, volts (1 sd).
+/// Standard uncertainty of the assumed overshoot of a fine ramp, volts.
 const FINE_GUESS_SD_V: f64 = 0.020;
-/// Operations of two reference parts, volts, and a quarter of a kelvin between them, as a share of the threshold (1 sd).
+/// Scatter of two operations, volts, and of 0.25 K between reference parts, as a share of the threshold (1 sd).
 const TWO_OPERATIONS_V: f64 = 0.004;
 const TWO_TEMPERATURES: f64 = 0.001;
-/// Width of the next interval against that of the one that was missed.
+/// Width of the next interval relative to the missed one.
 const WIDER: f64 = 3.0;
 
-/// Where a contact event is expected on the fine ramp.
+/// Interval of indicated voltage that a fine ramp searches for the contact event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Expected {
     /// Most likely indicated voltage.
     pub centre: Volt,
-    /// Half width of the interval that is searched.
+    /// Half width of the interval.
     pub half_width: Volt,
 }
 
-/// A fine ramp: from where, and over how much.
+/// Start and length of a fine ramp.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placed {
     /// Supply before the ramp.
@@ -58,7 +57,7 @@ pub struct Placed {
 }
 
 impl Expected {
-    /// From an estimate with its standard deviation.
+    /// Returns the interval around an estimate with standard deviation `sd_v`.
     pub fn new(centre: Volt, sd_v: f64) -> Self {
         Self {
             centre,
@@ -66,14 +65,14 @@ impl Expected {
         }
     }
 
-    /// Where a coarse ramp and the model of its overshoot say.
+    /// Returns the interval that a coarse ramp and the overshoot model predict.
     pub fn after(coarse: &Shown, overshoot: &Overshoot) -> Self {
         let predicted = overshoot.coarse.of(coarse);
         let sd_v = predicted.u_v.min(WIDEST_SD_V);
         Self::new(coarse.indicated - Volt(predicted.volts), sd_v)
     }
 
-    /// Where the certificate of a reference part that teaches the overshoot says; the first of them is to tell the fine one.
+    /// Returns the interval from the certificate of a reference part under calibration; `None` for any other part.
     pub fn certified(context: &Context, track: Celsius, direction: Direction) -> Option<Self> {
         let part = context.teaching.as_ref()?;
         let overshoot = context.overshoot(direction);
@@ -90,12 +89,12 @@ impl Expected {
         Some(Self::new(Volt(at_part + overshoot.fine_v.value), sd_v))
     }
 
-    /// The rising ramp that searches this interval after a run-up.
+    /// Returns the rising ramp over this interval after a run-up.
     pub fn rising(&self, run_up: Volt) -> Placed {
         self.placed(Direction::Rising, run_up)
     }
 
-    /// The falling ramp that does.
+    /// Returns the falling ramp over this interval.
     pub fn falling(&self) -> Placed {
         self.placed(Direction::Falling, RUN_DOWN)
     }
@@ -108,8 +107,8 @@ impl Expected {
         }
     }
 
-    /// The interval to search when the event came only after the ramp had stopped at `end`: the same
-    /// width, around the end. What the counter then shows is time at rest, not volts.
+    /// Returns an interval of the same width around `end`, for an event after the ramp had stopped there: the gate
+    /// then shows time at rest, not volts.
     pub fn around(&self, end: Volt) -> Self {
         Self {
             centre: end,
@@ -117,9 +116,8 @@ impl Expected {
         }
     }
 
-    /// The interval to search next, three times as wide: what misses by more than expected may miss by much. Beyond the
-    /// far end when nothing happened. When the contact had already changed the far end stays: either the event lies
-    /// before the near end, or the approach has brought the armature too near.
+    /// Returns the next interval, three times as wide: beyond the far end when the contact has not changed. When it
+    /// changed too early the far end stays: the event lies before the near end, or the approach came too near.
     pub fn next(&self, direction: Direction, changed_early: bool) -> Self {
         let further = if changed_early {
             1.0 - WIDER
@@ -132,19 +130,19 @@ impl Expected {
         }
     }
 
-    /// A ramp over it would take longer than a search by halves.
+    /// Returns true when a search by halves is quicker than a ramp.
     pub fn is_wide(&self) -> bool {
         self.half_width > WIDEST
     }
 }
 
-/// Where a ramp from `start` stops, when the indicated voltage lies beyond it.
+/// Returns the end of a ramp from `start` when the indicated voltage `seen` lies beyond it.
 pub(super) fn stopped_at(start: Volt, span: Volt, seen: Volt) -> Option<Volt> {
     ((seen - start).abs() > span).then_some(start + Volt(span.0.copysign((seen - start).0)))
 }
 
-/// Draws what follows from a coarse ramp: where the fine one looks, and the result where the recipe trusts this one.
-/// True if a fine one has to be put in that the recipe did not plan.
+/// Places the fine ramp after a coarse one, and records the coarse result when the recipe trusts it. Returns true when
+/// the part needs a fine ramp that the recipe has not planned.
 pub(super) fn after_coarse(
     context: &Context,
     readings: &Readings,
@@ -185,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn an_event_after_the_end_of_the_ramp_tells_time_not_volts() {
+    fn an_event_beyond_the_ramp_yields_its_end() {
         assert_eq!(
             stopped_at(Volt(7.8), Volt(0.1), Volt(7.95)),
             Some(Volt(7.8 + 0.1))
@@ -198,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn after_nothing_the_next_interval_begins_where_the_last_ended() {
+    fn after_no_event_the_next_interval_adjoins() {
         let beyond = NARROW.next(Direction::Rising, false);
         assert!((beyond.centre.0 - beyond.half_width.0 - 7.93).abs() < 1e-12);
         let below = NARROW.next(Direction::Falling, false);
@@ -206,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn after_an_early_event_the_next_interval_begins_earlier_and_ends_where_the_last_did() {
+    fn an_early_event_extends_the_interval_towards_the_start() {
         let again = NARROW.next(Direction::Rising, true);
         assert!((again.centre.0 + again.half_width.0 - 7.93).abs() < 1e-12);
         assert!((again.centre.0 - again.half_width.0 - 7.75).abs() < 1e-12);

@@ -1,4 +1,4 @@
-//! Observations of a relay test beside its results: ramps, temperature, probe contact.
+//! Observations of a relay test in addition to its results: ramps, temperature, probe contact.
 
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::overshoot::Shown;
@@ -10,7 +10,7 @@ use units::{Celsius, Ohm, Volt};
 /// Indications of the ramps of one direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ramp {
-    /// Results of the part at the coarse ramp, including its indication.
+    /// Results of the part when its coarse ramp ended, including its indication.
     pub coarse: Shown,
     /// Indicated voltage of the fine ramp.
     pub fine: Option<Volt>,
@@ -34,11 +34,11 @@ impl Ramp {
 /// Observations that only a relay test makes.
 #[derive(Debug, Clone, Default)]
 pub struct Observed {
-    /// Resistance of the coil's two force contacts, once measured.
+    /// Resistance of the coil's two force contacts; `None` until measured.
     pub probe_contact: Option<Ohm>,
     /// Temperature of the magazine track when the test began.
     pub track: Option<Celsius>,
-    /// Limits proven without a value.
+    /// Limits proven without a measured value.
     pub proven: Vec<(Parameter, Judgement)>,
     /// Operate ramps.
     pub operate: Option<Ramp>,
@@ -66,7 +66,7 @@ impl TestRecord {
         }
     }
 
-    /// Returns the results of the part at the end of a coarse ramp.
+    /// Returns the results of the part when a coarse ramp ends at `indicated`.
     pub fn shown(&self, indicated: Volt, direction: Direction) -> Shown {
         let value = |parameter| {
             self.result(parameter)

@@ -1,7 +1,7 @@
-//! Release voltage: from a sealed armature the supply falls until NO breaks, coarse first, then fine.
+//! Release voltage: from a sealed armature the supply falls until NO breaks, on a coarse ramp, then on a fine one.
 //!
-//! The armature is sealed at 0.95 of nominal: enough to saturate it, and not an operation at nominal
-//! voltage, so the timed one stays the last of those.
+//! The armature is sealed at 0.95 of nominal: enough to saturate it, and below nominal voltage, so that the timed
+//! operation remains the last one at nominal.
 
 use super::board::{Armature, BoardState, SentRamp};
 use super::indication::gate0;
@@ -21,23 +21,22 @@ use units::{Span, Volt};
 
 /// Fraction of nominal at which the armature is sealed.
 pub const SEAL: f64 = 0.95;
-/// Refreshes of the output before the end of the ramp in which it may have stopped already: an event there gives no
-/// estimate.
+/// Refreshes before the end of the ramp within which the output may have stopped: an event there gives no estimate.
 const LAST_REFRESHES: f64 = 1.5;
-/// Operate, bounce and settling of the flux.
+/// Time for operation, bounce and flux to settle.
 const SEAL_TIME: Span = Span::ms(25);
-/// The flux of the seal has fallen to a few per cent of its step before a fine ramp begins; what the coarse ramp
-/// has left of it, after [`SETTLES`], its overshoot has learned.
+/// Decay of the seal's flux to a few per cent before a fine ramp begins; the model of the coarse overshoot includes
+/// what remains after [`SETTLES`].
 const FINE_SETTLES: Span = Span::ms(35);
-/// Slowest break after the end of a ramp that still counts as its event.
+/// Latest break after the end of a ramp that still counts.
 const LATE: Span = Span::ms(12);
 
-/// Seals the armature, steps to where a falling ramp begins and arms it. An armature that is still operated from the stage
-/// before is sealed from there, once the ramp that may still run has ended.
+/// Seals the armature, steps to the start of the falling ramp and arms. An operated armature is sealed from where it
+/// is, once the running ramp has ended.
 fn seal(context: &Context, board: BoardState, start: Volt) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let seal = supply.step_to(Volt(SEAL * context.relay.part.nominal_v));
-    // No current: the contact that the ramp breaks was read before, if at all.
+    // Source off: the ramp breaks a contact that other stages have read.
     let falling = [
         (SourceOn, false),
         (SourceReverse, false),
@@ -78,8 +77,8 @@ fn seal(context: &Context, board: BoardState, start: Volt) -> (Vec<Act>, BoardSt
     (acts, sealed)
 }
 
-/// Flux and armature settle after the step; the counters are read meanwhile. ARM is a pulse: it may rise again as soon
-/// as the contact has broken.
+/// Waits for flux and armature to settle after the step, reading the counters meanwhile. ARM falls again so that it
+/// can rise at the break.
 fn settled(within: Span) -> [Act; 3] {
     [
         Act::Read(Read::Gates),
@@ -88,7 +87,7 @@ fn settled(within: Span) -> [Act; 3] {
     ]
 }
 
-/// Waits for NO to break, then takes the drive off; from that event on the armature falls.
+/// Waits for NO to break, then takes the drive off; the armature falls from that event on.
 fn until_break(takes: Span) -> [Act; 4] {
     [
         Act::Until {
@@ -133,7 +132,7 @@ pub(super) fn conclude_coarse(
         gate0(context, readings).filter(|gate| seen && coarse_v_per_s * gate.0 < start.0 - floor_v);
     let (plan, record) = (&mut state.plan, &mut state.record);
     let Some(gate) = gate else {
-        // Below its floor the coarse ramp is no estimate: the threshold is far from the lot's.
+        // Below the range of the coarse ramp the lot gives no estimate: the threshold is far from the expected one.
         let expected = Expected::new(Volt(test.expected_release_v), test.expected_release_sd_v);
         plan.expect(Direction::Falling, expected);
         plan.search = Some(Search::placing(context, record, Direction::Falling));
@@ -156,7 +155,7 @@ pub(super) fn acts_fine(
     let mut acts = Vec::new();
     if board.supply.fine() < way {
         let (fine, takes) = board.supply.ramp_fine(way);
-        // A ramp that rises goes on, one that falls turns round.
+        // A rising ramp runs on, a falling one reverses.
         let rises = match board.armature == Armature::Operated {
             true => board.still_ramping,
             false => Span(0),

@@ -10,11 +10,11 @@ use std::collections::VecDeque;
 /// One stage of the test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
-    /// Five Kelvin bits and the resting contacts.
+    /// Five Kelvin bits and both contacts at rest.
     Kelvin,
-    /// Operations before the first measurement, where the recipe asks for them.
+    /// Operations before the first measurement, if the recipe demands any.
     Conditioning,
-    /// NC contact at rest, both polarities.
+    /// NC contact at rest, all polarities.
     NcContact,
     /// Coil resistance at the pre-bias.
     Coil,
@@ -22,7 +22,7 @@ pub enum Stage {
     Search(Direction),
     /// Coarse ramp from the pre-bias.
     OperateCoarse,
-    /// Fine ramp from just below the coarse estimate; the number of the attempt widens it.
+    /// Fine ramp from just below the coarse estimate; a later attempt searches a wider interval.
     OperateFine(u8),
     /// Step to nominal with both gates, and NO contact on that closure.
     TimedOperate,
@@ -30,13 +30,13 @@ pub enum Stage {
     TimedRelease,
     /// Coarse falling ramp from a sealed armature.
     ReleaseCoarse,
-    /// Fine falling ramp; the number of the attempt widens it.
+    /// Fine falling ramp; a later attempt searches a wider interval.
     ReleaseFine(u8),
-    /// Everything off, coil current gone.
+    /// Outputs off, coil current decayed.
     Off,
 }
 
-/// Stages of a good part on this rig, after the pins were checked.
+/// Returns the stages of a good part on this rig after the pin check.
 pub(super) fn order(context: &Context) -> VecDeque<Stage> {
     let strategy = [Parameter::OperateVoltage, Parameter::ReleaseVoltage];
     let strategy = strategy.map(|parameter| context.strategy(parameter));
@@ -46,8 +46,7 @@ pub(super) fn order(context: &Context) -> VecDeque<Stage> {
 }
 
 impl Stage {
-    /// Stages of a good part in their order, with the strategies of operate and release threshold: what comes before
-    /// the strategies, what they ask for, what comes after.
+    /// Returns the stages of a good part in their order, with those that the strategies of both thresholds require.
     pub fn planned(
         test: &TestPlan,
         [operate, release]: [Strategy; 2],
@@ -77,7 +76,7 @@ impl Stage {
         stages.into_iter().flatten()
     }
 
-    /// The step of the process card that it belongs to.
+    /// Returns the step of the process card that lists this stage.
     pub fn card_step(self) -> CardStep {
         match self {
             Self::Kelvin | Self::Conditioning | Self::NcContact => CardStep::Kelvin,
@@ -94,7 +93,7 @@ impl Stage {
         }
     }
 
-    /// The direction of a fine ramp.
+    /// Returns the direction of a fine ramp; `None` for other stages.
     pub(super) fn is_fine(self) -> Option<Direction> {
         match self {
             Self::OperateFine(_) => Some(Direction::Rising),
@@ -112,7 +111,7 @@ impl Stage {
         }
     }
 
-    /// One of every name.
+    /// Every stage once, with the first attempt and one direction.
     pub const ALL: [Self; 11] = [
         Self::Kelvin,
         Self::NcContact,
@@ -127,7 +126,7 @@ impl Stage {
         Self::Off,
     ];
 
-    /// Its name in views, whatever the attempt.
+    /// Returns the name in views, the same for every attempt.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Kelvin => "Kelvin",
@@ -145,7 +144,7 @@ impl Stage {
         }
     }
 
-    /// The account on which the record books its time.
+    /// Returns the key under which the record sums up the stage's time.
     pub fn measures(self) -> &'static str {
         match self {
             Self::Kelvin => "kelvin",

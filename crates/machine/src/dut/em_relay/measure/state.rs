@@ -1,4 +1,4 @@
-//! Where a test has got to, and the two steps of a stage: its acts, then its conclusion.
+//! State of a test, and the two steps of a stage: its acts, then its conclusion.
 
 use super::board::BoardState;
 use super::pace::Pace;
@@ -16,16 +16,16 @@ use crate::dut::em_relay::threshold::Direction;
 /// State of a test between two stages.
 #[derive(Debug, Clone)]
 pub(super) struct TestState {
-    /// What the board is doing.
+    /// State of the interface board.
     pub board: BoardState,
-    /// What the stages to come go by.
+    /// Data for the stages to come.
     pub plan: Plan,
-    /// What was measured.
+    /// Results so far.
     pub record: TestRecord,
 }
 
 impl TestState {
-    /// Before the first stage.
+    /// Returns the state before the first stage.
     pub fn new(context: &Context) -> Self {
         Self {
             board: BoardState::new(context),
@@ -73,7 +73,7 @@ impl TestState {
         }
     }
 
-    /// Concludes a stage from what it has read. Returns the stage that goes before the planned ones, if any.
+    /// Concludes a stage from its readings. Returns the stage to insert before the planned ones, if any.
     pub fn conclude(
         &mut self,
         stage: Stage,

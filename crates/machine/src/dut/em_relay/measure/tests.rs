@@ -1,4 +1,4 @@
-//! What each stage concludes from what was seen.
+//! Conclusions of each stage from given readings.
 #![allow(clippy::unwrap_used)]
 
 mod ramps;
@@ -29,7 +29,7 @@ fn origin() -> Origin {
     }
 }
 
-/// A reading of so many units at a terminal of this gain; NaN unless it is good.
+/// Reading of `value` units at a terminal of this gain; NaN unless its quality is good.
 fn sample(point: AnalogIn, quality: Quality, value: f64, gain: f64) -> Sample {
     let value = if quality == Quality::Good {
         value
@@ -76,7 +76,7 @@ fn gates(counts: [u32; 2]) -> [CountSample; 2] {
     ]
 }
 
-/// All pins touched, contacts at rest, probes up.
+/// All pins connected, contacts at rest, probes up.
 const RESTING: BoardInputs = BoardInputs {
     kelvin: [true; 5],
     no_closed: false,
@@ -92,7 +92,7 @@ const PULLED: BoardInputs = BoardInputs {
     ..RESTING
 };
 
-/// A stage that waited for the latch: seen or not, the board after it, gate 0 open for so long.
+/// Readings of a stage that waited for the latch: whether it came, the board afterwards, the length of gate 0.
 fn watched(seen: bool, board: BoardInputs, gate_ms: f64) -> Readings {
     let counts = (gate_ms * 50.0).round() as u32;
     Readings {
@@ -110,7 +110,7 @@ fn at_23_c() -> TestState {
     state
 }
 
-/// Bin that an early end sends the part to, and why; `None` while nothing ended the test.
+/// Bin and reason of an early end; `None` while the test runs.
 fn ended(state: &TestState) -> Option<(Bin, String)> {
     state.record.why_stopped().map(|stop| match stop {
         Stop::Fail(reason) => (reason.bin(), reason.to_string()),

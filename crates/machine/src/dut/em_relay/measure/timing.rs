@@ -1,5 +1,5 @@
-//! Timed operation at exactly nominal voltage and timed release into the recipe's clamp, each with its
-//! bounce and the contact resistance of the closure that it ends on.
+//! Timed operation at nominal voltage and timed release into the recipe's coil suppression, each with bounce and
+//! contact resistance of its closure.
 
 use super::board::{Armature, BoardState, drive_off, select_diode};
 use super::coil::rest;
@@ -20,16 +20,16 @@ use units::{Span, Volt};
 
 /// Slowest operation or release that the stage waits for.
 const LONGEST: Span = Span::ms(60);
-/// The window closes 20 ms after the latch; gate 1 counts bounce until then.
+/// Time from the latch until the window has closed; it closes after 20 ms, and gate 1 counts bounce until then.
 const WINDOW_AFTER_LATCH: Span = Span::ms(21);
-/// Greatest difference of the delays of both gates, in counts. Gate 1 is open whenever gate 0 is.
+/// Greatest difference between the delays of both gates, in counts; gate 1 is open whenever gate 0 is.
 const GATE_SKEW: u32 = 4;
-/// Bounce is over (6 ms is twice what the sheet class allows) and the contact has been closed for the 5 ms
-/// that the source asks for.
+/// Time from the latch until the source drives its current: bounce ends within 6 ms (twice the specified class), and
+/// the source requires 5 ms of closed contact.
 const SOURCE_FLOWS: Span = Span::ms(11);
 
-/// Reads the counters after ARM unless the NC stage has done so: before ARM a window may still be open that an
-/// early end has left.
+/// Operates at nominal voltage. Reads the counters after ARM unless the NC stage has: a window that an early end left
+/// open closes at ARM.
 pub(super) fn acts_operate(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let mut acts = drive_off(board.armature);
@@ -63,8 +63,8 @@ pub(super) fn acts_operate(context: &Context, board: BoardState) -> (Vec<Act>, B
     (acts, left)
 }
 
-/// After a timed operation its counters still hold: the latch keeps both gates shut until ARM. A release into the diode
-/// has an operation of its own, since the board selects the diode only while no coil current flows.
+/// Takes the drive off and times NC. The counters of a timed operation still hold: the latch shuts both gates until
+/// ARM. A release into the diode operates anew, since the board selects the diode only without coil current.
 pub(super) fn acts_release(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
     let diode = select_diode(context, true);
     let counted = board.armature == Armature::Operated && diode.is_none();
@@ -82,7 +82,7 @@ pub(super) fn acts_release(context: &Context, board: BoardState) -> (Vec<Act>, B
     acts.extend((!counted).then_some(Act::Read(Read::Gates)));
     acts.push(set(&[(CoilDrive, false), (SourceOn, true)]));
     acts.extend(until_made());
-    // With the coil off the supply is free, and until the window closes so is the bus.
+    // Supply and bus are free until the window closes.
     acts.extend(rest(context, &mut board.supply));
     acts.extend(drop_of_closure(context));
     acts.extend(select_diode(context, false));
@@ -90,8 +90,7 @@ pub(super) fn acts_release(context: &Context, board: BoardState) -> (Vec<Act>, B
     (acts, board)
 }
 
-/// Operates the armature at nominal voltage. The test does not read this closure: no current is to leave its mark on the
-/// contact.
+/// Operates the armature at nominal voltage without contact load: the test does not read this closure.
 fn operated(
     context: &Context,
     mut board: BoardState,
@@ -111,9 +110,9 @@ fn operated(
     (acts, board)
 }
 
-// ARM rises in the same word as a selection: it clears window and latch, and no selection starts them.
+// ARM rises in the same write as the selection: it clears window and latch, and no selection starts them.
 
-/// The contact event; from its mark the bounce, the window and the source take their time.
+/// Waits for the contact event and marks it; bounce, window and source settle after that mark.
 fn until_made() -> [Act; 2] {
     [
         Act::Until {
@@ -124,9 +123,8 @@ fn until_made() -> [Act; 2] {
     ]
 }
 
-/// Gates once the window has closed, then the forward drop. The source was switched on before the
-/// contact made: the board lets it flow once the contact has been closed for 5 ms. It drives the same way
-/// as the contact monitor, so that gate 1 does not take it for an open contact.
+/// Reads the gates after the window has closed, then the forward drop. The source is on before the contact makes and
+/// drives it after 5 ms of closure, in the direction of the contact monitor, so that gate 1 counts no opening.
 fn drop_of_closure(context: &Context) -> [Act; 6] {
     [
         Act::WaitSinceMark(WINDOW_AFTER_LATCH),
@@ -138,7 +136,7 @@ fn drop_of_closure(context: &Context) -> [Act; 6] {
     ]
 }
 
-/// Records time and bounce from both gates of a stage; ends the test where the counters do not give them.
+/// Records time and bounce from both gates of a stage; ends the test when the counts are implausible.
 fn time_and_bounce(
     context: &Context,
     readings: &Readings,
@@ -153,7 +151,7 @@ fn time_and_bounce(
     let gate0 = counts(before[0].count, after[0].count);
     let gate1 = counts(before[1].count, after[1].count);
     let longest = (LONGEST + WINDOW_AFTER_LATCH).as_seconds() * context.clock().hz;
-    // No contact moves within a count: a counter that shows none has restarted since its gate.
+    // No contact moves within one count: a gate without counts means that the counter has restarted.
     let still = gate0 == 0;
     if still || f64::from(gate0.max(gate1)) > longest || gate1 + GATE_SKEW < gate0 {
         let detail = format!("{gate0} and {gate1} counts");
@@ -206,8 +204,8 @@ pub(super) fn conclude_operate(
     None
 }
 
-/// A relay that is late, or one whose contact does not move: that may lie at the coil, which is then measured
-/// before the part is judged.
+/// Concludes a closure that did not come: the relay is late, or its contact does not move. The coil may be the cause,
+/// so the test measures it before it judges the part.
 fn not_made(readings: &Readings, state: &mut TestState) -> Option<Stage> {
     let TestState { plan, record, .. } = state;
     plan.unmoved = match readings.boards.last() {

@@ -1,10 +1,10 @@
-//! From the record of a test to its judgements.
+//! Judgements from the record of a test.
 
 use super::{Context, TestRecord};
 use crate::dut::em_relay::Parameter;
 use crate::gauge::{Judgement, judge};
 
-/// Each result against its limit, then what was proven without a value.
+/// Returns each result against its limit, then the limits proven without a value.
 pub(super) fn judged(context: &Context, record: &TestRecord) -> Vec<(Parameter, Judgement)> {
     let recipe = &context.recipe;
     let one = |parameter: &Parameter| {

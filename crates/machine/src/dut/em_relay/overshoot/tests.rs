@@ -1,8 +1,8 @@
-//! What the law of the overshoot knows after so many parts.
+//! Prediction and uncertainty of the overshoot model after few and many parts.
 
 use super::*;
 
-/// A part of a lot whose lag of 0.85 V follows its times, less so its threshold; no two parts alike.
+/// A part of a lot whose overshoot of 0.85 V follows its times, and less so its threshold; every part differs.
 fn part(at: u32) -> (Shown, Volt) {
     let turn = |by: f64| (f64::from(at) * by).fract() - 0.5;
     let (slow, holding, high) = (0.16 * turn(0.618), 0.15 * turn(0.382_7), 0.11 * turn(0.271));
@@ -18,7 +18,7 @@ fn part(at: u32) -> (Shown, Volt) {
     (shown, Volt(fine))
 }
 
-/// Taught by so many parts, each read wrong by `noise_v` in turn upwards and downwards.
+/// The model after `parts` parts, whose indications err by `noise_v` alternately upwards and downwards.
 fn taught(parts: u32, noise_v: f64) -> OvershootModel {
     let mut law = OvershootModel::guess(0.80);
     for at in 0..parts {
@@ -35,21 +35,21 @@ fn error_v(law: &OvershootModel, at: u32) -> f64 {
 }
 
 #[test]
-fn before_any_part_the_guess_stands_and_nothing_is_alike() {
+fn before_any_part_the_guess_is_the_prediction() {
     let predicted = OvershootModel::guess(0.85).of(&part(0).0);
     assert_eq!((predicted.volts, predicted.alike), (0.85, false));
     assert!(predicted.u_v > GUESS_SD_V, "{predicted:?}");
 }
 
 #[test]
-fn a_slow_relay_is_given_its_own_lag_and_not_that_of_the_lot() {
+fn a_slow_relay_gets_its_own_overshoot() {
     let law = taught(17, 0.0);
     let worst = (17..60).map(|at| error_v(&law, at)).fold(0.0, f64::max);
     assert!(worst < 0.006, "{worst} V, where the lot scatters by 0.05 V");
 }
 
 #[test]
-fn what_it_says_of_itself_holds_from_the_second_part_on() {
+fn the_uncertainty_holds_from_the_second_part_on() {
     for parts in 1..60 {
         let law = taught(parts, 0.002);
         let u_v = law.of(&part(parts).0).u_v;
@@ -59,15 +59,15 @@ fn what_it_says_of_itself_holds_from_the_second_part_on() {
 }
 
 #[test]
-fn scatter_about_the_law_stays_in_the_uncertainty_however_many_parts_teach() {
+fn scatter_about_the_line_remains_in_the_uncertainty() {
     let u_v = |parts| taught(parts, 0.006).of(&part(3).0).u_v;
     assert!(u_v(6) > u_v(500), "{} {}", u_v(6), u_v(500));
     assert!((u_v(500) - 0.006).abs() < 0.0005, "{}", u_v(500));
 }
 
 #[test]
-fn what_the_line_has_taken_for_itself_is_not_taken_for_agreement() {
-    // Ten parts and six terms: what is left about the line is less than the scatter of the parts.
+fn fitted_terms_reduce_the_degrees_of_freedom() {
+    // Ten parts and six terms: the residual about the line is less than the scatter of the parts.
     let u_v = taught(10, 0.006).of(&part(7).0).u_v;
     assert!(u_v > 0.006, "{u_v}");
     for parts in [15, 20, 30] {
@@ -88,7 +88,7 @@ fn what_the_line_has_taken_for_itself_is_not_taken_for_agreement() {
 }
 
 #[test]
-fn beyond_the_parts_seen_the_doubt_grows_with_the_square_of_the_distance() {
+fn extrapolation_widens_with_the_squared_distance() {
     let law = taught(40, 0.002);
     let (lot, fine) = part(3);
     let at = |further: f64| Shown {
@@ -102,7 +102,7 @@ fn beyond_the_parts_seen_the_doubt_grows_with_the_square_of_the_distance() {
 }
 
 #[test]
-fn parts_of_the_lot_are_alike_and_one_far_outside_is_not_however_many_have_taught() {
+fn only_parts_like_the_lot_are_alike() {
     for parts in [20, 500] {
         let law = taught(parts, 0.002);
         let strangers = (500..600).filter(|at| !law.of(&part(*at).0).alike);
@@ -125,7 +125,7 @@ fn parts_of_the_lot_are_alike_and_one_far_outside_is_not_however_many_have_taugh
 }
 
 #[test]
-fn a_part_that_has_not_shown_everything_teaches_nothing_and_is_unlike() {
+fn a_part_with_a_missing_result_teaches_nothing() {
     let law = taught(20, 0.0);
     let (shown, fine) = part(3);
     for odd in [
@@ -150,7 +150,7 @@ fn a_part_that_has_not_shown_everything_teaches_nothing_and_is_unlike() {
 }
 
 #[test]
-fn one_odd_part_among_those_that_teach_bends_the_law_no_further_than_it_was_in_doubt() {
+fn one_outlier_bends_the_line_within_its_uncertainty() {
     let (law, (shown, fine)) = (taught(12, 0.002), part(12));
     let before = law.of(&shown);
     let after = |off_v: f64| {
@@ -165,7 +165,7 @@ fn one_odd_part_among_those_that_teach_bends_the_law_no_further_than_it_was_in_d
 }
 
 #[test]
-fn parts_that_go_on_to_disagree_with_the_law_win() {
+fn persistent_disagreement_bends_the_line() {
     let mut law = taught(12, 0.002);
     for at in 12..60 {
         let (shown, fine) = part(at);
@@ -174,7 +174,7 @@ fn parts_that_go_on_to_disagree_with_the_law_win() {
     let (shown, fine) = part(60);
     let now = law.of(&shown);
     let error_v = now.volts - (shown.indicated - fine).0 - 0.2;
-    // The twelve have a fifth of the say.
+    // The twelve have a fifth of the weight.
     assert!(
         error_v.abs() < 0.06 && error_v.abs() < 2.0 * now.u_v,
         "{error_v} {now:?}"
@@ -182,7 +182,7 @@ fn parts_that_go_on_to_disagree_with_the_law_win() {
 }
 
 #[test]
-fn a_late_armature_is_expected_to_lag_before_two_parts_have_told_so() {
+fn the_prior_expects_a_late_armature_to_overshoot() {
     let (one, _) = part(0);
     let late = Shown {
         operate_ms: one.operate_ms * 1.1,

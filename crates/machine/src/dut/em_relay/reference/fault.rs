@@ -4,25 +4,25 @@ use crate::rig::sample::Sample;
 use texts::{Lang, Message};
 use thiserror::Error;
 
-/// Why the references do not calibrate the rig.
+/// Reason why the references do not calibrate the rig.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{}", self.message().say(Lang::En))]
 pub enum ReferenceFault {
     /// A channel has no usable reading.
     Reads {
-        /// The channel.
+        /// Name of the channel.
         name: &'static str,
         /// The reply.
         raw: String,
     },
     /// A channel is masked out.
     NotEnabled {
-        /// The channel.
+        /// Name of the channel.
         name: &'static str,
     },
     /// A channel has no scan.
     NotRead {
-        /// The channel.
+        /// Name of the channel.
         name: &'static str,
     },
     /// Scans are missing.
@@ -34,14 +34,14 @@ pub enum ReferenceFault {
     },
     /// The gain error exceeds 1.5 times the accuracy of the maker.
     Gain {
-        /// Found minus 1, %.
+        /// Gain found minus 1, %.
         off_pct: f64,
         /// Accuracy of the maker, half width, %.
         promised_pct: f64,
     },
     /// Too few readings between the ends of the fine ramp.
     FewOnRamp {
-        /// Readings that count.
+        /// Readings used for the slope.
         readings: usize,
     },
     /// The slope of the fine ramp does not match its slew code.
@@ -58,11 +58,11 @@ pub enum ReferenceFault {
         /// Drop of the reference resistor.
         expected_v: f64,
     },
-    /// Counters were not read before and after the pulses.
+    /// No counter readings before and after the pulses.
     GatesNotRead,
     /// The count of the reference pulse is out of range.
     Pulse {
-        /// Which counter.
+        /// Index of the counter.
         gate: usize,
         /// Count of a pulse, us.
         each_us: f64,
@@ -77,7 +77,7 @@ impl ReferenceFault {
         }
     }
 
-    /// Its text of the family `fault`, with its figures.
+    /// Returns its text of the family `fault`, with its figures.
     pub fn message(&self) -> Message {
         let of = |code| Message::new("fault", code);
         match self {

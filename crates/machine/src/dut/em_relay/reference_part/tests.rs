@@ -1,4 +1,4 @@
-//! What reference parts teach, and which of them are refused.
+//! Overshoot from reference parts, and the parts that are refused.
 #![allow(clippy::unwrap_used)]
 
 use crate::dut::em_relay::Parameter;
@@ -8,7 +8,7 @@ use crate::dut::em_relay::overshoot::Shown;
 use crate::dut::em_relay::reference_part::{ReferenceRun, interim};
 use crate::dut::em_relay::settings::ReferencePart;
 use crate::dut::em_relay::tests::context;
-use crate::dut::em_relay::tests::golden_parts;
+use crate::dut::em_relay::tests::reference_parts;
 use crate::dut::em_relay::threshold::Direction;
 use crate::gauge::budget::{Budget, Reading};
 use crate::rig::sample::Sample;
@@ -16,7 +16,7 @@ use units::{Celsius, Unit, Volt};
 
 const REFERENCE: Celsius = Celsius(23.0);
 
-/// What a test finds on a reference part whose ramps overshoot by so much, at 23 C.
+/// Record of a reference part whose ramps overshoot by `operate_v` and `release_v`, at 23 C.
 fn tested(part: &ReferencePart, operate_v: f64, release_v: f64, coil_off_ohm: f64) -> TestRecord {
     let fine = |volts: f64| Some(Ramp::fine_only(Volt(volts)));
     let mut record = TestRecord::default();
@@ -34,7 +34,7 @@ fn tested(part: &ReferencePart, operate_v: f64, release_v: f64, coil_off_ohm: f6
 
 fn run_of(operate_mv: &[f64], release_mv: f64) -> ReferenceRun {
     let mut run = ReferenceRun::default();
-    for (part, mv) in golden_parts().iter().zip(operate_mv) {
+    for (part, mv) in reference_parts().iter().zip(operate_mv) {
         let record = tested(part, mv / 1e3, release_mv / 1e3, 0.0);
         run.learn(part, REFERENCE, &record, &record.own).unwrap();
     }
@@ -42,10 +42,10 @@ fn run_of(operate_mv: &[f64], release_mv: f64) -> ReferenceRun {
 }
 
 #[test]
-fn the_fine_lag_is_the_mean_shift_from_the_certificates() {
+fn the_fine_overshoot_is_the_mean_shift() {
     let run = run_of(&[12.0, 15.0, 13.0, 14.0, 16.0], -9.0);
     let overshoots = run
-        .overshoots(&golden_parts(), &context().accuracy, untaught())
+        .overshoots(&reference_parts(), &context().accuracy, untaught())
         .unwrap();
     assert!((overshoots.operate.fine_v.value - 0.014).abs() < 1e-9);
     assert!((overshoots.release.fine_v.value + 0.009).abs() < 1e-9);
@@ -54,8 +54,8 @@ fn the_fine_lag_is_the_mean_shift_from_the_certificates() {
 }
 
 #[test]
-fn a_warm_golden_part_is_compared_with_its_certificate_at_its_own_temperature() {
-    let parts = golden_parts();
+fn certificates_are_compared_at_the_parts_temperature() {
+    let parts = reference_parts();
     let mut run = ReferenceRun::default();
     let warm = Celsius(28.0);
     for part in &parts {
@@ -80,37 +80,37 @@ fn a_warm_golden_part_is_compared_with_its_certificate_at_its_own_temperature() 
 }
 
 #[test]
-fn a_part_that_does_not_fit_the_others_is_named() {
+fn an_outlier_is_named() {
     let run = run_of(&[12.0, 15.0, 130.0, 14.0, 16.0], -9.0);
     let why = run
-        .overshoots(&golden_parts(), &context().accuracy, untaught())
+        .overshoots(&reference_parts(), &context().accuracy, untaught())
         .unwrap_err();
     let why = why.to_string();
     assert!(why.contains("G-12-3"), "{why}");
 }
 
 #[test]
-fn fewer_than_three_golden_parts_teach_no_lag() {
+fn fewer_than_three_reference_parts_teach_no_overshoot() {
     for (n, usable) in [(0, false), (1, false), (2, false), (3, true), (5, true)] {
         let run = run_of(&vec![14.0; n], -9.0);
-        let overshoots = run.overshoots(&golden_parts(), &context().accuracy, untaught());
+        let overshoots = run.overshoots(&reference_parts(), &context().accuracy, untaught());
         assert_eq!(overshoots.is_ok(), usable, "{n} parts");
     }
 }
 
 #[test]
-fn more_golden_parts_make_the_lag_surer() {
+fn more_reference_parts_reduce_the_overshoot_uncertainty() {
     let u = |n: usize| {
         let run = run_of(&vec![14.0; n], -9.0);
-        let overshoots = run.overshoots(&golden_parts(), &context().accuracy, untaught());
+        let overshoots = run.overshoots(&reference_parts(), &context().accuracy, untaught());
         overshoots.unwrap().operate.fine_v.u
     };
     assert!((u(3) / u(5) - (5f64 / 3.0).sqrt()).abs() < 1e-9);
 }
 
 #[test]
-fn a_golden_part_that_was_not_fully_measured_is_refused_by_name() {
-    let part = golden_parts()[1].clone();
+fn an_incomplete_reference_part_is_refused_by_name() {
+    let part = reference_parts()[1].clone();
     let good = || tested(&part, 0.014, -0.009, 0.0);
     let spoilt = |spoil: fn(&mut TestRecord)| {
         let mut record = good();
@@ -139,7 +139,7 @@ fn a_golden_part_that_was_not_fully_measured_is_refused_by_name() {
 }
 
 #[test]
-fn while_golden_parts_run_the_fine_lag_proves_nothing() {
+fn an_interim_overshoot_proves_nothing() {
     let overshoot = interim(untaught().0, 0.0);
     assert_eq!(
         (overshoot.fine_v.value, overshoot.fine_v.u),

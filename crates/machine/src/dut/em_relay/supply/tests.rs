@@ -1,4 +1,4 @@
-//! Three outputs add up to what was asked, whatever the outputs' own gain and offset.
+//! Sums of three outputs with different gains and offsets.
 
 use crate::dut::em_relay::Calibration;
 use crate::dut::em_relay::act::Act;
@@ -9,7 +9,7 @@ use crate::dut::em_relay::tests::context;
 use crate::gauge::Factor;
 use units::{Span, Volt};
 
-/// Outputs that err by as much as their makers allow, each its own way.
+/// Outputs at the limits of their accuracy, each with another error.
 fn crooked() -> Calibration {
     let line = |gain, offset_v| OutputLine {
         gain: Factor::new(gain, 0.0),
@@ -23,7 +23,7 @@ fn crooked() -> Calibration {
     }
 }
 
-fn asked(act: &Act) -> (AnalogOut, Volt) {
+fn commanded(act: &Act) -> (AnalogOut, Volt) {
     match act {
         Act::Supply(outputs) => outputs[0],
         other => panic!("{other:?} is no supply act"),
@@ -35,7 +35,7 @@ fn near(a: Volt, b: f64) -> bool {
 }
 
 #[test]
-fn a_step_makes_the_sum_what_was_asked_wherever_the_ramps_stand() {
+fn a_step_sets_the_sum_at_any_ramp_voltage() {
     let mut supply = Supply::new(&crooked());
     for (coarse, fine, total) in [
         (0.0, 0.0, 5.0),
@@ -48,7 +48,7 @@ fn a_step_makes_the_sum_what_was_asked_wherever_the_ramps_stand() {
         supply.ramp_fine(Volt(fine));
         let act = supply.step_to(Volt(total));
         assert!(near(supply.total(), total), "{total} V: {}", supply.total());
-        let (point, level) = asked(&act);
+        let (point, level) = commanded(&act);
         assert_eq!(point, AnalogOut::SupplyLevel);
         let delivered = crooked().level.delivers(level) + supply.coarse() + supply.fine();
         assert!(near(delivered, total), "{total} V: {delivered}");
@@ -56,40 +56,40 @@ fn a_step_makes_the_sum_what_was_asked_wherever_the_ramps_stand() {
 }
 
 #[test]
-fn a_ramp_moves_the_sum_by_its_own_way_and_leaves_the_other_outputs() {
+fn a_ramp_leaves_the_other_outputs() {
     let mut supply = Supply::new(&crooked());
     supply.step_to(Volt(5.0));
     let (before, fine) = (supply.total(), supply.fine());
     let (act, takes) = supply.ramp_coarse(Volt(6.0));
-    assert_eq!(asked(&act).0, AnalogOut::SupplyCoarse);
+    assert_eq!(commanded(&act).0, AnalogOut::SupplyCoarse);
     assert!(near(supply.coarse(), 6.0) && supply.fine() == fine);
     assert!(near(supply.total() - before, 6.0));
     assert!(takes >= Span::seconds(6.0 / 96.0));
     let (act, takes) = supply.ramp_fine(Volt(0.15));
-    assert_eq!(asked(&act).0, AnalogOut::SupplyFine);
+    assert_eq!(commanded(&act).0, AnalogOut::SupplyFine);
     assert!(near(supply.fine(), 0.15));
     assert!(takes >= Span::ms(100) && takes < Span::ms(110));
 }
 
 #[test]
-fn no_output_is_ever_asked_to_go_below_zero() {
+fn no_output_is_commanded_below_zero() {
     for calibration in [crooked(), (*context().calibration).clone()] {
         let mut supply = Supply::new(&calibration);
         let (coarse, _) = supply.ramp_coarse(Volt(-1.0));
         let (fine, _) = supply.ramp_fine(Volt(-0.5));
         let below = supply.step_to(Volt(-2.0));
         for act in [coarse, fine, below] {
-            assert!(asked(&act).1.0 >= 0.0, "{act:?}");
+            assert!(commanded(&act).1.0 >= 0.0, "{act:?}");
         }
         supply.ramp_coarse(Volt(6.0));
-        assert!(asked(&supply.step_to(Volt(2.0))).1.0 == 0.0);
+        assert!(commanded(&supply.step_to(Volt(2.0))).1.0 == 0.0);
         let least = calibration.level.offset_v.value + supply.coarse().0 + supply.fine().0;
         assert!(near(supply.total(), least), "the sum stays true");
     }
 }
 
 #[test]
-fn a_ramp_that_stands_already_takes_no_more_than_settling() {
+fn a_ramp_without_distance_only_settles() {
     let mut supply = Supply::new(&crooked());
     supply.ramp_coarse(Volt(6.0));
     let (_, again) = supply.ramp_coarse(Volt(6.0));

@@ -1,11 +1,11 @@
-//! A resistor measured with replies set by hand.
+//! A resistor measured with given replies.
 #![allow(clippy::unwrap_used)]
 
 use super::*;
 use crate::dut::reason::{Code, Reason};
 use crate::dut::recipe::DeviceRecipe;
 use crate::gauge::Side;
-use crate::handling::tests::{Shop, wiring};
+use crate::handling::tests::{MockRig, wiring};
 use crate::rig::bin::Bin;
 
 const LEVEL_V: f64 = 3.9;
@@ -38,32 +38,32 @@ fn device(limits: &str) -> Device {
     }
 }
 
-/// Tests a part that draws what `ohm` draws; `None` reads over range. Returns the test and how often it was read.
+/// Tests a part of `ohm`; `None` reads over range. Returns the test and the number of readings.
 fn tested(limits: &str, ohm: Option<f64>) -> (Test, usize) {
-    let mut shop = Shop::at_rest();
+    let mut mock = MockRig::at_rest();
     let device = device(limits);
     let order = TestOrder {
         thorough: false,
         teaching: None,
         number: 1,
     };
-    let mut test = device.begin(&order, shop.now);
+    let mut test = device.begin(&order, mock.now);
     let (mut done, mut reads) = (None, 0);
     loop {
-        match test.step(shop.now, done.take().as_ref(), &shop.image) {
+        match test.step(mock.now, done.take().as_ref(), &mock.image) {
             Progress::Judged => return (test, reads),
-            Progress::Doing(Doing::Wait(until)) => shop.now = until,
+            Progress::Doing(Doing::Wait(until)) => mock.now = until,
             Progress::Doing(Doing::Job(job)) => {
                 if matches!(job, crate::instrument::act::Job::Read(_)) {
                     reads += 1;
-                    // Volts at the terminal: full scale stands for over range.
-                    shop.volts_at(
+                    // Volts at the terminal: full scale reads as over range.
+                    mock.volts_at(
                         device.points.current,
                         ohm.map_or(10.0, |ohm| LEVEL_V / ohm * device.promise.volt_per_ampere),
                     );
                 }
                 done = Some(JobDone {
-                    at: shop.now,
+                    at: mock.now,
                     trouble: None,
                 });
             }
@@ -95,7 +95,7 @@ fn a_resistor_near_its_limit_is_read_again() {
 }
 
 #[test]
-fn open_and_short_fail_into_the_bin_of_the_coil() {
+fn open_and_short_fail_into_the_coil_bin() {
     for (ohm, finding) in [(Some(1e7), Finding::Open), (None, Finding::Short)] {
         let (test, _) = tested(LIMITS, ohm);
         let verdict = test.verdict();

@@ -4,7 +4,7 @@ use super::{Graph, SEEN, show, truths};
 use crate::handling::feed::{Feed, TRIES};
 use crate::handling::ledger::Ledger;
 use crate::handling::place::{NestId, Place};
-use crate::handling::tests::Shop;
+use crate::handling::tests::MockRig;
 use crate::rig::point::DigitalIn;
 use units::Span;
 
@@ -21,8 +21,8 @@ fn name(feed: Feed) -> String {
 }
 
 /// Returns every state; a release began `ago` before now.
-fn states(shop: &Shop, ago: Span) -> Vec<Feed> {
-    let since = units::RigTime(shop.now.0 - ago.0);
+fn states(mock: &MockRig, ago: Span) -> Vec<Feed> {
+    let since = units::RigTime(mock.now.0 - ago.0);
     let mut states = vec![
         Feed::Empty,
         Feed::Holding,
@@ -59,31 +59,31 @@ fn ledger(feed: Feed, nest: bool, found: bool) -> Ledger {
 #[test]
 fn the_feed_is_the_drawing() {
     let mut graph = Graph::default();
-    let mut shop = Shop::at_rest();
-    shop.after(2000);
+    let mut mock = MockRig::at_rest();
+    mock.after(2000);
     for [pocket, seated, track, held, jaws, late] in truths() {
         for pusher in SEEN {
-            shop.set(DigitalIn::PocketPresent, pocket);
-            shop.set(DigitalIn::NestPresent, seated);
-            shop.set(DigitalIn::TrackLevel, track);
-            shop.set(DigitalIn::EscapementHold, held);
-            shop.set(DigitalIn::JawLeftOpen, jaws);
+            mock.set(DigitalIn::PocketPresent, pocket);
+            mock.set(DigitalIn::NestPresent, seated);
+            mock.set(DigitalIn::TrackLevel, track);
+            mock.set(DigitalIn::EscapementHold, held);
+            mock.set(DigitalIn::JawLeftOpen, jaws);
             show(
-                &mut shop,
+                &mut mock,
                 &[DigitalIn::PusherRetracted],
                 &[DigitalIn::PusherExtended],
                 pusher,
             );
-            shop.after(1);
+            mock.after(1);
             let ago = if late { Span::ms(1501) } else { Span::ms(1500) };
-            for feed in states(&shop, ago) {
+            for feed in states(&mock, ago) {
                 for [wanted, push, nest, found] in truths() {
                     // The pusher waits for an empty nest, so the nest is empty during a push.
                     let nest = nest && feed != Feed::Pushing;
-                    shop.ledger = ledger(feed, nest, found);
-                    let next = feed.step(&mut shop.turn(), NestId::FIRST, wanted, push);
-                    graph.add(&name(feed), &name(next), &shop.wants);
-                    assert!(shop.ledger.balances());
+                    mock.ledger = ledger(feed, nest, found);
+                    let next = feed.step(&mut mock.turn(), NestId::FIRST, wanted, push);
+                    graph.add(&name(feed), &name(next), &mock.output);
+                    assert!(mock.ledger.balances());
                 }
             }
         }

@@ -7,7 +7,7 @@ use crate::handling::ledger::Ledger;
 use crate::handling::nest::{Nest, NestContext, NestState, TestTerms};
 use crate::handling::place::{NestId, Place};
 use crate::handling::sort::Sort;
-use crate::handling::tests::{Shop, device};
+use crate::handling::tests::{MockRig, device};
 use crate::instrument::act::JobDone;
 use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
@@ -25,13 +25,13 @@ const STATES: [&str; 9] = [
 ];
 
 /// Returns the state with this name; a finished test has only its switching off left.
-fn state(name: &str, shop: &Shop, device: &Device) -> NestState {
+fn state(name: &str, mock: &MockRig, device: &Device) -> NestState {
     match name {
         "Empty" => NestState::Empty,
         "Clamping" => NestState::Clamping,
         "Probing" => NestState::Probing,
-        "Testing" => NestState::Testing(begun(shop, device)),
-        "TestOver" => NestState::Testing(failed(shop, device)),
+        "Testing" => NestState::Testing(begun(mock, device)),
+        "TestOver" => NestState::Testing(failed(mock, device)),
         "Judged" => NestState::Judged,
         "Gripping" => NestState::Gripping,
         "Unclamping" => NestState::Unclamping,
@@ -40,25 +40,25 @@ fn state(name: &str, shop: &Shop, device: &Device) -> NestState {
     }
 }
 
-fn begun(shop: &Shop, device: &Device) -> Procedure {
+fn begun(mock: &MockRig, device: &Device) -> Procedure {
     let order = TestOrder {
         thorough: false,
         teaching: None,
         number: 1,
     };
-    device.begin(&order, shop.now)
+    device.begin(&order, mock.now)
 }
 
-fn failed(shop: &Shop, device: &Device) -> Procedure {
-    let mut test = begun(shop, device);
-    test.step(shop.now, None, &shop.image);
-    test.step(shop.now, Some(&silent(shop)), &shop.image);
+fn failed(mock: &MockRig, device: &Device) -> Procedure {
+    let mut test = begun(mock, device);
+    test.step(mock.now, None, &mock.image);
+    test.step(mock.now, Some(&silent(mock)), &mock.image);
     test
 }
 
-fn silent(shop: &Shop) -> JobDone {
+fn silent(mock: &MockRig) -> JobDone {
     JobDone {
-        at: shop.now,
+        at: mock.now,
         trouble: Some("measure 05: silent".into()),
     }
 }
@@ -94,40 +94,40 @@ fn ledger(from: &str, part: bool, interrupted: bool, judged: bool) -> Ledger {
 #[test]
 fn the_nest_is_the_drawing() {
     let mut graph = Graph::default();
-    let mut shop = Shop::at_rest();
+    let mut mock = MockRig::at_rest();
     let device = device();
     let jaws_open = [DigitalIn::JawLeftOpen, DigitalIn::JawRightOpen];
     let jaws_closed = [DigitalIn::JawLeftClosed, DigitalIn::JawRightClosed];
     for (jaws, probes) in SEEN.iter().flat_map(|one| SEEN.map(|other| (*one, other))) {
         for (z, gripper) in SEEN.iter().flat_map(|one| SEEN.map(|other| (*one, other))) {
             for [pusher, seated] in truths() {
-                show(&mut shop, &jaws_open, &jaws_closed, jaws);
+                show(&mut mock, &jaws_open, &jaws_closed, jaws);
                 show(
-                    &mut shop,
+                    &mut mock,
                     &[DigitalIn::ProbeDown],
                     &[DigitalIn::ProbeUp],
                     probes,
                 );
-                show(&mut shop, &[DigitalIn::SortZUp], &[DigitalIn::SortZDown], z);
+                show(&mut mock, &[DigitalIn::SortZUp], &[DigitalIn::SortZDown], z);
                 show(
-                    &mut shop,
+                    &mut mock,
                     &[DigitalIn::GripperOpen],
                     &[DigitalIn::GripperPart],
                     gripper,
                 );
-                shop.set(DigitalIn::PusherRetracted, pusher);
-                shop.set(DigitalIn::NestPresent, seated);
-                shop.after(1);
+                mock.set(DigitalIn::PusherRetracted, pusher);
+                mock.set(DigitalIn::NestPresent, seated);
+                mock.after(1);
                 for from in STATES {
                     for [part, interrupted, judged, around, resting] in truths() {
                         let mut nest = Nest {
                             id: NestId::FIRST,
-                            state: state(from, &shop, &device),
+                            state: state(from, &mock, &device),
                         };
-                        let job = (from == "TestOver").then(|| silent(&shop));
-                        shop.ledger = ledger(from, part, interrupted, judged);
+                        let job = (from == "TestOver").then(|| silent(&mock));
+                        mock.ledger = ledger(from, part, interrupted, judged);
                         let mut sort = if around { Sort::AtPart } else { Sort::OverNest };
-                        let mut turn = shop.turn();
+                        let mut turn = mock.turn();
                         turn.resting = resting;
                         let context = NestContext {
                             done: job,
@@ -141,8 +141,8 @@ fn the_nest_is_the_drawing() {
                         };
                         nest.step(&mut turn, context);
                         let drawn = if from == "TestOver" { "Testing" } else { from };
-                        graph.add(drawn, name(&nest.state), &shop.wants);
-                        assert!(shop.ledger.balances());
+                        graph.add(drawn, name(&nest.state), &mock.output);
+                        assert!(mock.ledger.balances());
                     }
                 }
             }

@@ -5,8 +5,8 @@ use crate::handling::ledger::Ledger;
 use crate::handling::moves::Move;
 use crate::handling::place::{NestId, Place};
 use crate::handling::sort::Sort;
-use crate::handling::tests::Shop;
-use crate::handling::tests::shop::Asked;
+use crate::handling::tests::MockRig;
+use crate::handling::tests::mock_rig::Output;
 use crate::rig::axis::AxisStation;
 use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
@@ -27,8 +27,8 @@ fn name(sort: Sort) -> &'static str {
 }
 
 /// Returns every state, with its station of the axis.
-fn states(shop: &Shop) -> [(Sort, AxisStation); 9] {
-    let over = RigTime(shop.now.0 - 500);
+fn states(mock: &MockRig) -> [(Sort, AxisStation); 9] {
+    let over = RigTime(mock.now.0 - 500);
     let bin = AxisStation::Bin(Bin::PASS);
     [
         (Sort::Returning, AxisStation::Nest),
@@ -75,38 +75,38 @@ fn ledger(sort: Sort, falling: bool, since: RigTime) -> Ledger {
 #[test]
 fn the_sorter_is_the_drawing() {
     let mut graph = Graph::default();
-    let mut shop = Shop::at_rest();
-    let table = shop.wiring.axis.clone();
+    let mut mock = MockRig::at_rest();
+    let table = mock.wiring.axis.clone();
     for number in 0..9 {
-        let (_, station) = states(&shop)[number];
-        shop.stands(Move::AxisTo(station));
-        shop.carried_out(Move::AxisTo(station));
+        let (_, station) = states(&mock)[number];
+        mock.stands(Move::AxisTo(station));
+        mock.carried_out(Move::AxisTo(station));
         for (z, gripper) in SEEN.iter().flat_map(|one| SEEN.map(|other| (*one, other))) {
             for [axis, pusher, dark, part] in truths() {
-                show(&mut shop, &[DigitalIn::SortZUp], &[DigitalIn::SortZDown], z);
-                shop.set(DigitalIn::AxisInPosition, axis);
-                shop.set(DigitalIn::PusherRetracted, pusher);
-                shop.set(DigitalIn::GripperOpen, gripper == SensedEnd::Rest);
-                shop.set(DigitalIn::GripperPart, part);
-                shop.set(table.beam(Bin::PASS), dark);
-                shop.after(1);
+                show(&mut mock, &[DigitalIn::SortZUp], &[DigitalIn::SortZDown], z);
+                mock.set(DigitalIn::AxisInPosition, axis);
+                mock.set(DigitalIn::PusherRetracted, pusher);
+                mock.set(DigitalIn::GripperOpen, gripper == SensedEnd::Rest);
+                mock.set(DigitalIn::GripperPart, part);
+                mock.set(table.beam(Bin::PASS), dark);
+                mock.after(1);
                 for [counted, testing, resting, falling, late, recorded] in truths() {
                     if counted {
-                        shop.beam(table.beam(Bin::PASS), 0);
+                        mock.beam(table.beam(Bin::PASS), 0);
                     }
-                    let (sort, _) = states(&shop)[number];
+                    let (sort, _) = states(&mock)[number];
                     let ago = if late { Span::ms(501) } else { Span::ms(500) };
-                    shop.ledger = ledger(sort, falling, RigTime(shop.now.0 - ago.0));
-                    shop.recorded = if recorded { u64::MAX } else { 0 };
-                    let mut turn = shop.turn();
+                    mock.ledger = ledger(sort, falling, RigTime(mock.now.0 - ago.0));
+                    mock.recorded = if recorded { u64::MAX } else { 0 };
+                    let mut turn = mock.turn();
                     turn.resting = resting;
                     let next = sort.step(&mut turn, &table, testing);
-                    graph.add(name(sort), name(next), &shop.wants);
-                    assert!(shop.ledger.balances());
+                    graph.add(name(sort), name(next), &mock.output);
+                    assert!(mock.ledger.balances());
                     if matches!(sort, Sort::LettingGo(..)) && !falling {
-                        let driven = sort.driven(Move::GripperOpen, &mut shop.ledger, shop.now);
-                        graph.add(name(sort), name(driven), &Asked::default());
-                        assert!(shop.ledger.balances());
+                        let driven = sort.driven(Move::GripperOpen, &mut mock.ledger, mock.now);
+                        graph.add(name(sort), name(driven), &Output::default());
+                        assert!(mock.ledger.balances());
                     }
                 }
             }

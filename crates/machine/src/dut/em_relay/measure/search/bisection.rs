@@ -1,20 +1,20 @@
-//! Bisection: each trial halves the interval, from rest, so that no trial remembers the one before.
+//! Bisection: each trial halves the interval and starts from rest, so that it does not depend on the one before.
 
 use super::{Next, Search};
 use units::{Span, Volt};
 
-/// Trials. The interval of the default lot, 2.3 V, comes down to 18 mV.
+/// Number of trials: the interval of the default lot, 2.3 V, shrinks to 18 mV.
 const TRIALS: u32 = 7;
-/// Time at the level for a sealed armature: where the threshold is low the iron is good, and the flux of the seal takes three
-/// times 25 ms to fall.
+/// Dwell of a sealed armature at the level: a low threshold means good iron, in which the flux of the seal takes three
+/// times 25 ms to decay.
 pub(super) const SEALED_DWELL: Span = Span::ms(80);
 
-/// The middle of what is open.
+/// Returns the middle of the interval.
 pub(super) fn level(search: &Search) -> Volt {
     (search.untouched + search.changed) / 2.0
 }
 
-/// The middle of the half that is left.
+/// Returns the middle of the remaining half, or the threshold.
 pub(super) fn next(search: &Search) -> Next {
     if search.trials < TRIALS {
         return Next::Try(level(search));

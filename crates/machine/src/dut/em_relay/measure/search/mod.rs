@@ -1,10 +1,10 @@
-//! Thresholds by levels alone: steps, halved intervals, one pulse. No ramp, no counter, no overshoot.
+//! Searches for a threshold by levels: steps, bisection, one pulse. They use no ramp, counter or overshoot.
 //!
-//! A trial is a list of acts that ends with a look at the contacts, and a conclusion that either has the
-//! threshold or names the next level. Between `untouched` and `changed` lies the threshold.
+//! A trial is a list of acts that ends with a reading of the contacts, and a conclusion: the threshold or the next
+//! level. The threshold lies between `untouched` and `changed`.
 //!
-//! A trial holds its level until the armature has had its chance: growth at the fold takes 5.7 ms per decade, so
-//! 20 ms resolve 16 mV, 30 ms less than 1 mV. A trial from rest approaches in two steps, as fine ramps do.
+//! The dwell at a level limits the resolution: the motion grows tenfold per 5.7 ms, so that 20 ms resolve 16 mV, 30 ms
+//! less than 1 mV. A trial from rest approaches in two steps, as fine ramps do.
 
 mod bisection;
 mod outcome;
@@ -22,54 +22,53 @@ pub(super) use outcome::conclude;
 pub(super) use trial::acts;
 use units::{Celsius, Span, Volt};
 
-/// The interval that is searched, in standard deviations of the lot.
+/// Half width of the searched interval, in standard deviations of the lot.
 const REACH: f64 = 4.5;
-/// The interval of a search that only places a ramp, in standard deviations of the lot.
+/// Half width for a search that only places a ramp, in standard deviations of the lot.
 const WIDE: f64 = 6.0;
-/// A coarse ramp has overshot by as many times what it overshoots on other parts: a dragging hinge by the most.
+/// Largest and smallest overshoot of a coarse ramp relative to other parts; a dragging hinge causes the largest.
 const MOST_OVERSHOOT: f64 = 3.5;
 const LEAST_OVERSHOOT: f64 = 0.3;
-/// The search goes no lower than this fraction of nominal.
+/// Lowest level of a search, as a fraction of nominal.
 const LOWEST: f64 = 0.02;
-/// Number of the attempt of a fine ramp that a search has placed.
+/// Attempt number of a fine ramp that a search has placed.
 pub(super) const AFTER_SEARCH: u8 = 2;
 
 /// A search under way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Search {
-    /// How levels are chosen.
+    /// Strategy that chooses the levels.
     pub strategy: Strategy,
-    /// Which way.
+    /// Direction of the threshold.
     pub direction: Direction,
-    /// The contact stayed at this level.
+    /// Level at which the contact has not changed.
     pub untouched: Volt,
-    /// It changed at this one; at first the end of the interval.
+    /// Level at which it has changed; before any trial the end of the interval.
     pub changed: Volt,
-    /// The level of the trial under way.
+    /// Level of the trial under way.
     pub at: Volt,
     /// Trials so far.
     pub trials: u32,
-    /// Whether any trial left the contact untouched, and whether any changed it: an end that no trial has
-    /// seen bounds nothing.
+    /// True where a trial has confirmed the end of the interval: `[untouched, changed]`.
     pub seen: [bool; 2],
 }
 
-/// What a trial leads to.
+/// Consequence of a trial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Next {
-    /// Another level.
+    /// A trial at another level.
     Try(Volt),
-    /// The threshold lies here, known to this step.
+    /// Threshold, and its resolution.
     Found(Volt, Volt),
-    /// The limit is kept.
+    /// The part keeps the limit.
     Proven,
-    /// Nothing is proven, or the interval does not hold the threshold: ramps must measure it.
+    /// The search proves nothing, or the threshold lies outside the interval: ramps must measure it.
     Ramp,
 }
 
 impl Search {
-    /// The search that the plan has under way in this direction, or a new one. Panics while the temperature of the part is
-    /// not known.
+    /// Returns the search under way in this direction, or a new one. Panics when the temperature of the part is
+    /// unknown.
     pub(super) fn under_way(
         context: &Context,
         plan: &Plan,
@@ -86,7 +85,7 @@ impl Search {
         })
     }
 
-    /// Over the interval that the lot leaves open.
+    /// Begins a search over the interval that the recipe expects of the lot.
     fn new(context: &Context, strategy: Strategy, direction: Direction, part: Celsius) -> Self {
         let test = &context.relay.test;
         let (centre, sd) = test.expected(direction);
@@ -112,7 +111,7 @@ impl Search {
         search
     }
 
-    /// A wide one by halves, to place a fine ramp where the coarse one has shown nothing, or something wrong.
+    /// Begins a wide bisection that places a fine ramp where the coarse ramp gives no usable estimate.
     pub fn placing(context: &Context, record: &TestRecord, direction: Direction) -> Self {
         let (near, end) =
             overshot(context, record, direction).unwrap_or_else(|| far(context, direction));
@@ -127,7 +126,7 @@ impl Search {
         }
     }
 
-    /// After a trial at [`Search::at`].
+    /// Narrows the interval by the trial at [`Search::at`] and returns its consequence.
     fn after(&mut self, changed: bool) -> Next {
         self.trials += 1;
         self.seen[usize::from(changed)] = true;
@@ -147,7 +146,7 @@ impl Search {
         }
     }
 
-    /// Every trial but those of a staircase begins from rest, or from a sealed armature.
+    /// Returns true when the next trial starts from rest or from a sealed armature; a staircase continues instead.
     fn begins_anew(&self) -> bool {
         self.trials == 0 || self.strategy != Strategy::Staircase
     }
@@ -169,7 +168,7 @@ impl Search {
     }
 }
 
-/// Between the ends of what a coarse ramp may have overshot by, if there was one.
+/// Returns the interval that the range of coarse overshoots leaves; `None` without a coarse ramp.
 fn overshot(context: &Context, record: &TestRecord, direction: Direction) -> Option<(Volt, Volt)> {
     let indicated = record.ramp(direction)?.coarse.indicated;
     let overshoot_v = context
@@ -182,7 +181,7 @@ fn overshot(context: &Context, record: &TestRecord, direction: Direction) -> Opt
     (near.0.is_finite() && near.0 > 0.0).then_some((near, end))
 }
 
-/// Far to both sides of the lot, but not below [`LOWEST`].
+/// Returns an interval far to both sides of the lot, not below [`LOWEST`].
 fn far(context: &Context, direction: Direction) -> (Volt, Volt) {
     let test = &context.relay.test;
     let (centre, sd) = test.expected(direction);
@@ -194,7 +193,7 @@ fn far(context: &Context, direction: Direction) -> (Volt, Volt) {
     (near, end)
 }
 
-/// What a direction measures.
+/// Returns the parameter that a direction measures.
 pub(super) fn parameter(direction: Direction) -> Parameter {
     match direction {
         Direction::Rising => Parameter::OperateVoltage,
@@ -207,7 +206,7 @@ mod tests {
     use super::*;
     use crate::dut::em_relay::tests::context;
 
-    /// Levels tried against a threshold, and what came of it.
+    /// Returns the levels tried against a threshold, and the consequence of the last.
     fn run(strategy: Strategy, direction: Direction, threshold: f64) -> (Vec<Volt>, Next) {
         let mut search = Search::new(&context(), strategy, direction, Celsius(23.0));
         let mut tried = Vec::new();
@@ -223,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn a_staircase_finds_a_threshold_to_half_a_step_and_never_steps_back() {
+    fn a_staircase_resolves_half_a_step() {
         for (direction, threshold) in [(Direction::Rising, 7.913), (Direction::Falling, 2.377)] {
             let (tried, next) = run(Strategy::Staircase, direction, threshold);
             let Next::Found(volts, step) = next else {
@@ -236,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn seven_halvings_leave_a_hundred_and_twenty_eighth_of_the_interval() {
+    fn seven_halvings_leave_1_128_of_the_interval() {
         let (tried, next) = run(Strategy::Bisection, Direction::Rising, 7.913);
         let Next::Found(volts, step) = next else {
             panic!("{next:?}")
@@ -248,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn a_threshold_outside_the_interval_is_no_number() {
+    fn a_threshold_outside_the_interval_needs_ramps() {
         for strategy in [Strategy::Staircase, Strategy::Bisection] {
             assert_eq!(run(strategy, Direction::Rising, 9.5).1, Next::Ramp);
             assert_eq!(run(strategy, Direction::Rising, 5.0).1, Next::Ramp);
@@ -257,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pulse_inside_the_limit_proves_or_leaves_it_to_ramps() {
+    fn a_pulse_proves_the_limit_or_needs_ramps() {
         let (tried, next) = run(Strategy::Pulse, Direction::Rising, 7.9);
         assert_eq!((tried.len(), next), (1, Next::Proven));
         assert!(tried[0] < Volt(9.0), "{}", tried[0]);

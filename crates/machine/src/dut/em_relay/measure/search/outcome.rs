@@ -1,4 +1,4 @@
-//! What a trial leads to: another one, a value, a proof, or ramps after all.
+//! Consequences of a trial: another trial, a value, a proof, or ramps.
 
 use super::{AFTER_SEARCH, Next, Search, parameter};
 use crate::dut::em_relay::Finding;
@@ -54,7 +54,7 @@ pub(in crate::dut::em_relay::measure) fn conclude(
     None
 }
 
-/// The fine ramp goes where the search that was to place it has found the threshold.
+/// Places the fine ramp around the threshold that the search has found.
 fn placed(
     context: &Context,
     state: &mut TestState,
@@ -75,7 +75,7 @@ fn placed(
     })
 }
 
-/// Where a fine ramp will show a threshold that levels have found.
+/// Returns the interval in which a fine ramp shows a threshold found by levels.
 fn near(context: &Context, direction: Direction, volts: Volt, step: Volt) -> Expected {
     Expected::new(
         volts + Volt(context.overshoot(direction).fine_v.value),

@@ -1,5 +1,5 @@
-//! Go / no-go: one step to the limit, less what the level, the probes and the temperature may be off. A contact that
-//! changes proves the limit kept; one that does not proves nothing, and ramps measure it.
+//! Go / no-go: one step to the limit, less the uncertainty of level, probes and temperature. A contact that changes
+//! proves that the part keeps the limit; otherwise ramps measure the threshold.
 
 use super::{Next, parameter};
 use crate::dut::em_relay::coil::{relative_per_kelvin, to_reference};
@@ -7,10 +7,10 @@ use crate::dut::em_relay::measure::Context;
 use crate::dut::em_relay::threshold::Direction;
 use units::{Celsius, Volt};
 
-/// A step picks up so much below the quasi-static threshold, of its level: the armature swings over.
+/// Share of the level by which a step operates below the quasi-static threshold: the armature swings over.
 const KINDER: f64 = 0.0035;
 
-/// Level of the pulse; the expected threshold where the recipe sets no limit.
+/// Returns the level of the pulse; the expected threshold when the recipe sets no limit.
 pub(super) fn level(context: &Context, direction: Direction, part: Celsius) -> Volt {
     let (recipe, sign) = (&context.recipe, direction.sign());
     let limit = recipe.limits.of(parameter(direction));
@@ -28,7 +28,7 @@ pub(super) fn level(context: &Context, direction: Direction, part: Celsius) -> V
     Volt(at_part_v - sign * (2.0 * u_v + at_part_v * KINDER))
 }
 
-/// One bit.
+/// Returns the consequence of the pulse.
 pub(super) fn next(changed: bool) -> Next {
     if changed { Next::Proven } else { Next::Ramp }
 }

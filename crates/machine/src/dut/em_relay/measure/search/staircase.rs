@@ -1,20 +1,19 @@
-//! Staircase: up (or down) in steps of 20 mV with a dwell, until the contact changes. Slow, and made of
-//! nothing but levels: the method that settles a dispute.
+//! Staircase: steps of 20 mV with a dwell until the contact changes. The slow method that decides a dispute.
 
 use super::{Next, Search};
 use units::{Span, Volt};
 
 /// Height of a step.
 const STEP: Volt = Volt(0.020);
-/// Time at each level, after its write was answered.
+/// Dwell at each level after its write is acknowledged.
 pub(super) const DWELL: Span = Span::ms(20);
 
-/// First level: the near end of the interval.
+/// Returns the first level: the near end of the interval.
 pub(super) fn level(search: &Search) -> Volt {
     search.untouched
 }
 
-/// One step on; half a step back from the level at which the contact changed.
+/// Returns the next level, or the threshold half a step before the level at which the contact changed.
 pub(super) fn next(search: &Search, changed: bool) -> Next {
     let sign = search.direction.sign();
     if changed {

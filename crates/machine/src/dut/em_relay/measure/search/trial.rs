@@ -1,4 +1,4 @@
-//! The acts of one trial: from rest or from a sealed armature to a level, and a look at the contacts.
+//! Acts of one trial: from rest or from a sealed armature to a level, then a reading of the contacts.
 
 use super::{REACH, Search};
 use crate::dut::em_relay::act::{Act, Read};
@@ -14,7 +14,7 @@ use crate::dut::em_relay::supply::Supply;
 use crate::dut::em_relay::threshold::Direction;
 use units::{Span, Volt};
 
-/// Flux and armature from one level to the next while the armature is sealed.
+/// Settling time of flux and armature between two levels of a sealed armature.
 const SEALS: Span = Span::ms(25);
 
 pub(in crate::dut::em_relay::measure) fn acts(
@@ -42,8 +42,8 @@ pub(in crate::dut::em_relay::measure) fn acts(
     (acts, board)
 }
 
-/// Takes the drive off until the armature rests and both ramps are down, then steps twice towards `at`: a single step
-/// from zero operates some 30 mV below the threshold.
+/// Takes the drive off until the armature rests and both ramps are down, then steps twice towards `at`: after a single
+/// step from zero the relay operates some 30 mV below the threshold.
 fn from_rest(board: BoardState, pace: Pace, at: Volt) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let mut acts = drive_off(board.armature);
@@ -64,8 +64,8 @@ fn from_rest(board: BoardState, pace: Pace, at: Volt) -> (Vec<Act>, BoardState) 
     (acts, driven(board, supply))
 }
 
-/// Operated and sealed at 0.95 of nominal, then down to the near end of the lot. The coarse output comes down first if
-/// an operate ramp has left it up.
+/// Operates and seals at 0.95 of nominal, then steps to the near end of the interval. Takes the coarse output down
+/// first when `ramped`.
 fn from_sealed(context: &Context, board: BoardState, ramped: bool) -> (Vec<Act>, BoardState) {
     let (mut supply, test) = (board.supply, &context.relay.test);
     let near = Volt(test.expected_release_v + REACH * test.expected_release_sd_v);
@@ -75,7 +75,7 @@ fn from_sealed(context: &Context, board: BoardState, ramped: bool) -> (Vec<Act>,
         acts.extend([coarse, Act::Wait(takes)]);
     }
     acts.extend([
-        // What still falls would seal at more than nominal.
+        // A ramp that still falls would seal at more than nominal voltage.
         Act::Wait(board.still_ramping),
         supply.step_to(Volt(SEAL * context.relay.part.nominal_v)),
         set(&[
@@ -87,14 +87,14 @@ fn from_sealed(context: &Context, board: BoardState, ramped: bool) -> (Vec<Act>,
             (CoilDrive, true),
         ]),
         Act::Wait(INTERLOCK + SEALS),
-        // The flux of a sealed armature falls slowly: from the near end of the interval, not from above.
+        // The flux of a sealed armature falls slowly, so the last step is short.
         supply.step_to(near),
         Act::Wait(SEALS),
     ]);
     (acts, driven(board, supply))
 }
 
-/// The drive is on, and whether the armature follows is for the trial to see.
+/// Returns the board with the drive on and the armature unknown until the trial reads the contacts.
 fn driven(board: BoardState, supply: Supply) -> BoardState {
     BoardState {
         supply,

@@ -1,4 +1,4 @@
-//! One ramp after another: where the supply is when the next one begins.
+//! Consecutive ramps: the position of the supply when the next ramp begins.
 
 use super::super::{Stage, fine};
 use super::{PULLED, RESTING, at_23_c, context, watched};
@@ -11,7 +11,7 @@ use crate::dut::em_relay::overshoot::{OvershootModel, Shown};
 use crate::dut::em_relay::points::DigitalOut;
 use crate::dut::em_relay::reference_part::interim;
 
-use crate::dut::em_relay::tests::golden_parts;
+use crate::dut::em_relay::tests::reference_parts;
 use crate::dut::em_relay::threshold::Direction;
 use crate::gauge::budget::{Budget, Reading};
 use crate::rig::sample::CountSample;
@@ -39,7 +39,7 @@ fn until_armed(acts: &[Act]) -> Span {
 }
 
 #[test]
-fn an_operate_ramp_is_not_armed_while_the_release_ramp_before_it_still_falls() {
+fn an_operate_ramp_waits_for_the_release_ramp() {
     for (sd_v, gate_ms) in [(0.008, 75.0), (0.025, 75.0), (0.06, 80.0)] {
         let context = context();
         let mut state = at_23_c();
@@ -55,7 +55,7 @@ fn an_operate_ramp_is_not_armed_while_the_release_ramp_before_it_still_falls() {
         fine::conclude(&context, &event, &mut state, (Direction::Falling, 0));
         let acts = state.enter(Stage::OperateFine(0), &context);
         let falls_ms = (way.span.0 - 0.045) / 1.5 * 1e3 - gate_ms;
-        // The word that arms and the approach take longer; a ramp stands while they do.
+        // Arming and approach take longer; the ramp waits for them.
         let armed_ms = until_armed(&acts).as_seconds() * 1e3;
         assert!(armed_ms >= falls_ms.min(24.0), "{armed_ms} of {falls_ms}");
         assert!(sd_v < 0.02 || falls_ms > 30.0 && armed_ms >= falls_ms);
@@ -63,7 +63,7 @@ fn an_operate_ramp_is_not_armed_while_the_release_ramp_before_it_still_falls() {
 }
 
 #[test]
-fn a_search_seals_no_part_on_top_of_a_release_ramp_that_still_falls() {
+fn a_search_seals_after_the_release_ramp_ends() {
     let context = context();
     let mut state = at_23_c();
     state
@@ -81,7 +81,7 @@ fn a_search_seals_no_part_on_top_of_a_release_ramp_that_still_falls() {
 }
 
 #[test]
-fn a_release_ramp_turns_the_one_before_it_round_and_prolongs_an_operate_ramp() {
+fn a_release_ramp_waits_for_the_ramp_before() {
     let wait_ms = |rising: bool| {
         let context = context();
         let mut state = at_23_c();
@@ -110,18 +110,18 @@ fn a_release_ramp_turns_the_one_before_it_round_and_prolongs_an_operate_ramp() {
         }
         until_armed(&state.enter(Stage::ReleaseFine(0), &context)).as_seconds() * 1e3
     };
-    // A repetition from nothing to 0.15 V at 1.5 V/s; to 0.28 V from 0.2 V, of which 74 ms were still to come.
+    // A repetition from 0 to 0.15 V at 1.5 V/s; to 0.28 V from 0.2 V, with 74 ms left to run.
     let (falling, rising) = (wait_ms(false), wait_ms(true));
     assert!((100.0..110.0).contains(&falling), "{falling}");
     assert!((130.0..150.0).contains(&rising), "{rising}");
 }
 
 #[test]
-fn a_golden_part_that_teaches_is_looked_for_where_its_certificate_says() {
+fn certificates_place_the_ramps_of_reference_parts() {
     let mut context = context();
     let learned = context.overshoot(Direction::Rising);
     let mut half_width = |coarse: OvershootModel| {
-        context.teaching = golden_parts().into_iter().next();
+        context.teaching = reference_parts().into_iter().next();
         let overshoot = interim(coarse, 0.03);
         let overshoots = Overshoots {
             operate: overshoot,
@@ -143,13 +143,13 @@ fn a_golden_part_that_teaches_is_looked_for_where_its_certificate_says() {
 }
 
 #[test]
-fn a_part_of_the_lot_has_no_certificate_to_be_looked_for_at() {
+fn parts_of_the_lot_have_no_certificate() {
     let found = Expected::certified(&context(), Celsius(23.0), Direction::Falling);
     assert_eq!(found, None);
 }
 
 #[test]
-fn a_slow_armature_gets_more_time_and_a_longer_run_up() {
+fn a_slow_armature_gets_longer_waits() {
     let of = |operate_ms: f64| {
         let mut state = at_23_c();
         let reading = Reading {

@@ -31,7 +31,7 @@ fn pins(open: &[usize]) -> BoardInputs {
 }
 
 #[test]
-fn the_pin_map_tells_missing_pins_turned_parts_and_stuck_contacts_apart() {
+fn the_pin_map_separates_missing_misoriented_and_stuck() {
     let welded = BoardInputs {
         nc_closed: true,
         ..PULLED
@@ -61,7 +61,7 @@ fn the_pin_map_tells_missing_pins_turned_parts_and_stuck_contacts_apart() {
 }
 
 #[test]
-fn a_part_of_unknown_temperature_or_unread_pins_is_void() {
+fn unknown_temperature_or_unread_pins_void_the_part() {
     let over = drop_of(Quality::OverRange, 0.0);
     let drops = || [1.1, -1.1].map(|volts| drop_of(Quality::Good, volts));
     for (track, known) in [
@@ -104,7 +104,7 @@ fn nc_of(forward: Sample, reverse: Option<Sample>, compliance: bool) -> TestStat
 }
 
 #[test]
-fn both_polarities_give_the_contact_resistance_and_the_zero_of_the_drop() {
+fn both_polarities_give_contact_resistance_and_zero() {
     let zero = 0.015;
     let forward = drop_of(Quality::Good, 1.1 + zero);
     let reverse = drop_of(Quality::Good, -1.1 + zero);
@@ -123,7 +123,7 @@ fn both_polarities_give_the_contact_resistance_and_the_zero_of_the_drop() {
 }
 
 #[test]
-fn a_drop_that_is_no_number_says_why_by_the_compliance_of_the_source() {
+fn compliance_explains_an_over_range_drop() {
     let fine = || drop_of(Quality::Good, -1.1);
     let of = |quality| drop_of(quality, 0.0);
     let cases = [
@@ -196,7 +196,7 @@ fn a_coil_is_reported_at_the_reference_temperature() {
 }
 
 #[test]
-fn open_shorted_and_unreadable_coils_are_told_apart() {
+fn open_shorted_and_unreadable_coils_differ_in_finding() {
     let over = with(Quality::OverRange, |scan| &mut scan.current_fine);
     let volts_over = with(Quality::OverRange, |scan| &mut scan.voltage_fine);
     let volts_blank = with(Quality::Blank, |scan| &mut scan.voltage_fine);
@@ -221,7 +221,7 @@ fn open_shorted_and_unreadable_coils_are_told_apart() {
 }
 
 #[test]
-fn a_coil_of_low_resistance_is_read_on_the_wide_channel() {
+fn a_low_coil_resistance_needs_the_wide_channel() {
     let mut context = context();
     Arc::make_mut(&mut context.relay).test.coil_channels = CoilChannels::CoarseCurrent;
     let scan = CoilScan {
@@ -240,7 +240,7 @@ fn a_coil_of_low_resistance_is_read_on_the_wide_channel() {
 }
 
 #[test]
-fn a_test_ends_void_unless_the_current_is_seen_to_be_gone() {
+fn a_test_is_void_while_coil_current_remains() {
     let of = |scan: CoilScan| scan.current_fine;
     let cases = [
         (of(scan(0.0, 0.0005)), false),

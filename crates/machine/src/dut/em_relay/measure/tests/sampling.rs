@@ -1,4 +1,4 @@
-//! How often coil and contacts are looked at, as the recipe asks.
+//! Number of readings of coil and contacts that a recipe demands.
 
 use super::super::{Stage, Test};
 use super::{at_23_c, context, good, scan};
@@ -10,12 +10,12 @@ use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::recipe::Strategies;
 use crate::dut::em_relay::sampling::Polarities;
 use crate::gauge::budget::{Budget, Reading};
-use crate::handling::tests::Shop;
+use crate::handling::tests::MockRig;
 use crate::rig::sample::Sample;
 use std::sync::Arc;
 use units::{Unit, Volt};
 
-/// The default recipe with other samplings.
+/// The default recipe with changed strategies.
 fn with(change: impl Fn(&mut Strategies)) -> Context {
     let mut context = context();
     change(&mut Arc::make_mut(&mut context.relay).test.strategy);
@@ -43,7 +43,7 @@ fn directions(acts: &[Act]) -> Vec<bool> {
 }
 
 #[test]
-fn a_contact_is_read_in_the_directions_of_its_recipe() {
+fn contacts_are_read_in_the_recipes_polarities() {
     let four = with(|it| it.contact.polarities = Polarities::PlusMinusMinusPlus);
     for stage in [Stage::NcContact, Stage::TimedOperate] {
         assert_eq!(directions(&acts_of(stage, &context())), [false, true]);
@@ -61,7 +61,7 @@ fn a_contact_is_read_in_the_directions_of_its_recipe() {
 }
 
 #[test]
-fn a_coil_is_scanned_as_often_as_its_recipe_says_and_the_mean_is_less_in_doubt() {
+fn more_coil_scans_reduce_the_uncertainty() {
     let four = with(|it| it.coil.scans = 4);
     let scans = |context: &Context| {
         let acts = acts_of(Stage::Coil, context);
@@ -84,10 +84,10 @@ fn a_coil_is_scanned_as_often_as_its_recipe_says_and_the_mean_is_less_in_doubt()
     assert!((u(&reading(1)) / u(&reading(4)) - 2.0).abs() < 1e-9);
 }
 
-/// A test at its end, with so many closures of NO and NC behind it.
+/// A test at its end, after `closures` closures of NO and NC.
 fn after(context: Context, closures: usize, mohm: f64) -> Test {
     let per_v = context.calibration.contact_mohm_per_v.value;
-    let mut test = Test::begin(context, Shop::at_rest().now);
+    let mut test = Test::begin(context, MockRig::at_rest().now);
     test.stages.clear();
     for parameter in [
         Parameter::ContactResistanceNo,
@@ -108,18 +108,18 @@ fn after(context: Context, closures: usize, mohm: f64) -> Test {
 }
 
 #[test]
-fn closures_are_added_up_to_the_number_of_the_recipe() {
+fn closures_repeat_up_to_the_recipes_number() {
     let pair = [Stage::TimedOperate, Stage::TimedRelease];
-    for (asked, had, more) in [(1, 1, false), (3, 1, true), (3, 2, true), (3, 3, false)] {
-        let mut test = after(with(|it| it.contact.closures = asked), had, 18.0);
+    for (closures, had, more) in [(1, 1, false), (3, 1, true), (3, 2, true), (3, 3, false)] {
+        let mut test = after(with(|it| it.contact.closures = closures), had, 18.0);
         test.add_closure();
         let expected: &[Stage] = if more { &pair } else { &[] };
-        assert_eq!(test.stages, expected, "{had} of {asked}");
+        assert_eq!(test.stages, expected, "{had} of {closures}");
     }
 }
 
 #[test]
-fn with_an_early_stop_only_contacts_near_their_limit_get_more_closures() {
+fn an_early_stop_repeats_only_marginal_contacts() {
     let early = || {
         with(|it| {
             it.contact.closures = 8;
@@ -134,7 +134,7 @@ fn with_an_early_stop_only_contacts_near_their_limit_get_more_closures() {
 }
 
 #[test]
-fn a_further_closure_begins_with_the_source_off_and_forward() {
+fn a_further_closure_begins_with_the_source_off() {
     let first = acts_of(Stage::TimedOperate, &context());
     let words = first.iter().filter_map(|act| match act {
         Act::Board(outputs) => Some(outputs),

@@ -34,7 +34,7 @@ fn ramp_from(start: f64, span: f64) -> TestState {
 }
 
 #[test]
-fn the_coarse_ramp_places_the_fine_one_by_its_learned_lag() {
+fn the_learned_overshoot_places_the_fine_ramp() {
     let mut state = ramp_from(5.0, 6.0);
     let readings = watched(true, PULLED, 40.0);
     let next = operate::conclude_coarse(&context(), &readings, &mut state);
@@ -47,7 +47,7 @@ fn the_coarse_ramp_places_the_fine_one_by_its_learned_lag() {
 }
 
 #[test]
-fn a_coarse_ramp_without_a_make_is_a_high_threshold_unless_the_contact_made_unseen() {
+fn a_coarse_ramp_without_make_means_high_threshold() {
     for (board, bin, word) in [
         (RESTING, bins::VOLTAGE, "above the coarse ramp"),
         (PULLED, Bin::RETEST, "outside the window"),
@@ -61,7 +61,7 @@ fn a_coarse_ramp_without_a_make_is_a_high_threshold_unless_the_contact_made_unse
 }
 
 #[test]
-fn a_contact_that_does_not_move_at_nominal_voltage_is_stuck_unless_the_coil_is_the_cause() {
+fn an_unmoved_contact_is_stuck_unless_the_coil_fails() {
     let between = BoardInputs {
         nc_closed: false,
         ..RESTING
@@ -89,7 +89,7 @@ fn a_contact_that_does_not_move_at_nominal_voltage_is_stuck_unless_the_coil_is_t
 }
 
 #[test]
-fn a_fine_ramp_that_meets_its_event_gives_the_threshold() {
+fn a_fine_ramp_with_event_gives_the_threshold() {
     let mut state = ramp_from(7.8, 0.2);
     state.record.own.operate = Some(Ramp {
         coarse: state.record.shown(Volt(8.8), Direction::Rising),
@@ -109,7 +109,7 @@ fn a_fine_ramp_that_meets_its_event_gives_the_threshold() {
 }
 
 #[test]
-fn a_fine_ramp_that_misses_is_placed_anew_five_times_at_most() {
+fn a_missed_fine_ramp_repeats_at_most_five_times() {
     let miss = |readings: &Readings| {
         let mut state = ramp_from(7.8, 0.2);
         for attempt in 0..4 {
@@ -135,7 +135,7 @@ fn a_fine_ramp_that_misses_is_placed_anew_five_times_at_most() {
 }
 
 #[test]
-fn an_event_before_the_searched_interval_is_that_of_the_step_and_looked_for_lower() {
+fn an_event_before_the_interval_lowers_the_search() {
     let mut state = ramp_from(7.8, 0.2);
     let readings = watched(true, PULLED, 2.0);
     let next = fine::conclude(&context(), &readings, &mut state, (Direction::Rising, 0));
@@ -146,7 +146,7 @@ fn an_event_before_the_searched_interval_is_that_of_the_step_and_looked_for_lowe
 }
 
 #[test]
-fn a_release_that_came_too_early_is_looked_for_higher() {
+fn an_early_release_raises_the_search() {
     for (board, higher) in [(RESTING, true), (PULLED, false)] {
         let mut state = ramp_from(8.0, 0.2);
         let readings = watched(false, board, 30.0);
@@ -158,7 +158,7 @@ fn a_release_that_came_too_early_is_looked_for_higher() {
 }
 
 #[test]
-fn an_event_after_the_ramp_has_stopped_is_looked_for_around_its_end() {
+fn an_event_after_the_ramp_centres_the_next() {
     let mut state = ramp_from(7.8, 0.1);
     let readings = watched(true, PULLED, 80.0);
     let next = fine::conclude(&context(), &readings, &mut state, (Direction::Rising, 0));
@@ -169,12 +169,12 @@ fn an_event_after_the_ramp_has_stopped_is_looked_for_around_its_end() {
 }
 
 #[test]
-fn a_coarse_release_without_a_break_is_searched_by_halves() {
+fn a_coarse_release_without_break_starts_a_bisection() {
     for readings in [
         watched(false, PULLED, 0.0),
-        // The ramp has ended long before: the time is no voltage.
+        // The ramp ended long before: the gate holds time, not voltage.
         watched(true, RESTING, 60.0),
-        // It ends after 41.1 ms, and its last step may have been made.
+        // The ramp ends after 41.1 ms; its last step may have been made.
         watched(true, RESTING, 40.6),
     ] {
         let mut state = ramp_from(4.0, 4.0);
@@ -194,7 +194,7 @@ fn a_coarse_release_without_a_break_is_searched_by_halves() {
 }
 
 #[test]
-fn a_coarse_release_of_a_coil_of_few_volts_is_told_down_to_the_last_step_of_its_ramp() {
+fn a_low_coarse_release_counts_until_the_last_refresh() {
     let mut state = ramp_from(4.0, 4.0);
     release::conclude_coarse(&context(), &watched(true, RESTING, 40.0), &mut state);
     let coarse = state.record.own.release.unwrap().coarse.indicated;
@@ -213,7 +213,7 @@ fn timed(seen: bool, counts: [u32; 2]) -> Readings {
 }
 
 #[test]
-fn a_timed_operation_gives_time_bounce_and_the_contact_it_ends_on() {
+fn a_timed_operation_gives_time_bounce_and_contact() {
     let mut state = at_23_c();
     timing::conclude_operate(&context(), &timed(true, [236, 252]), &mut state);
     assert_eq!(ended(&state), None);
@@ -229,7 +229,7 @@ fn a_timed_operation_gives_time_bounce_and_the_contact_it_ends_on() {
 }
 
 #[test]
-fn a_timed_release_adds_its_closure_to_the_nc_contact() {
+fn a_timed_release_adds_an_nc_closure() {
     let mut state = at_23_c();
     state.plan.drop_zero = Some(Volt(0.1));
     state.plan.nc_drops = vec![Volt(1.2)];
@@ -242,7 +242,7 @@ fn a_timed_release_adds_its_closure_to_the_nc_contact() {
 }
 
 #[test]
-fn a_contact_that_never_makes_fails_by_time_and_an_unread_counter_is_void() {
+fn a_missing_make_fails_and_unread_counters_void() {
     type Conclude =
         fn(&crate::dut::em_relay::measure::Context, &Readings, &mut TestState) -> Option<Stage>;
     let stages: [(Conclude, &str); 2] = [
@@ -265,7 +265,7 @@ fn a_contact_that_never_makes_fails_by_time_and_an_unread_counter_is_void() {
 }
 
 #[test]
-fn a_closure_with_the_source_in_compliance_fails_by_contact() {
+fn a_closure_in_compliance_fails_by_contact() {
     let mut readings = timed(true, [236, 252]);
     readings.boards[0].compliance = true;
     readings.drops[0] = drop_of(Quality::OverRange, 0.0);
@@ -278,8 +278,8 @@ fn a_closure_with_the_source_in_compliance_fails_by_contact() {
     assert_ends(&state, bins::CONTACT, "NC contact");
 }
 
-/// The default context on the strategy `ramp`, with a law taught by parts of which each millisecond of operate time
-/// showed 96 mV more.
+/// The default context on the strategy `ramp`, with a model in which each millisecond of operate time adds 96 mV of
+/// overshoot.
 fn on_the_ramp() -> Context {
     let mut law = OvershootModel::guess(0.85);
     for at in 0..40 {
@@ -323,7 +323,7 @@ fn coarse_after(context: &Context, counts: u32) -> (TestState, Option<Stage>) {
 }
 
 #[test]
-fn a_coarse_value_is_corrected_by_the_operate_time_of_the_same_part() {
+fn the_operate_time_corrects_a_coarse_value() {
     let context = on_the_ramp();
     for (counts, slower_ms) in [(235, 0.0), (245, 0.2)] {
         let (state, next) = coarse_after(&context, counts);
@@ -337,7 +337,7 @@ fn a_coarse_value_is_corrected_by_the_operate_time_of_the_same_part() {
 }
 
 #[test]
-fn a_part_unlike_those_that_taught_the_law_is_measured_by_the_fine_ramp() {
+fn an_unlike_part_needs_the_fine_ramp() {
     let (state, next) = coarse_after(&on_the_ramp(), 420);
     assert_eq!((next, ended(&state)), (Some(Stage::OperateFine(0)), None));
     assert_eq!(state.record.attempts(Parameter::OperateVoltage), 0);
@@ -345,7 +345,7 @@ fn a_part_unlike_those_that_taught_the_law_is_measured_by_the_fine_ramp() {
     assert!(expected.half_width > Volt(0.01), "{expected:?}");
 }
 
-/// The last word to the source before an output is switched on.
+/// Last state written to the source before an output is switched on.
 fn source_before(switched: DigitalOut, acts: &[Act]) -> Option<bool> {
     let words = acts.iter().filter_map(|act| match act {
         Act::Board(word) => Some(word),

@@ -13,13 +13,13 @@ use crate::dut::em_relay::{Parameter, parameter};
 use crate::dut::reason::{Code, Reason};
 use crate::dut::verdict::{Bin, Verdict};
 use crate::gauge::budget::{Budget, Reading};
-use crate::handling::tests::Shop;
+use crate::handling::tests::MockRig;
 use crate::instrument::act::{Doing, Job, JobDone};
 use crate::rig::point::Point;
 use crate::rig::sample::Sample;
 use units::{Span, Volt};
 
-/// Each stage in the order of a good part: its acts, and what they leave the armature doing.
+/// Each stage of a good part in order: its acts, and the state of the armature after them.
 fn stages_of_a_good_part() -> Vec<(Stage, Vec<Act>, Armature)> {
     let context = context();
     let mut state = at_23_c();
@@ -65,7 +65,7 @@ fn conditioning_operates_before_the_first_measurement() {
 }
 
 #[test]
-fn the_card_has_its_steps_in_the_order_of_the_test() {
+fn the_card_follows_the_order_of_the_test() {
     let entered = stages_of_a_good_part().into_iter();
     let entered = entered.map(|(stage, ..)| stage.card_step().name());
     let mut firsts: Vec<&str> = Vec::new();
@@ -87,7 +87,7 @@ fn all_acts() -> Vec<(Stage, Vec<Act>)> {
 }
 
 #[test]
-fn each_stage_says_how_it_leaves_the_board() {
+fn each_stage_returns_the_state_of_the_board() {
     let left = stages_of_a_good_part().into_iter();
     let left: Vec<_> = left.map(|(stage, _, armature)| (stage, armature)).collect();
     let expected = [
@@ -106,8 +106,8 @@ fn each_stage_says_how_it_leaves_the_board() {
 }
 
 #[test]
-fn a_stage_that_was_given_up_leaves_nothing_to_build_on() {
-    let mut test = Test::begin(context(), Shop::at_rest().now);
+fn an_aborted_stage_leaves_the_board_unknown() {
+    let mut test = Test::begin(context(), MockRig::at_rest().now);
     test.state.board.armature = Armature::Released;
     test.abandon("module answers ?AA".into());
     assert_eq!(test.state.board.armature, Armature::Unknown);
@@ -136,7 +136,7 @@ fn a_test_leaves_source_arm_and_drive_off() {
     }
 }
 
-/// How long a board write is followed by waiting, up to the next act that looks at something.
+/// Total wait after a board write, up to the next act that reads.
 fn waits_after(acts: &[Act]) -> Span {
     let mut waited = Span(0);
     for act in acts {
@@ -154,7 +154,7 @@ fn waits_after(acts: &[Act]) -> Span {
 }
 
 #[test]
-fn whoever_switches_under_a_live_source_waits_for_the_board_to_take_it_off_first() {
+fn switching_waits_until_the_source_is_off() {
     let watched = [
         DigitalOut::CoilDrive,
         DigitalOut::SelectNo,
@@ -178,9 +178,9 @@ fn whoever_switches_under_a_live_source_waits_for_the_board_to_take_it_off_first
 }
 
 #[test]
-fn nothing_is_timed_within_two_milliseconds_of_a_live_source() {
-    // Between the word that takes the source off and the one that drops the drive lies at least one
-    // transaction, 3 ms at the highest baud rate: the source is off and the selection has changed by then.
+fn timing_keeps_2_ms_from_a_live_source() {
+    // At least one transaction, 3 ms at the highest baud rate, lies between the writes that take the source off and
+    // drop the drive: source and selection have switched by then.
     let (_, acts) = all_acts()
         .into_iter()
         .find(|(stage, _)| *stage == Stage::TimedRelease)
@@ -203,7 +203,7 @@ fn nothing_is_timed_within_two_milliseconds_of_a_live_source() {
 }
 
 #[test]
-fn between_two_events_the_counters_are_read_and_before_a_timed_one_both() {
+fn counters_are_read_between_events() {
     let (mut one, mut both) = (false, false);
     for (stage, acts) in all_acts() {
         for act in acts {
@@ -230,7 +230,7 @@ fn no_stage_of_a_part_changes_the_channel_mask() {
 }
 
 #[test]
-fn every_supply_output_asked_for_is_one_that_it_can_give() {
+fn every_commanded_voltage_is_within_its_output() {
     for (stage, acts) in all_acts() {
         for act in acts {
             if let Act::Supply(outputs) = act {
@@ -245,29 +245,29 @@ fn every_supply_output_asked_for_is_one_that_it_can_give() {
 
 /// The job that reads the board.
 fn board() -> Job {
-    let inputs = Shop::unread().points.board.inputs.clone();
+    let inputs = MockRig::unread().points.board.inputs.clone();
     Job::Read(inputs.into_iter().map(Point::Input).collect())
 }
 
-/// Steps a test through good answers up to a job, then lets that job fail.
+/// Steps a test through good replies up to `job`, then fails that job.
 fn fails_at(job: &Job) -> Test {
-    let mut shop = Shop::at_rest();
-    shop.track(23.0);
-    let mut test = Test::begin(context(), shop.now);
+    let mut mock = MockRig::at_rest();
+    mock.track(23.0);
+    let mut test = Test::begin(context(), mock.now);
     let mut done = None;
     for _ in 0..200 {
-        match test.step(shop.now, done.take().as_ref(), &shop.image) {
-            Progress::Doing(Doing::Job(asked)) => {
-                shop.after(4);
-                let trouble = (asked == *job).then(|| "module answers ?AA".to_string());
+        match test.step(mock.now, done.take().as_ref(), &mock.image) {
+            Progress::Doing(Doing::Job(requested)) => {
+                mock.after(4);
+                let trouble = (requested == *job).then(|| "module answers ?AA".to_string());
                 done = Some(JobDone {
-                    at: shop.now,
+                    at: mock.now,
                     trouble,
                 });
             }
             Progress::Doing(Doing::Wait(until)) => {
-                shop.now = until;
-                shop.scan();
+                mock.now = until;
+                mock.scan();
             }
             Progress::Doing(other) => panic!("{other:?}"),
             Progress::Judged => return test,
@@ -293,7 +293,7 @@ fn a_rig_in_trouble_has_proven_no_part_bad() {
 }
 
 #[test]
-fn the_level_is_written_anew_after_a_test_that_ended_early() {
+fn an_early_end_rewrites_the_level() {
     let context = context();
     let writes = |ends: fn(&mut TestRecord)| {
         let mut state = TestState::new(&context);
@@ -313,7 +313,7 @@ fn the_level_is_written_anew_after_a_test_that_ended_early() {
 }
 
 #[test]
-fn a_refused_reply_or_a_restarted_module_in_the_middle_voids_the_part() {
+fn refused_replies_and_restarted_modules_void_the_part() {
     // No Kelvin bit is set, so the test goes from the pins straight to off.
     let test = fails_at(&board());
     let why = Verdict::Void(vec![Reason::rig_trouble("module answers ?AA")]);
@@ -329,14 +329,14 @@ fn the_first_cause_of_an_early_end_stays() {
     let mut record = TestRecord::default();
     record.stop(Finding::CoilOpen);
     record.stop(Finding::CoilCurrentRemains);
-    let mut test = Test::begin(context(), Shop::at_rest().now);
+    let mut test = Test::begin(context(), MockRig::at_rest().now);
     test.state.record = record;
     let reason = Finding::CoilOpen.into();
     assert_eq!(test.verdict(), Verdict::Fail(vec![reason]));
 }
 
 fn measured(values: &[(Parameter, f64)]) -> Test {
-    let mut test = Test::begin(context(), Shop::at_rest().now);
+    let mut test = Test::begin(context(), MockRig::at_rest().now);
     for (parameter, value) in values {
         let reading = Reading {
             value: *value,
@@ -362,7 +362,7 @@ const GOOD: [(Parameter, f64); 9] = [
 ];
 
 #[test]
-fn a_part_passes_with_all_nine_results_and_is_void_without_one() {
+fn a_part_needs_all_nine_results_to_pass() {
     assert_eq!(GOOD.len(), parameter::Parameter::ALL.len());
     assert_eq!(measured(&GOOD).verdict(), Verdict::Pass);
     for missing in 0..GOOD.len() {
@@ -375,7 +375,7 @@ fn a_part_passes_with_all_nine_results_and_is_void_without_one() {
 }
 
 #[test]
-fn only_results_inside_the_guard_band_are_measured_again_and_only_once() {
+fn only_results_inside_the_guard_band_repeat_once() {
     let slow = |value: f64| {
         let mut values = GOOD;
         values[1].1 = value;

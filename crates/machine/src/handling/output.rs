@@ -49,8 +49,8 @@ pub struct Commands {
     pub job: Option<NestJob>,
     /// Beam whose event counter every scan reads.
     pub beam: Option<DigitalInput>,
-    /// True while an actuator deviates unexplained: the cycle then asks the modules whether one has restarted (restart
-    /// check).
+    /// True while an actuator deviates without an alarm: the cycle then asks the modules for their reset status
+    /// (restart check).
     pub restart_check: bool,
     /// True to set all outputs to their safe values immediately.
     pub safe: bool,

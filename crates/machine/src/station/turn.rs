@@ -4,12 +4,12 @@ use super::orders::{Order, Refused};
 use super::packml::Command;
 use super::trouble::Alarm;
 use crate::dut::Calibration;
+use crate::handling::output::{Commands, NestDone, PartEvents};
 use crate::handling::trouble::Trouble;
-use crate::handling::wants::{Commands, NestDone, PartEvents};
 use crate::rig::image::Image;
 use units::RigTime;
 
-/// Inputs of a turn beside the time.
+/// Inputs of a turn besides the time.
 #[derive(Debug)]
 pub struct Inputs<'a> {
     /// Process image.
@@ -20,15 +20,15 @@ pub struct Inputs<'a> {
     pub recorded: u64,
     /// Trouble of a line or module, once.
     pub bus: Option<Alarm>,
-    /// The operator wants the lot to end after the parts inside (Ctrl-C, once).
+    /// True when the operator ends the lot after the parts inside (Ctrl-C, once).
     pub stop: bool,
-    /// The operator wants it to end at once (Ctrl-C, twice).
+    /// True when the operator ends the lot at once (Ctrl-C, twice).
     pub abort: bool,
-    /// Orders of screens, in the order in which they came; each is answered in [`Wants::answers`].
+    /// Orders of screens in order of arrival; [`TurnOutput::answers`] has the answer to each.
     pub orders: Vec<Order>,
     /// True when every output has confirmed its command.
     pub settled: bool,
-    /// The modules were verified after [`Commands::verify`].
+    /// True after the modules were verified on [`Commands::verify`].
     pub verified: bool,
 }
 
@@ -46,14 +46,14 @@ pub struct Checked {
 pub enum Ending {
     /// Every part was judged and binned.
     Complete,
-    /// The operator stopped it; the parts inside were finished.
+    /// The operator stopped it after the parts inside.
     Stopped,
     /// An alarm stopped it.
     Alarm,
 }
 
 impl Ending {
-    /// Its name in the summary of a run.
+    /// Returns the name in the summary of a run.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Complete => "complete",
@@ -72,13 +72,13 @@ pub struct Record {
     pub alarms: Vec<Alarm>,
     /// True when the list of alarms has changed.
     pub alarms_changed: bool,
-    /// A calibration that is complete.
+    /// A complete calibration.
     pub calibrated: Option<Calibration>,
     /// Result of a reference check.
     pub checked: Option<Checked>,
     /// True when the lot itself begins, after calibration and reference parts.
     pub lot_began: bool,
-    /// The run is over.
+    /// The end of the run.
     pub ending: Option<Ending>,
 }
 
@@ -87,7 +87,7 @@ pub struct Record {
 pub(super) struct Notes {
     /// Alarms of this turn, not yet in the list.
     pub trouble: Vec<Alarm>,
-    /// Trouble of the feeder that has not become an alarm yet.
+    /// Trouble of the feeder, not yet an alarm.
     pub feeder: Vec<Trouble>,
 }
 
@@ -97,7 +97,7 @@ impl Notes {
         self.trouble.is_empty() && self.feeder.is_empty()
     }
 
-    /// Turns trouble of the feeder into alarms behind those noted before.
+    /// Turns trouble of the feeder into alarms, listed after those noted before.
     pub fn take_over(&mut self) {
         self.trouble.extend(self.feeder.drain(..).map(Alarm::from));
     }
@@ -105,7 +105,7 @@ impl Notes {
 
 /// Outputs of a turn.
 #[derive(Debug, Default)]
-pub struct Wants {
+pub struct TurnOutput {
     /// Commands to the rig.
     pub rig: Commands,
     /// Events for the record.
@@ -117,7 +117,7 @@ pub struct Wants {
     pub(super) notes: Notes,
 }
 
-impl Wants {
+impl TurnOutput {
     /// Panics when an invariant of the outputs is broken; `orders` is the number of orders in the turn.
     pub(super) fn check(&self, now: RigTime, orders: usize) {
         let rig = &self.rig;

@@ -1,4 +1,4 @@
-//! A rig with sensors set by hand, to test step machines without modules.
+//! A rig with given sensor states, to test step machines without modules.
 
 use super::wiring;
 use crate::dut::em_relay::points::{self, AnalogIn, Counter, Points};
@@ -6,9 +6,9 @@ use crate::guard::{Actuator, PartSize};
 use crate::handling::ledger::Ledger;
 use crate::handling::mechanism::Mechanism;
 use crate::handling::moves::{Move, Strokes};
+use crate::handling::output::{Commands, PartEvents};
 use crate::handling::trouble::Trouble;
 use crate::handling::turn::Turn;
-use crate::handling::wants::{Commands, PartEvents};
 use crate::rig::image::Image;
 use crate::rig::point::{AnalogInput, DigitalIn, DigitalInput, GatedCounter, Point};
 use crate::rig::wiring::{ModuleId, Wiring};
@@ -38,13 +38,13 @@ const AT_REST: [DigitalIn; 11] = [
 
 /// Commands and events of a turn.
 #[derive(Debug, Default)]
-pub struct Asked {
+pub struct Output {
     pub rig: Commands,
     pub parts: PartEvents,
     pub trouble: Vec<Trouble>,
 }
 
-impl Asked {
+impl Output {
     /// Returns the codes of the resulting alarms.
     pub fn alarms(&self) -> Vec<String> {
         let alarms = self.trouble.iter().cloned().map(Alarm::from);
@@ -52,22 +52,22 @@ impl Asked {
     }
 }
 
-/// The inputs of a turn.
-pub struct Shop {
+/// A rig with given sensor states, and the inputs of its next turn.
+pub struct MockRig {
     pub wiring: Arc<Wiring>,
     pub image: Image,
     pub now: RigTime,
     pub mechanism: Mechanism,
     pub ledger: Ledger,
-    pub wants: Asked,
-    pub golden: VecDeque<String>,
+    pub output: Output,
+    pub reference_serials: VecDeque<String>,
     pub recorded: u64,
     pub points: Points,
     on: BTreeSet<DigitalInput>,
 }
 
-impl Shop {
-    /// Makes a shop at rest whose sensors are unread.
+impl MockRig {
+    /// Makes a rig at rest whose sensors are unread.
     pub fn unread() -> Self {
         let wiring = wiring();
         let points = Points::resolve(&wiring).unwrap();
@@ -81,17 +81,17 @@ impl Shop {
             mechanism: mechanism(&wiring),
             wiring,
             ledger: Ledger::default(),
-            wants: Asked::default(),
-            golden: VecDeque::new(),
+            output: Output::default(),
+            reference_serials: VecDeque::new(),
             recorded: 0,
         }
     }
 
-    /// Makes a shop at rest with all sensors read.
+    /// Makes a rig at rest with all sensors read.
     pub fn at_rest() -> Self {
-        let mut shop = Self::unread();
-        shop.scan();
-        shop
+        let mut mock = Self::unread();
+        mock.scan();
+        mock
     }
 
     /// Changes a sensor without reading it.
@@ -223,16 +223,16 @@ impl Shop {
 
     /// Makes a turn without commands.
     pub fn turn(&mut self) -> Turn<'_> {
-        self.wants = Asked::default();
+        self.output = Output::default();
         Turn {
             now: self.now,
             image: &self.image,
             mechanism: &self.mechanism,
             ledger: &mut self.ledger,
-            rig: &mut self.wants.rig,
-            parts: &mut self.wants.parts,
-            trouble: &mut self.wants.trouble,
-            golden: &mut self.golden,
+            rig: &mut self.output.rig,
+            parts: &mut self.output.parts,
+            trouble: &mut self.output.trouble,
+            reference_serials: &mut self.reference_serials,
             recorded: self.recorded,
             resting: false,
         }
@@ -240,7 +240,7 @@ impl Shop {
 
     /// Returns the codes of the last turn's alarms.
     pub fn alarms(&self) -> Vec<String> {
-        self.wants.alarms()
+        self.output.alarms()
     }
 }
 

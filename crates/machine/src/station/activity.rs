@@ -1,10 +1,10 @@
-//! Activity of the station for screens, in more detail than the state of the outer machine.
+//! Activity of the station for views, in more detail than the state of the outer machine.
 
 use super::packml::State;
 
 /// Activity of the station.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Doing {
+pub enum Activity {
     /// The run is over.
     Ended,
     /// Waits for the first reading of the safety inputs.
@@ -15,17 +15,17 @@ pub enum Doing {
     Discharging,
     /// Measures the references.
     Calibrating,
-    /// Tests a part; the name of the stage.
+    /// Tests a part, at the named stage.
     Testing(&'static str),
     /// Handles parts of the lot.
     Running,
     /// Handles reference parts.
     ReferenceParts,
-    /// None of these; the state of the outer machine.
+    /// Rests in this state of the outer machine.
     Resting(State),
 }
 
-impl Doing {
+impl Activity {
     /// Returns the code: the key of its text in the family `state`.
     pub fn code(self) -> String {
         let code = match self {
@@ -57,7 +57,7 @@ impl Doing {
         }
     }
 
-    /// Returns the words of a view: the code with blanks, followed by the stage.
+    /// Returns the words for a view: the code with blanks, followed by the stage.
     pub fn name(self) -> String {
         let code = self.code().replace('_', " ");
         match self.stage() {
@@ -76,20 +76,20 @@ mod tests {
     fn every_state_and_stage_has_a_text() {
         let known: Vec<&str> = texts::plain().map(|it| it.id).collect();
         let inner = [
-            Doing::Ended,
-            Doing::WaitingForSensors,
-            Doing::Homing,
-            Doing::Discharging,
-            Doing::Calibrating,
-            Doing::Testing("Off"),
-            Doing::Running,
-            Doing::ReferenceParts,
+            Activity::Ended,
+            Activity::WaitingForSensors,
+            Activity::Homing,
+            Activity::Discharging,
+            Activity::Calibrating,
+            Activity::Testing("Off"),
+            Activity::Running,
+            Activity::ReferenceParts,
         ];
-        let outer = State::ALL.iter().map(|state| Doing::Resting(*state));
-        for doing in inner.into_iter().chain(outer) {
+        let outer = State::ALL.iter().map(|state| Activity::Resting(*state));
+        for activity in inner.into_iter().chain(outer) {
             assert!(
-                known.contains(&format!("state-{}", doing.code()).as_str()),
-                "{doing:?}"
+                known.contains(&format!("state-{}", activity.code()).as_str()),
+                "{activity:?}"
             );
         }
         for stage in Kind::ALL.into_iter().flat_map(Kind::stages) {
@@ -102,8 +102,8 @@ mod tests {
 
     #[test]
     fn a_view_names_the_stage_behind_the_state() {
-        assert_eq!(Doing::Testing("Coil").name(), "testing: Coil");
-        assert_eq!(Doing::WaitingForSensors.name(), "waiting for sensors");
-        assert_eq!(Doing::Resting(State::Held).name(), "held");
+        assert_eq!(Activity::Testing("Coil").name(), "testing: Coil");
+        assert_eq!(Activity::WaitingForSensors.name(), "waiting for sensors");
+        assert_eq!(Activity::Resting(State::Held).name(), "held");
     }
 }

@@ -13,7 +13,7 @@ const COIL: &[Key] = table! {
     key("u", above_zero(100.0, "ohm"), "gauge", "standard uncertainty of the certificate");
 };
 
-/// An entry of `[[golden]]`.
+/// Keys of an entry of `[[golden]]`.
 pub const PART: &[Key] = table! {
     key("serial", Form::Text, "gauge, history", "serial number, used once");
     key("nominal_v", above_zero(20.0, "V"), "gauge", "nominal coil voltage; serves recipes of the same voltage");

@@ -1,22 +1,22 @@
-//! Answers to orders: performs an order, or refuses it with the reason.
+//! Answers to orders: the station performs an order, or refuses it with the reason.
 
 use super::Station;
 use super::orders::{Order, Refused, shelf_minutes};
 use super::packml::{self, Command, Mode, On, State};
 use super::trouble::Alarm;
-use super::wants::{Ending, Wants};
+use super::turn::{Ending, TurnOutput};
 use crate::handling::Place;
-use crate::handling::wants::Jog;
+use crate::handling::output::Jog;
 use crate::rig::image::Image;
 use units::{RigTime, Span};
 
 impl Station {
-    /// Performs an order, or returns why not.
+    /// Performs an order, or returns the reason of its refusal.
     pub(super) fn order(
         &mut self,
         order: Order,
         now: RigTime,
-        wants: &mut Wants,
+        output: &mut TurnOutput,
     ) -> Result<(), Refused> {
         if self.machine.ended {
             return Err(Refused::RunEnded);
@@ -24,7 +24,7 @@ impl Station {
         match order {
             Order::Command(command) => {
                 self.may(command)?;
-                self.command(command, now, wants);
+                self.command(command, now, output);
             }
             Order::Mode(mode) => {
                 self.may_change_mode()?;
@@ -32,24 +32,24 @@ impl Station {
             }
             Order::Jog(movement) => {
                 self.may_jog()?;
-                let answer = wants.answers.len();
-                wants.rig.jog = Some(Jog { movement, answer });
+                let answer = output.answers.len();
+                output.rig.jog = Some(Jog { movement, answer });
             }
             Order::Step => {
                 self.may_step()?;
-                wants.rig.motions.extend(self.line.stepwise.pop_front());
+                output.rig.motions.extend(self.line.stepwise.pop_front());
             }
             Order::LampTest => self.alarms.lamps.test(now),
             Order::Leave => {
                 self.may_leave()?;
-                self.leave(Ending::Stopped, now, wants);
+                self.leave(Ending::Stopped, now, output);
             }
             Order::Close => {
                 self.may_close()?;
                 if self.may(Command::Complete).is_ok() {
-                    self.command(Command::Complete, now, wants);
+                    self.command(Command::Complete, now, output);
                 } else {
-                    self.leave(Ending::Complete, now, wants);
+                    self.leave(Ending::Complete, now, output);
                 }
             }
             Order::Acknowledge(code) => {
@@ -69,19 +69,24 @@ impl Station {
         Ok(())
     }
 
-    /// Answers the orders of the push buttons; returns the alarms of stuck ones.
-    pub(super) fn pressed(&mut self, now: RigTime, image: &Image, wants: &mut Wants) -> Vec<Alarm> {
+    /// Answers the orders of the push buttons; returns the alarms of stuck buttons.
+    pub(super) fn pressed(
+        &mut self,
+        now: RigTime,
+        image: &Image,
+        output: &mut TurnOutput,
+    ) -> Vec<Alarm> {
         let (commands, stuck) = self.alarms.panel.look(now, image, self.machine.state);
         for command in commands {
-            let answer = self.order(Order::Command(command), now, wants);
-            // An unattended machine has no person to start it again.
+            let answer = self.order(Order::Command(command), now, output);
+            // No person can restart an unattended machine.
             self.machine.stopping |= command == Command::Stop && !self.plan.attended;
-            wants.pressed.push((command, answer));
+            output.pressed.push((command, answer));
         }
         stuck
     }
 
-    /// Checks that the state allows a command now; a screen shows the reason beside the button.
+    /// Checks that the state allows a command now; a screen shows the reason next to the button.
     ///
     /// # Errors
     /// Returns the reason.
@@ -125,7 +130,7 @@ impl Station {
         Ok(())
     }
 
-    /// Checks that the operator may leave the lot as it is, so that another one can begin.
+    /// Checks that the operator may leave the lot as it is, so that another lot can begin.
     ///
     /// # Errors
     /// Returns the reason.
@@ -154,7 +159,7 @@ impl Station {
         }
     }
 
-    /// Returns the refusal with the command that leads to rest.
+    /// Returns the refusal, with the command that brings the machine to rest.
     fn not_at_rest(&self) -> Refused {
         let state = self.machine.state;
         let first = if packml::is_aborted(state) {
@@ -202,7 +207,7 @@ impl Station {
         Ok(())
     }
 
-    /// Checks that a motion of the sequence waits for a step.
+    /// Checks that a motion of the sequence is waiting for a step.
     ///
     /// # Errors
     /// Returns the reason.
@@ -216,20 +221,20 @@ impl Station {
         Ok(())
     }
 
-    /// Takes note of a jog: the machine is no longer homed.
+    /// Records a jog: the machine is no longer homed.
     pub fn jogged(&mut self) {
         self.line.homed = false;
     }
 
-    fn leave(&mut self, ending: Ending, now: RigTime, wants: &mut Wants) {
-        self.make_safe("stopped", now, wants);
-        self.end(ending, now, wants);
+    fn leave(&mut self, ending: Ending, now: RigTime, output: &mut TurnOutput) {
+        self.make_safe("stopped", now, output);
+        self.end(ending, now, output);
     }
 
-    fn command(&mut self, command: Command, now: RigTime, wants: &mut Wants) {
+    fn command(&mut self, command: Command, now: RigTime, output: &mut TurnOutput) {
         self.machine.fresh = false;
         match command {
-            Command::Abort => return self.abort("abort_ordered", now, wants),
+            Command::Abort => return self.abort("abort_ordered", now, output),
             Command::Clear | Command::Unhold | Command::Reset => self.alarms.annunciator.cleared(),
             Command::Suspend => self.machine.suspended_by_order = true,
             Command::Start
@@ -238,6 +243,6 @@ impl Station {
             | Command::Unsuspend
             | Command::Complete => {}
         }
-        self.enter(command, now, wants);
+        self.enter(command, now, output);
     }
 }
