@@ -102,7 +102,7 @@ impl Image {
             raw,
             at,
         };
-        if self.file(&arrival, reply) {
+        if self.store(&arrival, reply) {
             return Ok(());
         }
         Err(Unexpected::WrongReply {
@@ -112,11 +112,11 @@ impl Image {
     }
 
     /// Stores the reply; returns false when it does not fit its command.
-    fn file(&mut self, arrival: &Arrival<'_>, reply: &Reply) -> bool {
+    fn store(&mut self, arrival: &Arrival<'_>, reply: &Reply) -> bool {
         use dcon::AnalogIn::{ReadAll, ReadAllHex, ReadOne};
         match (&arrival.command, reply) {
             (Command::AnalogIn(_, ReadAll(_) | ReadAllHex(_)), Reply::Readings(readings)) => {
-                self.file_readings(arrival, |channel| readings.get(usize::from(channel.get())));
+                self.store_readings(arrival, |channel| readings.get(usize::from(channel.get())));
                 true
             }
             (
@@ -128,7 +128,7 @@ impl Image {
                 ),
                 Reply::Reading(reading),
             ) => {
-                self.file_readings(arrival, |channel| {
+                self.store_readings(arrival, |channel| {
                     (channel == *requested).then_some(*reading)
                 });
                 true
@@ -141,11 +141,11 @@ impl Image {
                 true
             }
             (Command::Digital(_, Digital::ReadEvents { channel }), Reply::Events(count)) => {
-                self.file_events(arrival, *channel, *count);
+                self.store_events(arrival, *channel, *count);
                 true
             }
             (Command::Counter(_, dcon::Counter::Read(number)), Reply::Count(count)) => {
-                self.file_count(arrival, number.get(), *count);
+                self.store_count(arrival, number.get(), *count);
                 true
             }
             (Command::AnalogOut(_, dcon::AnalogOut::ReadPresent { .. }), Reply::Level(level)) => {
@@ -174,7 +174,7 @@ impl Image {
         }
     }
 
-    fn file_readings(
+    fn store_readings(
         &mut self,
         arrival: &Arrival<'_>,
         reading: impl Fn(Channel) -> Option<Reading>,
@@ -202,7 +202,7 @@ impl Image {
         }
     }
 
-    fn file_events(&mut self, arrival: &Arrival<'_>, channel: Channel, count: u16) {
+    fn store_events(&mut self, arrival: &Arrival<'_>, channel: Channel, count: u16) {
         let mut terminals = self.wiring.digital_in.iter().map(|(_, terminal)| terminal);
         let here = terminals
             .position(|terminal| terminal.module == arrival.module && terminal.channel == channel);
@@ -216,7 +216,7 @@ impl Image {
         }
     }
 
-    fn file_count(&mut self, arrival: &Arrival<'_>, number: u8, count: u32) {
+    fn store_count(&mut self, arrival: &Arrival<'_>, number: u8, count: u32) {
         for (index, (_, terminal)) in self.wiring.counter.iter().enumerate() {
             if terminal.module == arrival.module && terminal.channel.get() == number {
                 let origin = arrival.origin(terminal.channel, &Arc::from(arrival.raw));

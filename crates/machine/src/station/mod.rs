@@ -270,7 +270,7 @@ impl Station {
             output.answers.push(answer);
         }
         let stuck = self.pressed(now, inputs.image, &mut output);
-        self.by_itself(now, &inputs, &mut output);
+        self.act_unattended(now, &inputs, &mut output);
         if self.machine.ended {
             return output;
         }

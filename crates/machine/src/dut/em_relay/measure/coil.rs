@@ -183,7 +183,7 @@ pub(super) fn conclude(
     }
     let part = record.own.track?;
     let reference = context.reference_temperature();
-    match resistance(&scans, ohm, part, reference, context.scan_doubt()) {
+    match resistance(&scans, ohm, part, reference, context.scan_uncertainty()) {
         Some(reading) => {
             let coil = Ohm(reading.value / to_reference(part, reference));
             record.own.probe_contact = probe_contact(context, &readings.coil, coil);

@@ -245,10 +245,10 @@ impl Test {
             return;
         }
         self.slow_done = true;
-        let doubtful = |judgement: &Judgement| matches!(judgement, Judgement::Conditional(_));
+        let conditional = |judgement: &Judgement| matches!(judgement, Judgement::Conditional(_));
         let again: Vec<Stage> = verdict::judged(&self.context, &self.state.record)
             .iter()
-            .filter(|(_, judgement)| self.context.thorough || doubtful(judgement))
+            .filter(|(_, judgement)| self.context.thorough || conditional(judgement))
             .map(|(parameter, _)| parameter.facts().stage)
             .collect();
         // In the order of the test: a fine release ramp right after the timed operation would start from another flux

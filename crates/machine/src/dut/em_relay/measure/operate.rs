@@ -109,7 +109,7 @@ pub(super) fn conclude_coarse(
     let coarse = stopped_at(start, span, seen).unwrap_or(seen);
     board.armature = Armature::Operated;
     board.still_ramping = turning(context, coarse - start);
-    let shown = record.shown(coarse, Direction::Rising);
+    let shown = record.coarse_results(coarse, Direction::Rising);
     record.own.operate = Some(Ramp::coarse_only(shown));
     after_coarse(context, readings, state, (shown, Direction::Rising))
         .then_some(Stage::OperateFine(0))

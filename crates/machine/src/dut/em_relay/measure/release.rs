@@ -139,7 +139,7 @@ pub(super) fn conclude_coarse(
         return Some(Stage::Search(Direction::Falling));
     };
     let coarse = indicated(start, coarse_v_per_s, gate, Direction::Falling);
-    let shown = record.shown(coarse, Direction::Falling);
+    let shown = record.coarse_results(coarse, Direction::Falling);
     record.own.release = Some(Ramp::coarse_only(shown));
     after_coarse(context, readings, state, (shown, Direction::Falling))
         .then_some(Stage::ReleaseFine(0))
