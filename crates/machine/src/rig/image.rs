@@ -119,18 +119,8 @@ impl Image {
                 self.store_readings(arrival, |channel| readings.get(usize::from(channel.get())));
                 true
             }
-            (
-                Command::AnalogIn(
-                    _,
-                    ReadOne {
-                        channel: requested, ..
-                    },
-                ),
-                Reply::Reading(reading),
-            ) => {
-                self.store_readings(arrival, |channel| {
-                    (channel == *requested).then_some(*reading)
-                });
+            (Command::AnalogIn(_, ReadOne { channel: one, .. }), Reply::Reading(reading)) => {
+                self.store_readings(arrival, |channel| (channel == *one).then_some(*reading));
                 true
             }
             (Command::Digital(_, Digital::ReadPort | Digital::ReadAll), Reply::Bits(bits)) => {
@@ -327,7 +317,6 @@ impl Image {
     }
 }
 
-/// A reply with its command and time.
 struct Arrival<'a> {
     line: LineId,
     module: ModuleId,

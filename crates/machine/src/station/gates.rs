@@ -82,11 +82,11 @@ pub(super) struct Gates {
     good: Option<(RigTime, u64)>,
     judged: u64,
     failed: u64,
-    /// True after the alarm of the reject-rate limit.
+    /// True once the reject-rate limit has raised its alarm.
     reject_rate_reported: bool,
-    /// Counters after their alarm.
+    /// Counters that have raised their alarm.
     worn: Vec<Wearing>,
-    /// True while the probe contact exceeds its limit, after its alarm.
+    /// True once the probe contact has raised its alarm, until its mean is below the limit.
     fouled: bool,
 }
 

@@ -8,7 +8,7 @@
 //! 2. `Starting`: without a valid calibration probes up in the empty nest, measurements of the references;
 //! 3. `Execute`: reference parts when there is no calibration, then the lot behind its [`gates`], through the
 //!    [`crate::handling::feeder`];
-//! 4. `Completing`, `Stopping`, `Holding`, `Suspending`: the parts inside go to where they may wait.
+//! 4. `Completing`, `Stopping`, `Holding`, `Suspending`: the parts inside go to their waiting positions.
 //!
 //! Trouble: the [`catalogue`] gives the reaction to an [`trouble::Alarm`]; the [`annunciator`] lists it until its
 //! cause is gone and a person has acknowledged it. After `clear` and `reset` the station continues; a part inside is
@@ -270,7 +270,7 @@ impl Station {
             output.answers.push(answer);
         }
         let stuck = self.pressed(now, inputs.image, &mut output);
-        self.act_unattended(now, &inputs, &mut output);
+        self.unattended(now, &inputs, &mut output);
         if self.machine.ended {
             return output;
         }

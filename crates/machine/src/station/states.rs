@@ -24,12 +24,7 @@ const ALONE: Span = Span::ms(60_000);
 
 impl Station {
     /// Gives the commands of an unattended machine, and ends the run with the program.
-    pub(super) fn act_unattended(
-        &mut self,
-        now: RigTime,
-        inputs: &Inputs,
-        output: &mut TurnOutput,
-    ) {
+    pub(super) fn unattended(&mut self, now: RigTime, inputs: &Inputs, output: &mut TurnOutput) {
         if self.machine.ended {
             return;
         }

@@ -113,7 +113,6 @@ fn steps(feeder: &Feeder) -> impl Iterator<Item = Step> {
         .chain([step(Owner::Sort, of_sort(feeder.sort()))])
 }
 
-/// Returns true in the states that perform the sequence.
 fn runs(state: State) -> bool {
     matches!(
         state,

@@ -284,7 +284,6 @@ impl Device {
     }
 }
 
-/// Returns the observations of a relay test.
 fn observed(record: &TestRecord) -> &Observed {
     match &record.own {
         Own::EmRelay(observed) => observed,

@@ -37,7 +37,6 @@ pub fn at_least(curves: &[Curve], parameter: Parameter, nominal_v: f64) -> Optio
     bound.and_then(|(_, at_least)| at_least)
 }
 
-/// One event of the curves.
 enum Event {
     /// Command of a supply output, by its index in [`SUPPLY`], volts.
     Command(usize, f64),
@@ -132,7 +131,6 @@ fn events(curves: &[Curve]) -> Vec<(i64, Event)> {
 mod tests {
     use super::*;
 
-    /// Curve of a signal from pairs of millisecond and value.
     fn curve(signal: &str, samples: &[(i64, f64)]) -> Curve {
         Curve {
             signal: signal.into(),

@@ -36,7 +36,6 @@ const OUTLIER: f64 = 3.0;
 /// similar part in two thousand lies further away (Hotelling's T2 of five variates, within a tenth from ten parts on).
 const MAX_DISTANCE2: f64 = 20.0;
 const WIDER: f64 = 20.0;
-/// Number of results in the model.
 const RESULTS: usize = 5;
 /// Number of coefficients: a constant, and a slope for each result.
 const TERMS: usize = RESULTS + 1;
@@ -96,7 +95,6 @@ pub struct Predicted {
 pub struct OvershootModel {
     guess_v: f64,
     parts: u32,
-    /// Logarithms of the first part.
     first: [f64; RESULTS],
     /// Sums over prior and parts: products of the terms, and of the terms with the overshoot minus the guess.
     products: [[f64; TERMS]; TERMS],

@@ -10,7 +10,6 @@ use units::Span;
 
 type Pressed = Vec<(Command, Result<(), Refused>)>;
 
-/// Returns an attended machine in `Stopped`.
 fn stopped() -> Machine {
     let mut machine = Machine::attended(None, vec![Specimen::MissingPin; 50]);
     turns(&mut machine, 2_000);

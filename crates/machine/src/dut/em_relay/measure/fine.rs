@@ -15,7 +15,6 @@ use units::{Second, Span, Volt};
 /// Fine ramps that may miss the threshold before the test is void.
 const ATTEMPTS: u8 = 5;
 
-/// Outcome of a fine ramp.
 enum Outcome {
     /// Indicated voltage at the contact event, and length of the gate.
     Found(Volt, Second),

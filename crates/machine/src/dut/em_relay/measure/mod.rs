@@ -196,7 +196,6 @@ impl Test {
         self.runner = Runner::after(self.context.wired(acts), now, &self.runner);
     }
 
-    /// Concludes the stage that has just ended and plans the next ones.
     fn conclude(&mut self, now: RigTime) {
         let record = &mut self.state.record;
         record.spent.add(self.runner.spent());
@@ -274,7 +273,6 @@ impl Test {
     }
 }
 
-/// Returns one write of outputs of the interface board.
 fn set(outputs: &[(DigitalOut, bool)]) -> Act {
     Act::Board(outputs.to_vec())
 }

@@ -91,7 +91,7 @@ pub(super) fn conclude_coarse(
 ) -> Option<Stage> {
     let (board, record) = (&mut state.board, &mut state.record);
     if readings.seen.first() != Some(&true) {
-        // The part has operated at nominal voltage before.
+        // The part operates at nominal voltage: its threshold lies above this ramp.
         record.stop(match readings.boards.last() {
             Some(board) if board.no_closed => Finding::MadeOutsideWindow,
             Some(_) => Finding::AboveCoarseRamp,

@@ -177,7 +177,6 @@ fn a_slow_armature_gets_longer_waits() {
     );
 }
 
-/// Results of a part of the lot.
 fn shown() -> CoarseResults {
     CoarseResults {
         indicated: Volt(8.75),
