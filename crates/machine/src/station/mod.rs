@@ -14,8 +14,8 @@
 //! cause is gone and a person has acknowledged it. After `clear` and `reset` the station continues; a part inside is
 //! void, "interrupted". A stale sensor raises an alarm; the station never guesses its state.
 //!
-//! A run ends with its lot, or when a person leaves the lot for another one. Unattended ([`Plan::attended`] is false)
-//! an alarm that needs a person ends the run, too, and the station resets and starts a lot by itself. Between lots
+//! A run ends with its lot, or when a person leaves the lot for another one. Unattended ([`Plan::attended`] is false) it
+//! also ends with an alarm that needs a person. The station resets and starts a lot by itself; between lots
 //! ([`Plan::between_lots`]) it acts only on orders.
 
 mod activity;
@@ -270,7 +270,7 @@ impl Station {
             output.answers.push(answer);
         }
         let stuck = self.pressed(now, inputs.image, &mut output);
-        self.unattended(now, &inputs, &mut output);
+        self.own_commands(now, &inputs, &mut output);
         if self.machine.ended {
             return output;
         }
@@ -286,7 +286,7 @@ impl Station {
         let stack = self.alarms.lamps.show(
             now,
             self.machine.state,
-            self.alarms.annunciator.standing(),
+            self.alarms.annunciator.listed(),
             output.rig.safe,
         );
         output.rig.outputs.extend(stack);

@@ -23,8 +23,8 @@ const BY_A_RESET: &str = "reset";
 const ALONE: Span = Span::ms(60_000);
 
 impl Station {
-    /// Gives the commands of an unattended machine, and ends the run with the program.
-    pub(super) fn unattended(&mut self, now: RigTime, inputs: &Inputs, output: &mut TurnOutput) {
+    /// Gives the commands of the program itself (stop, first reset and start), and ends the run.
+    pub(super) fn own_commands(&mut self, now: RigTime, inputs: &Inputs, output: &mut TurnOutput) {
         if self.machine.ended {
             return;
         }
@@ -50,7 +50,7 @@ impl Station {
             (true, ..) if rests => {
                 self.make_safe("stopped", now, output);
                 let aborted = packml::is_aborted(self.machine.state);
-                let in_trouble = aborted && !self.alarms.annunciator.standing().is_empty();
+                let in_trouble = aborted && !self.alarms.annunciator.listed().is_empty();
                 self.end(
                     if in_trouble {
                         Ending::Alarm

@@ -28,7 +28,7 @@ fn until(machine: &mut Machine, state: State) {
     let list: Vec<_> = machine
         .station
         .annunciator()
-        .standing()
+        .listed()
         .iter()
         .map(|one| one.alarm.text(Lang::En))
         .collect();
