@@ -5,7 +5,7 @@
 
 use super::calibration::{Calibration, Overshoots};
 use super::feasible::nominal_v_per_s;
-use super::measure::context::{UNTAUGHT_FINE_V, untaught};
+use super::measure::context::{ASSUMED_FINE_V, assumed_models};
 use super::measure::{Context, Observed, Test};
 use super::overshoot::OvershootModel;
 use super::points::{AnalogIn, AnalogOut, Points};
@@ -84,7 +84,7 @@ impl Device {
         let coarse = context
             .calibration
             .overshoots
-            .map_or(untaught(), |overshoots| {
+            .map_or(assumed_models(), |overshoots| {
                 (overshoots.operate.coarse, overshoots.release.coarse)
             });
         Self {
@@ -93,7 +93,7 @@ impl Device {
             certificates,
             reference_parts: ReferenceRun::default(),
             coarse,
-            of_lot: untaught(),
+            of_lot: assumed_models(),
             probe_contact: Trend::default(),
         }
     }
@@ -188,7 +188,7 @@ impl Device {
         if last {
             return self.conclude_reference_parts().map(Some);
         }
-        let fine_v = self.reference_parts.fine_v().unwrap_or(UNTAUGHT_FINE_V);
+        let fine_v = self.reference_parts.fine_v().unwrap_or(ASSUMED_FINE_V);
         self.teach(Overshoots {
             operate: reference_part::interim(self.coarse.0, fine_v.0),
             release: reference_part::interim(self.coarse.1, fine_v.1),
@@ -284,7 +284,6 @@ impl Device {
     }
 }
 
-/// Returns the observations of a relay test.
 fn observed(record: &TestRecord) -> &Observed {
     match &record.own {
         Own::EmRelay(observed) => observed,

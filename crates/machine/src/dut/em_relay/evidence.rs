@@ -8,20 +8,20 @@
 //! | release time | from the last switch-off to the last sample with NC open |
 //!
 //! A bound is neither corrected nor converted to the reference temperature, so it decides only with the margin
-//! [`DOUBT`].
+//! [`MARGIN`].
 
 use super::Parameter;
 use super::points::{AnalogOut, BOARD, DigitalOut};
 use crate::instrument::curve::Curve;
 
 /// Margin: copper 5 K from the reference (2 %), tolerance of the supply, and one poll of the board.
-const DOUBT: f64 = 0.03;
+const MARGIN: f64 = 0.03;
 /// Share of the nominal voltage from which the coil counts as driven at nominal.
 const NOMINAL: f64 = 0.98;
 
 /// Returns true when the curves prove that the parameter lies above `high`, for a coil of `nominal_v`.
 pub fn above(curves: &[Curve], parameter: Parameter, high: f64, nominal_v: f64) -> bool {
-    at_least(curves, parameter, nominal_v).is_some_and(|bound| bound * (1.0 - DOUBT) > high)
+    at_least(curves, parameter, nominal_v).is_some_and(|bound| bound * (1.0 - MARGIN) > high)
 }
 
 /// Returns the lower bound in the unit of the parameter.
@@ -37,7 +37,6 @@ pub fn at_least(curves: &[Curve], parameter: Parameter, nominal_v: f64) -> Optio
     bound.and_then(|(_, at_least)| at_least)
 }
 
-/// One event of the curves.
 enum Event {
     /// Command of a supply output, by its index in [`SUPPLY`], volts.
     Command(usize, f64),
@@ -132,7 +131,6 @@ fn events(curves: &[Curve]) -> Vec<(i64, Event)> {
 mod tests {
     use super::*;
 
-    /// Curve of a signal from pairs of millisecond and value.
     fn curve(signal: &str, samples: &[(i64, f64)]) -> Curve {
         Curve {
             signal: signal.into(),

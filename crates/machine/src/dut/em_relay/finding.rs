@@ -78,7 +78,6 @@ pub enum Finding {
     SearchWithoutThreshold(Direction),
 }
 
-/// Code and consequence of a finding.
 struct Entry {
     code: &'static str,
     /// Bin of a bad part; `None` for a part that cannot be judged.

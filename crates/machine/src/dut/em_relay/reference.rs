@@ -38,14 +38,12 @@ pub const SCANNED: [AnalogIn; CHANNELS] = [
 const CHANNELS: usize = 4;
 /// Scans per level: they average the 2.8 mV of one reading to 0.8 mV.
 const SCANS: usize = 12;
-/// Scans along the fine ramp.
 const RAMP_SCANS: usize = 44;
 /// Levels at the coil, volts: both within the range of the fine channels at 400 ohm.
 const LOW_V: f64 = 1.5;
 const HIGH_V: f64 = 5.7;
 /// Distance from both ends of the fine ramp within which readings are excluded from the slope, volts.
 const SLOPE_MARGIN_V: f64 = 0.3;
-/// Drops read per polarity.
 const DROPS: usize = 8;
 /// Number of gate pulses: their sum errs by one count, their mean by 1/25.
 const PULSES: u32 = 25;

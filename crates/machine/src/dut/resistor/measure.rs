@@ -4,8 +4,8 @@
 //! contacts are part of R and a term of its budget. A result inside the guard band is
 //! repeated `slow_repeats` times and averaged.
 
+use super::accuracy::ChannelAccuracy;
 use super::points::Points;
-use super::promise::Promise;
 use super::recipe::ResistorRecipe;
 use super::{Finding, Parameter};
 use crate::dut::device::{Rig, TestOrder};
@@ -30,7 +30,7 @@ pub struct Device {
     recipe: Arc<Recipe>,
     resistor: Arc<ResistorRecipe>,
     points: Points,
-    promise: Promise,
+    channel: ChannelAccuracy,
     /// Number of enabled channels of the converter that reads the current.
     channels: u32,
 }
@@ -52,7 +52,7 @@ impl Device {
             recipe,
             resistor,
             points,
-            promise: Promise {
+            channel: ChannelAccuracy {
                 accuracy: *rig.accuracy,
                 volt_per_ampere: terminal.gain,
             },
@@ -76,8 +76,8 @@ impl Device {
 
     fn acts(&self) -> Vec<Act> {
         let test = &self.resistor.test;
-        let one_round = 1.03 / self.promise.accuracy.conversions_per_s * f64::from(self.channels);
-        let fresh = Span::seconds(one_round + 1.03 / self.promise.accuracy.conversions_per_s);
+        let one_round = 1.03 / self.channel.accuracy.conversions_per_s * f64::from(self.channels);
+        let fresh = Span::seconds(one_round + 1.03 / self.channel.accuracy.conversions_per_s);
         let mut acts = vec![
             Act::Level(vec![(self.points.level, Volt(test.level_v))]),
             Act::Set(vec![(self.points.drive, true)]),
@@ -118,14 +118,14 @@ impl Device {
         if !ampere.is_finite() {
             return Err(Finding::CurrentNotReadable);
         }
-        if ampere < self.promise.no_current_ampere() {
+        if ampere < self.channel.no_current_ampere() {
             return Err(Finding::Open);
         }
         let ohm = self.resistor.test.level_v / ampere;
         Ok(Reading {
             value: ohm,
             unit: Unit::Ohm,
-            budget: self.promise.budget(&self.resistor, ohm),
+            budget: self.channel.budget(&self.resistor, ohm),
         })
     }
 }
@@ -199,7 +199,7 @@ impl Test {
         self.began = now;
     }
 
-    /// Adds one measurement; another follows while the result is in doubt.
+    /// Adds one measurement; another follows when [`Self::needs_repeat`] holds.
     fn conclude(&mut self, readings: &Readings, now: RigTime) {
         let samples: Vec<Sample> = readings
             .analog(self.device.points.current)
@@ -211,7 +211,7 @@ impl Test {
                 Err(finding) => self.record.stop(finding),
             }
         }
-        let again = !self.record.stopped() && self.repeats_left > 0 && self.is_in_doubt();
+        let again = !self.record.stopped() && self.repeats_left > 0 && self.needs_repeat();
         let acts = if again {
             self.repeats_left -= 1;
             self.device.acts()
@@ -224,7 +224,7 @@ impl Test {
 
     /// Returns true when a repeat is due: in a thorough test after every result, in others after one inside the guard
     /// band; repeats once begun go on to the last.
-    fn is_in_doubt(&self) -> bool {
+    fn needs_repeat(&self) -> bool {
         let repeating = self.record.attempts(Parameter::Resistance) > 1;
         let conditional = |(_, judgement): &(Characteristic, Judgement)| match judgement {
             Judgement::Conditional(_) => true,

@@ -9,12 +9,13 @@
 //! | what is measured, and where a part that fails goes | [`parameter`] |
 //! | what the part is, how it is measured | [`recipe`] |
 //! | which points of the rig it needs | [`points`] |
-//! | how accurate the figure is | [`promise`] |
+//! | how accurate the figure is | [`accuracy`] |
 //! | what a test finds in addition to the figure | [`finding`] |
 //! | the keys of its recipe | [`keys`] |
 //! | the test | [`measure`] |
 //! | the process card | [`card`] |
 
+pub mod accuracy;
 pub mod card;
 pub mod finding;
 pub mod keys;
@@ -22,7 +23,6 @@ pub mod made_up;
 pub mod measure;
 pub mod parameter;
 pub mod points;
-pub mod promise;
 pub mod recipe;
 
 pub use finding::Finding;

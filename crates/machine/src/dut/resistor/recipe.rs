@@ -1,8 +1,8 @@
 //! Resistor part of a recipe: the part, and how to measure it.
 
+use super::accuracy::ChannelAccuracy;
 use super::parameter::{BIN, Parameter};
 use super::points::Points;
-use super::promise::Promise;
 use crate::dut::accuracy::AccuracySettings;
 use crate::dut::recipe::{Body, Limits};
 use crate::gauge::Limit;
@@ -72,24 +72,24 @@ impl ResistorRecipe {
             let expected = "a rig with every point that its test needs";
             Fault::new("test", missing, expected)
         })?;
-        let promise = Promise {
+        let channel = ChannelAccuracy {
             accuracy: *accuracy,
             volt_per_ampere: wiring.analog_in(points.current).gain,
         };
         check_modules(wiring, &points)?;
-        self.check_limit(limits.of(Parameter::Resistance), &promise)?;
+        self.check_limit(limits.of(Parameter::Resistance), &channel)?;
         wiring
             .reaches(points.level, Volt(self.test.level_v))
             .map_err(|cannot| Fault::new("test.level_v", self.test.level_v, cannot.to_string()))
     }
 
-    fn check_limit(&self, limit: Limit, promise: &Promise) -> Result<(), Fault> {
+    fn check_limit(&self, limit: Limit, channel: &ChannelAccuracy) -> Result<(), Fault> {
         if limit.is_open() {
             let expected = "a low or a high limit: nothing else is measured";
             return Err(Fault::new("limits.resistance_ohm", "neither", expected));
         }
         if let Some(low_ohm) = limit.low {
-            let least_ohm = self.test.level_v / promise.most_ampere();
+            let least_ohm = self.test.level_v / channel.most_ampere();
             if low_ohm < least_ohm {
                 let expected = format!(
                     "at least {least_ohm:.1}: below it the current at test.level_v is over range"
@@ -101,7 +101,7 @@ impl ResistorRecipe {
             return Ok(());
         };
         let bands_ohm =
-            promise.budget(self, low_ohm).expanded() + promise.budget(self, high_ohm).expanded();
+            channel.budget(self, low_ohm).expanded() + channel.budget(self, high_ohm).expanded();
         if high_ohm - low_ohm < bands_ohm {
             let found = format!("{low_ohm} to {high_ohm}");
             let expected = format!(

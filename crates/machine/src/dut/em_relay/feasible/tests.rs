@@ -19,7 +19,6 @@ struct Promised {
     accuracy: AccuracySettings,
 }
 
-/// The default plant.
 fn plant() -> (Wiring, AccuracySettings) {
     let settings: RigSettings = toml::from_str(RIG).unwrap();
     let promised: Promised = toml::from_str(RIG).unwrap();
@@ -60,7 +59,6 @@ fn refused(strategy: Strategy, change: impl Fn(&mut Wiring)) -> [String; 3] {
     [fault.key, fault.found, fault.expected]
 }
 
-/// Strategies that the changed plant cannot perform.
 fn hindered(change: impl Fn(&mut Wiring)) -> Vec<Strategy> {
     let (mut wiring, accuracy) = plant();
     change(&mut wiring);

@@ -4,7 +4,7 @@ use crate::dut::Recipe;
 use crate::dut::accuracy::AccuracySettings;
 use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::calibration::{Calibration, Overshoot};
-use crate::dut::em_relay::coil::ScanDoubt;
+use crate::dut::em_relay::coil::ScanUncertainty;
 use crate::dut::em_relay::overshoot::OvershootModel;
 use crate::dut::em_relay::points::{AnalogIn, Points};
 use crate::dut::em_relay::recipe::{CoilChannels, RelayRecipe};
@@ -21,11 +21,11 @@ use units::{Celsius, Ohm, Span};
 const LSB_V: f64 = 20.0 / 4096.0;
 
 /// Assumed overshoot of a 96 V/s ramp before the first reference part, volts; it only places the first fine ramp.
-const UNTAUGHT_OPERATE_V: f64 = 0.85;
-const UNTAUGHT_RELEASE_V: f64 = -1.05;
+const ASSUMED_OPERATE_V: f64 = 0.85;
+const ASSUMED_RELEASE_V: f64 = -1.05;
 
 /// Assumed overshoot of a 1.5 V/s ramp, operate and release, volts.
-pub const UNTAUGHT_FINE_V: (f64, f64) = (0.03, -0.02);
+pub const ASSUMED_FINE_V: (f64, f64) = (0.03, -0.02);
 
 /// Recipe, calibration and instrument data of a test.
 #[derive(Debug, Clone)]
@@ -83,8 +83,8 @@ impl Context {
     }
 
     /// Returns the uncertainty terms of a coil scan.
-    pub fn scan_doubt(&self) -> ScanDoubt {
-        ScanDoubt {
+    pub fn scan_uncertainty(&self) -> ScanUncertainty {
+        ScanUncertainty {
             reading_v: self.reading_u_v(),
             offset_v: self.calibration.coil_input.offset_v.u,
             temperature_k: self.accuracy.rtd_k.hypot(self.accuracy.part_minus_track_k),
@@ -135,20 +135,20 @@ impl Context {
 
     /// Returns the overshoot of a direction; before any reference part an assumed one with a wide scatter.
     pub fn overshoot(&self, direction: Direction) -> Overshoot {
-        let (operate, release) = untaught();
+        let (operate, release) = assumed_models();
         match (direction, self.calibration.overshoots) {
             (Direction::Rising, Some(overshoots)) => overshoots.operate,
             (Direction::Falling, Some(overshoots)) => overshoots.release,
-            (Direction::Rising, None) => interim(operate, UNTAUGHT_FINE_V.0),
-            (Direction::Falling, None) => interim(release, UNTAUGHT_FINE_V.1),
+            (Direction::Rising, None) => interim(operate, ASSUMED_FINE_V.0),
+            (Direction::Falling, None) => interim(release, ASSUMED_FINE_V.1),
         }
     }
 }
 
 /// Returns the models of both coarse ramps before the first part, operate and release.
-pub fn untaught() -> (OvershootModel, OvershootModel) {
+pub fn assumed_models() -> (OvershootModel, OvershootModel) {
     (
-        OvershootModel::guess(UNTAUGHT_OPERATE_V),
-        OvershootModel::guess(UNTAUGHT_RELEASE_V),
+        OvershootModel::guess(ASSUMED_OPERATE_V),
+        OvershootModel::guess(ASSUMED_RELEASE_V),
     )
 }

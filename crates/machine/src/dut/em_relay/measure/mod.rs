@@ -196,7 +196,6 @@ impl Test {
         self.runner = Runner::after(self.context.wired(acts), now, &self.runner);
     }
 
-    /// Concludes the stage that has just ended and plans the next ones.
     fn conclude(&mut self, now: RigTime) {
         let record = &mut self.state.record;
         record.spent.add(self.runner.spent());
@@ -245,10 +244,10 @@ impl Test {
             return;
         }
         self.slow_done = true;
-        let doubtful = |judgement: &Judgement| matches!(judgement, Judgement::Conditional(_));
+        let conditional = |judgement: &Judgement| matches!(judgement, Judgement::Conditional(_));
         let again: Vec<Stage> = verdict::judged(&self.context, &self.state.record)
             .iter()
-            .filter(|(_, judgement)| self.context.thorough || doubtful(judgement))
+            .filter(|(_, judgement)| self.context.thorough || conditional(judgement))
             .map(|(parameter, _)| parameter.facts().stage)
             .collect();
         // In the order of the test: a fine release ramp right after the timed operation would start from another flux
@@ -274,7 +273,6 @@ impl Test {
     }
 }
 
-/// Returns one write of outputs of the interface board.
 fn set(outputs: &[(DigitalOut, bool)]) -> Act {
     Act::Board(outputs.to_vec())
 }

@@ -7,7 +7,7 @@ use super::search::parameter;
 use super::state::TestState;
 use crate::dut::em_relay::calibration::Overshoot;
 use crate::dut::em_relay::coil::to_reference;
-use crate::dut::em_relay::overshoot::Shown;
+use crate::dut::em_relay::overshoot::CoarseResults;
 use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::threshold::Direction;
 use units::{Celsius, Volt};
@@ -66,7 +66,7 @@ impl Expected {
     }
 
     /// Returns the interval that a coarse ramp and the overshoot model predict.
-    pub fn after(coarse: &Shown, overshoot: &Overshoot) -> Self {
+    pub fn after(coarse: &CoarseResults, overshoot: &Overshoot) -> Self {
         let predicted = overshoot.coarse.of(coarse);
         let sd_v = predicted.u_v.min(WIDEST_SD_V);
         Self::new(coarse.indicated - Volt(predicted.volts), sd_v)
@@ -147,7 +147,7 @@ pub(super) fn after_coarse(
     context: &Context,
     readings: &Readings,
     state: &mut TestState,
-    (seen, direction): (Shown, Direction),
+    (seen, direction): (CoarseResults, Direction),
 ) -> bool {
     let Some(part) = state.record.own.track else {
         return false;

@@ -27,7 +27,7 @@ fn device(limits: &str) -> Device {
     let wiring = wiring();
     let points = Points::resolve(&wiring).unwrap();
     Device {
-        promise: Promise {
+        channel: ChannelAccuracy {
             accuracy: context.accuracy,
             volt_per_ampere: wiring.analog_in(points.current).gain,
         },
@@ -59,7 +59,7 @@ fn tested(limits: &str, ohm: Option<f64>) -> (Test, usize) {
                     // Volts at the terminal: full scale reads as over range.
                     mock.volts_at(
                         device.points.current,
-                        ohm.map_or(10.0, |ohm| LEVEL_V / ohm * device.promise.volt_per_ampere),
+                        ohm.map_or(10.0, |ohm| LEVEL_V / ohm * device.channel.volt_per_ampere),
                     );
                 }
                 done = Some(JobDone {
@@ -90,8 +90,8 @@ fn a_resistor_inside_its_limits_passes_on_one_reading() {
 fn a_resistor_near_its_limit_is_read_again() {
     let (test, reads) = tested(LIMITS, Some(409.8));
     assert_eq!(reads, 3);
-    let doubt = Reason::not_proven(Parameter::Resistance.into(), Side::High);
-    assert_eq!(test.verdict(), Verdict::Fail(vec![doubt]));
+    let inconclusive = Reason::not_proven(Parameter::Resistance.into(), Side::High);
+    assert_eq!(test.verdict(), Verdict::Fail(vec![inconclusive]));
 }
 
 #[test]

@@ -3,7 +3,6 @@
 use super::{Next, Search};
 use units::{Span, Volt};
 
-/// Height of a step.
 const STEP: Volt = Volt(0.020);
 /// Dwell at each level after its write is acknowledged.
 pub(super) const DWELL: Span = Span::ms(20);

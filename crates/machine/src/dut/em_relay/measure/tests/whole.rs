@@ -80,7 +80,6 @@ fn the_card_follows_the_order_of_the_test() {
     assert_eq!(steps[2..steps.len() - 1], firsts);
 }
 
-/// Acts of every stage in the order of a good part.
 fn all_acts() -> Vec<(Stage, Vec<Act>)> {
     let stages = stages_of_a_good_part().into_iter();
     stages.map(|(stage, acts, _)| (stage, acts)).collect()
@@ -243,7 +242,6 @@ fn every_commanded_voltage_is_within_its_output() {
     }
 }
 
-/// The job that reads the board.
 fn board() -> Job {
     let inputs = MockRig::unread().points.board.inputs.clone();
     Job::Read(inputs.into_iter().map(Point::Input).collect())
@@ -348,7 +346,6 @@ fn measured(values: &[(Parameter, f64)]) -> Test {
     test
 }
 
-/// A good part.
 const GOOD: [(Parameter, f64); 9] = [
     (Parameter::CoilResistance, 400.0),
     (Parameter::OperateVoltage, 7.88),
