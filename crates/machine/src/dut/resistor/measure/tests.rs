@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
+use crate::dut::Verdict;
 use crate::dut::reason::{Code, Reason};
 use crate::dut::recipe::DeviceRecipe;
 use crate::gauge::Side;
@@ -39,7 +40,7 @@ fn device(limits: &str) -> Device {
 }
 
 /// Tests a part that draws what `ohm` draws; `None` reads over range. Returns the test and how often it was read.
-fn tested(limits: &str, ohm: Option<f64>) -> (Test, usize) {
+fn tested(limits: &str, ohm: Option<f64>) -> (Procedure, usize) {
     let mut shop = Shop::at_rest();
     let device = device(limits);
     let order = TestOrder {
