@@ -68,7 +68,7 @@ fn stored(part: &Part, of: Characteristic, factor: f64) -> Reading {
 fn of_a_limit(reason: &Reason, seen: impl Fn(Characteristic) -> bool) -> bool {
     match reason.code {
         Code::OutsideLimit(_) | Code::NotProven(_) | Code::NotMeasured(_) => true,
-        Code::EmRelay(_) | Code::Resistor(_) => {
+        Code::Finding(_) => {
             reason.side == Some(Side::High) && reason.characteristic().is_some_and(seen)
         }
         Code::Interrupted | Code::RigTrouble | Code::Unclassified => false,

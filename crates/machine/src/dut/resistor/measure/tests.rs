@@ -100,7 +100,7 @@ fn open_and_short_fail_into_the_bin_of_the_coil() {
     for (ohm, finding) in [(Some(1e7), Finding::Open), (None, Finding::Short)] {
         let (test, _) = tested(LIMITS, ohm);
         let verdict = test.verdict();
-        assert_eq!(verdict.reasons()[0].code, Code::Resistor(finding));
+        assert_eq!(verdict.reasons()[0].code, Code::Finding(finding.into()));
         assert_eq!(verdict.bin(), Bin::named("coil"));
     }
 }
