@@ -4,7 +4,6 @@
 //! same two channels, so gain errors cancel. Copper: `R(T1) / R(T2) = (234.5 + T1) / (234.5 + T2)`, temperatures in
 //! Celsius (IEC 60028 annealed copper).
 
-use super::Parameter;
 use crate::gauge::Factor;
 use crate::gauge::budget::{Budget, Reading};
 use units::{Celsius, Ohm, Unit, Volt};
@@ -26,14 +25,6 @@ pub struct ScanUncertainty {
 /// Returns the factor that converts a resistance or a threshold voltage at temperature `part` to `reference`.
 pub fn to_reference(part: Celsius, reference: Celsius) -> f64 {
     (COPPER_ZERO_C + reference.0) / (COPPER_ZERO_C + part.0)
-}
-
-/// Returns the factor that converts a result at temperature `from` to `to`; 1 for results independent of the copper.
-pub fn factor(parameter: Parameter, from: Celsius, to: Celsius) -> f64 {
-    match parameter.facts().copper {
-        true => to_reference(from, to),
-        false => 1.0,
-    }
 }
 
 /// Returns the relative change of copper resistance per kelvin at `at`.

@@ -7,9 +7,9 @@ use super::bins;
 use super::coil::relative_per_kelvin;
 use super::parameter::Expected;
 use super::recipe::RelayRecipe;
-use super::settings::{ReferenceSet, ReferenceSettings};
 use super::{Parameter, Strategy};
 use crate::dut::accuracy::AccuracySettings;
+use crate::dut::device::Rig;
 use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Counter, Points};
 use crate::dut::recipe::Limits;
 use crate::gauge::budget::COVERAGE_FACTOR;
@@ -89,12 +89,9 @@ pub fn check(
 /// Refuses a rig without references on its board, or without any reference part.
 ///
 /// # Errors
-/// Names the missing section of `rig.toml`.
-pub fn check_references(
-    board: Option<&ReferenceSettings>,
-    parts: &ReferenceSet,
-) -> Result<(), Fault> {
-    let lacks = match (board, parts.parts.is_empty()) {
+/// Names what `rig.toml` lacks.
+pub fn check_references(rig: &Rig) -> Result<(), Fault> {
+    let lacks = match (rig.reference, rig.reference_parts.parts.is_empty()) {
         (Some(_), false) => return Ok(()),
         (None, true | false) => "references: rig.toml has no [reference]",
         (Some(_), true) => "golden parts: rig.toml names no file of them in [calibration].golden",

@@ -1,9 +1,8 @@
 //! Findings of a resistor test in addition to its result.
 
 use super::parameter::{BIN, Parameter};
-use crate::dut::reason::{Code, Reason};
+use crate::dut::finding::Entry;
 use crate::gauge::Side;
-use crate::rig::bin::Bin;
 
 /// A finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -20,45 +19,16 @@ impl Finding {
     /// Every finding.
     pub const ALL: [Self; 3] = [Self::Open, Self::Short, Self::CurrentNotReadable];
 
-    /// Returns the code in rows and exports.
-    pub fn code(self) -> &'static str {
+    /// Returns code and consequence.
+    pub fn entry(self) -> Entry {
         match self {
-            Self::Open => "resistor_open",
-            Self::Short => "resistor_short",
-            Self::CurrentNotReadable => "resistor_current_not_readable",
-        }
-    }
-
-    /// Returns the bin of a bad part; `None` for a part that cannot be judged.
-    pub fn bin(self) -> Option<Bin> {
-        self.side().map(|_| BIN)
-    }
-
-    /// Returns the characteristic whose limit the finding proves exceeded, if any.
-    pub fn proves(self) -> Option<Parameter> {
-        self.side().map(|_| Parameter::Resistance)
-    }
-
-    /// Returns the finding with this code.
-    pub fn from_code(code: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|it| it.code() == code)
-    }
-
-    fn side(self) -> Option<Side> {
-        match self {
-            Self::Open => Some(Side::High),
-            Self::Short => Some(Side::Low),
-            Self::CurrentNotReadable => None,
-        }
-    }
-}
-
-impl From<Finding> for Reason {
-    fn from(finding: Finding) -> Self {
-        Self {
-            code: Code::Resistor(finding),
-            side: finding.side(),
-            detail: String::new(),
+            Self::Open => {
+                Entry::fail("resistor_open", BIN).proves(Parameter::Resistance, Side::High)
+            }
+            Self::Short => {
+                Entry::fail("resistor_short", BIN).proves(Parameter::Resistance, Side::Low)
+            }
+            Self::CurrentNotReadable => Entry::void("resistor_current_not_readable"),
         }
     }
 }

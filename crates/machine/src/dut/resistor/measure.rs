@@ -8,11 +8,11 @@ use super::accuracy::ChannelAccuracy;
 use super::points::Points;
 use super::recipe::ResistorRecipe;
 use super::{Finding, Parameter};
-use crate::dut::device::{Rig, TestOrder};
-use crate::dut::procedure::Progress;
-use crate::dut::record::{Own, TestRecord};
-use crate::dut::{Characteristic, Recipe, Verdict};
-use crate::gauge::{Judgement, Reading, judge};
+use crate::dut::device::{DeviceUnderTest, Rig, TestOrder};
+use crate::dut::procedure::{Progress, TestProcedure};
+use crate::dut::record::{Stop, TestRecord};
+use crate::dut::{Characteristic, Kind, Procedure, Recipe};
+use crate::gauge::{Judgement, Reading};
 use crate::instrument::act::{Act, Doing, JobDone, Read, Runner};
 use crate::instrument::readings::Readings;
 use crate::rig::image::Image;
@@ -42,7 +42,7 @@ impl Device {
     /// Names the first point that the rig lacks.
     pub fn new(
         recipe: Arc<Recipe>,
-        resistor: Arc<ResistorRecipe>,
+        resistor: &ResistorRecipe,
         rig: &Rig,
     ) -> Result<Self, MissingPoint> {
         let points = Points::resolve(rig.wiring)?;
@@ -50,7 +50,7 @@ impl Device {
         let mask = rig.wiring.module(terminal.module).mask.unwrap_or(u8::MAX);
         Ok(Self {
             recipe,
-            resistor,
+            resistor: Arc::new(resistor.clone()),
             points,
             channel: ChannelAccuracy {
                 accuracy: *rig.accuracy,
@@ -58,20 +58,6 @@ impl Device {
             },
             channels: mask.count_ones(),
         })
-    }
-
-    /// Begins the test of the part in the nest; the probes are up.
-    pub fn begin(&self, order: &TestOrder, now: RigTime) -> Test {
-        Test {
-            runner: Runner::new(self.acts(), now),
-            device: self.clone(),
-            stage: Stage::Measure,
-            thorough: order.thorough,
-            number: order.number,
-            repeats_left: self.recipe.decision.slow_repeats,
-            record: TestRecord::default(),
-            began: now,
-        }
     }
 
     fn acts(&self) -> Vec<Act> {
@@ -130,6 +116,21 @@ impl Device {
     }
 }
 
+impl DeviceUnderTest for Device {
+    fn begin(&self, order: &TestOrder, now: RigTime) -> Procedure {
+        Procedure::Resistor(Box::new(Test {
+            runner: Runner::new(self.acts(), now),
+            device: self.clone(),
+            stage: Stage::Measure,
+            thorough: order.thorough,
+            number: order.number,
+            repeats_left: self.recipe.decision.slow_repeats,
+            record: TestRecord::default(),
+            began: now,
+        }))
+    }
+}
+
 /// Stages of the test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
@@ -162,30 +163,10 @@ pub struct Test {
     number: u8,
     repeats_left: u32,
     began: RigTime,
-    record: TestRecord<()>,
+    record: TestRecord,
 }
 
 impl Test {
-    /// Advances the test as far as `done` and `image` allow.
-    pub fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress {
-        let mut done = done;
-        loop {
-            match self.runner.step(now, done.take(), image) {
-                Doing::Done => {}
-                Doing::Trouble(why) => self.record.trouble(why),
-                waiting @ (Doing::Job(_) | Doing::Busy | Doing::Wait(_)) => {
-                    return Progress::Doing(waiting);
-                }
-            }
-            self.book(now);
-            let readings = std::mem::take(&mut self.runner.readings);
-            match self.stage {
-                Stage::Off => return Progress::Judged,
-                Stage::Measure => self.conclude(&readings, now),
-            }
-        }
-    }
-
     fn book(&mut self, now: RigTime) {
         let name = match self.stage {
             Stage::Measure => "resistance",
@@ -232,41 +213,55 @@ impl Test {
         };
         self.thorough || repeating || self.judgements().iter().any(conditional)
     }
+}
 
-    /// Returns the number of this test of the part, from 1.
-    pub fn number(&self) -> u8 {
+impl TestProcedure for Test {
+    fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress {
+        let mut done = done;
+        loop {
+            match self.runner.step(now, done.take(), image) {
+                Doing::Done => {}
+                Doing::Trouble(why) => self.record.trouble(why),
+                waiting @ (Doing::Job(_) | Doing::Busy | Doing::Wait(_)) => {
+                    return Progress::Doing(waiting);
+                }
+            }
+            self.book(now);
+            let readings = std::mem::take(&mut self.runner.readings);
+            match self.stage {
+                Stage::Off => return Progress::Judged,
+                Stage::Measure => self.conclude(&readings, now),
+            }
+        }
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Resistor
+    }
+
+    fn number(&self) -> u8 {
         self.number
     }
 
-    /// Returns the name of the stage under way.
-    pub fn stage(&self) -> &'static str {
+    fn stage(&self) -> &'static str {
         self.stage.name()
     }
 
-    /// Returns the result against its limit.
-    pub fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
-        let recipe = &self.device.recipe;
-        let reading = self.record.result(Parameter::Resistance);
-        let limit = recipe.limits.of(Parameter::Resistance);
-        let judged = reading.map(|reading| judge(&reading, &limit, recipe.decision.rule));
-        let named = |judgement| (Parameter::Resistance.into(), judgement);
-        judged.into_iter().map(named).collect()
+    fn why_stopped(&self) -> Option<&Stop> {
+        self.record.why_stopped()
     }
 
-    /// Returns the verdict of the part.
-    pub fn verdict(&self) -> Verdict {
-        let expected = Parameter::ALL.map(Characteristic::from);
-        Verdict::after(self.record.why_stopped(), &expected, self.judgements())
+    fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
+        let all = Kind::Resistor.characteristics();
+        self.record.judged(&self.device.recipe, all)
     }
 
-    /// Returns the record so far.
-    pub fn record(&self) -> &TestRecord<()> {
-        &self.record
+    fn record(&self) -> TestRecord {
+        self.record.clone()
     }
 
-    /// Takes the record out of a finished test.
-    pub fn take_record(&mut self) -> TestRecord {
-        std::mem::take(&mut self.record).of_any_kind(|()| Own::Nothing)
+    fn take_record(&mut self) -> TestRecord {
+        std::mem::take(&mut self.record)
     }
 }
 

@@ -28,3 +28,14 @@ pub mod recipe;
 pub use finding::Finding;
 pub use measure::{Device, Test};
 pub use parameter::Parameter;
+
+use super::KindDefinition;
+
+/// What is fixed about the kind.
+pub const DEFINITION: KindDefinition = KindDefinition {
+    name: "resistor",
+    sections: keys::SECTIONS,
+    characteristics: || Parameter::ALL.map(Into::into).to_vec(),
+    stages: || measure::Stage::ALL.map(measure::Stage::name).to_vec(),
+    findings: || Finding::ALL.map(Into::into).to_vec(),
+};

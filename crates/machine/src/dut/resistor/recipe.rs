@@ -3,13 +3,20 @@
 use super::accuracy::ChannelAccuracy;
 use super::parameter::{BIN, Parameter};
 use super::points::Points;
-use crate::dut::accuracy::AccuracySettings;
-use crate::dut::recipe::{Body, Limits};
+use super::promise::Promise;
+use super::{card, made_up};
+use crate::dut::card::Card;
+use crate::dut::device::Rig;
+use crate::dut::made_up::MadeUp;
+use crate::dut::recipe::{KindRecipe, Limits, PartFacts};
+use crate::dut::{Calibration, Device, Kind, Recipe};
 use crate::gauge::Limit;
 use crate::rig::fault::Fault;
+use crate::rig::point::MissingPoint;
 use crate::rig::wiring::Wiring;
 use serde::{Deserialize, Serialize};
-use units::Volt;
+use std::sync::Arc;
+use units::{Celsius, Volt};
 
 /// The sections `[part]` and `[test]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -44,26 +51,37 @@ pub struct TestPlan {
     pub readings: u32,
 }
 
-impl ResistorRecipe {
-    /// Returns the dimensions for the collision guard.
-    pub fn body(&self) -> Body {
-        Body {
-            size_mm: self.part.body_mm,
+impl KindRecipe for ResistorRecipe {
+    fn kind(&self) -> Kind {
+        Kind::Resistor
+    }
+
+    fn part(&self) -> PartFacts {
+        PartFacts {
+            body_mm: self.part.body_mm,
             pin_length_mm: self.part.pin_length_mm,
+            reference: Celsius(self.part.reference_temperature_c),
+            nominal_v: None,
         }
     }
 
-    /// Checks that the rig has bin and points, that the modules reach level and current, and that the limits are wider
-    /// than the guard bands.
+    fn on_rig(
+        &self,
+        recipe: Arc<Recipe>,
+        rig: &Rig,
+        _stored: Option<Calibration>,
+    ) -> Result<Device, MissingPoint> {
+        let device = super::Device::new(recipe, self, rig)?;
+        Ok(Device::Resistor(Box::new(device)))
+    }
+
+    /// Checks that the rig has the bin and the points, that level and current lie within reach of the modules, and that the
+    /// uncertainty leaves something between the limits.
     ///
     /// # Errors
-    /// Names the first key that the rig cannot meet.
-    pub fn feasible(
-        &self,
-        limits: &Limits,
-        wiring: &Wiring,
-        accuracy: &AccuracySettings,
-    ) -> Result<(), Fault> {
+    /// Names the first key that asks for what is not there.
+    fn feasible(&self, limits: &Limits, rig: &Rig) -> Result<(), Fault> {
+        let wiring = rig.wiring;
         if !wiring.axis.has(BIN) {
             let expected = format!("a rig with the bins of this kind: rig.toml has no bin.{BIN}");
             return Err(Fault::new("kind", "\"resistor\"", expected));
@@ -72,8 +90,8 @@ impl ResistorRecipe {
             let expected = "a rig with every point that its test needs";
             Fault::new("test", missing, expected)
         })?;
-        let channel = ChannelAccuracy {
-            accuracy: *accuracy,
+        let promise = Promise {
+            accuracy: *rig.accuracy,
             volt_per_ampere: wiring.analog_in(points.current).gain,
         };
         check_modules(wiring, &points)?;
@@ -83,7 +101,17 @@ impl ResistorRecipe {
             .map_err(|cannot| Fault::new("test.level_v", self.test.level_v, cannot.to_string()))
     }
 
-    fn check_limit(&self, limit: Limit, channel: &ChannelAccuracy) -> Result<(), Fault> {
+    fn card(&self) -> Card {
+        card::card(self)
+    }
+
+    fn made_up(&self, limits: &Limits) -> MadeUp {
+        made_up::made_up(limits)
+    }
+}
+
+impl ResistorRecipe {
+    fn check_limit(&self, limit: Limit, promise: &Promise) -> Result<(), Fault> {
         if limit.is_open() {
             let expected = "a low or a high limit: nothing else is measured";
             return Err(Fault::new("limits.resistance_ohm", "neither", expected));

@@ -32,7 +32,7 @@ fn read(part: &ReferencePart, off: Parameter, deviations: f64) -> TestRecord {
         let by = if parameter == off { deviations } else { 0.0 };
         let reading = Reading {
             value: certified.value + by * u.hypot(certified.u),
-            unit: parameter.definition().unit,
+            unit: parameter.facts().definition.unit,
             budget: Budget::default().with("test", u),
         };
         record.found::<Sample>(parameter, reading, []);

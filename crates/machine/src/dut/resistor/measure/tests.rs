@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
+use crate::dut::Verdict;
 use crate::dut::reason::{Code, Reason};
 use crate::dut::recipe::DeviceRecipe;
 use crate::gauge::Side;
@@ -38,9 +39,9 @@ fn device(limits: &str) -> Device {
     }
 }
 
-/// Tests a part of `ohm`; `None` reads over range. Returns the test and the number of readings.
-fn tested(limits: &str, ohm: Option<f64>) -> (Test, usize) {
-    let mut mock = MockRig::at_rest();
+/// Tests a part that draws what `ohm` draws; `None` reads over range. Returns the test and how often it was read.
+fn tested(limits: &str, ohm: Option<f64>) -> (Procedure, usize) {
+    let mut shop = Shop::at_rest();
     let device = device(limits);
     let order = TestOrder {
         thorough: false,
@@ -99,7 +100,7 @@ fn open_and_short_fail_into_the_coil_bin() {
     for (ohm, finding) in [(Some(1e7), Finding::Open), (None, Finding::Short)] {
         let (test, _) = tested(LIMITS, ohm);
         let verdict = test.verdict();
-        assert_eq!(verdict.reasons()[0].code, Code::Resistor(finding));
+        assert_eq!(verdict.reasons()[0].code, Code::Finding(finding.into()));
         assert_eq!(verdict.bin(), Bin::named("coil"));
     }
 }
