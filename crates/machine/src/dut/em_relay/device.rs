@@ -217,7 +217,7 @@ impl DeviceUnderTest for Device {
         if last {
             return self.conclude_reference_parts().map(Some);
         }
-        let fine_v = self.reference_parts.fine_v().unwrap_or(UNTAUGHT_FINE_V);
+        let fine_v = self.reference_parts.fine_v().unwrap_or(ASSUMED_FINE_V);
         self.teach(Overshoots {
             operate: reference_part::interim(self.coarse.0, fine_v.0),
             release: reference_part::interim(self.coarse.1, fine_v.1),

@@ -3,7 +3,6 @@
 use super::accuracy::ChannelAccuracy;
 use super::parameter::{BIN, Parameter};
 use super::points::Points;
-use super::promise::Promise;
 use super::{card, made_up};
 use crate::dut::card::Card;
 use crate::dut::device::Rig;
@@ -90,7 +89,7 @@ impl KindRecipe for ResistorRecipe {
             let expected = "a rig with every point that its test needs";
             Fault::new("test", missing, expected)
         })?;
-        let promise = Promise {
+        let channel = ChannelAccuracy {
             accuracy: *rig.accuracy,
             volt_per_ampere: wiring.analog_in(points.current).gain,
         };
@@ -111,7 +110,7 @@ impl KindRecipe for ResistorRecipe {
 }
 
 impl ResistorRecipe {
-    fn check_limit(&self, limit: Limit, promise: &Promise) -> Result<(), Fault> {
+    fn check_limit(&self, limit: Limit, channel: &ChannelAccuracy) -> Result<(), Fault> {
         if limit.is_open() {
             let expected = "a low or a high limit: nothing else is measured";
             return Err(Fault::new("limits.resistance_ohm", "neither", expected));

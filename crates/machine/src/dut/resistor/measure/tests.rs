@@ -39,9 +39,9 @@ fn device(limits: &str) -> Device {
     }
 }
 
-/// Tests a part that draws what `ohm` draws; `None` reads over range. Returns the test and how often it was read.
+/// Tests a part that of `ohm`; `None` reads over range. Returns the test and the number of readings.
 fn tested(limits: &str, ohm: Option<f64>) -> (Procedure, usize) {
-    let mut shop = Shop::at_rest();
+    let mut mock = MockRig::at_rest();
     let device = device(limits);
     let order = TestOrder {
         thorough: false,
