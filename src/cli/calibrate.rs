@@ -54,7 +54,8 @@ pub fn run(files: &Files, args: &CalibrateArgs) -> anyhow::Result<Exit> {
 
 fn stored(found: &Calibration, as_json: bool) -> anyhow::Result<Exit> {
     let mut out = std::io::stdout().lock();
-    for it in found.factors() {
+    let facts = found.facts();
+    for it in facts.factors {
         let (value, u) = (it.factor.value, K * it.factor.u);
         if as_json {
             let it = json!({"type": "factor", "factor": it.name, "unit": it.unit, "value": value, "expanded_u": u});
@@ -67,9 +68,9 @@ fn stored(found: &Calibration, as_json: bool) -> anyhow::Result<Exit> {
             )?;
         }
     }
-    let (made, due) = (date(found.made_at_us())?, date(found.due_at_us())?);
+    let (made, due) = (date(facts.made_at_us)?, date(facts.due_at_us)?);
     if as_json {
-        let it = json!({"type": "calibration", "made_at": made, "due_at": due, "simulated": found.is_simulated(), "nominal_v": found.nominal_v(), "k": K});
+        let it = json!({"type": "calibration", "made_at": made, "due_at": due, "simulated": facts.is_simulated, "nominal_v": facts.nominal_v, "k": K});
         writeln!(out, "{it}")?;
     } else {
         writeln!(out, "made {made}, due {due}; +- is U (k = {K})")?;

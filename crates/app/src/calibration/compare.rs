@@ -50,7 +50,11 @@ impl fmt::Display for Compared {
 
 /// Factor by factor.
 pub fn compare(found: &Calibration, expected: &Calibration) -> Vec<Compared> {
-    let pairs = found.factors().into_iter().zip(expected.factors());
+    let pairs = found
+        .facts()
+        .factors
+        .into_iter()
+        .zip(expected.facts().factors);
     pairs
         .map(|(found, expected)| Compared {
             name: found.name,

@@ -130,9 +130,10 @@ fn to_verify(
 
 fn keep(db: &Path, found: Calibration) -> anyhow::Result<Calibrated> {
     let body = serde_json::to_string(&found)?;
+    let facts = found.facts();
     open(db)?.save_calibration(&CalibrationRecord {
-        made_at_us: found.made_at_us(),
-        due_at_us: found.due_at_us(),
+        made_at_us: facts.made_at_us,
+        due_at_us: facts.due_at_us,
         hash: snapshot_hash(&body),
         body,
         verified: true,

@@ -175,14 +175,15 @@ impl Recorder {
         calibration: &Calibration,
         context: &LotContext,
     ) -> anyhow::Result<()> {
-        let check = self.journal.calibrated(calibration.made_at_us());
+        let facts = calibration.facts();
+        let check = self.journal.calibrated(facts.made_at_us);
         self.rows.extend(check);
         if context.purpose == Purpose::Calibration {
             return Ok(());
         }
         let record = CalibrationRecord {
-            made_at_us: calibration.made_at_us(),
-            due_at_us: calibration.due_at_us(),
+            made_at_us: facts.made_at_us,
+            due_at_us: facts.due_at_us,
             hash: hash(calibration),
             body: serde_json::to_string(calibration)?,
             verified: true,

@@ -88,6 +88,7 @@ fn valid_calibration(store: &Store, context: &LotContext) -> anyhow::Result<Opti
     };
     let calibration: Calibration =
         serde_json::from_str(&record.body).context("the stored calibration cannot be read")?;
-    let fits = calibration.is_complete() && calibration.made_at_us() <= context.epoch_us;
+    let facts = calibration.facts();
+    let fits = facts.is_complete && facts.made_at_us <= context.epoch_us;
     Ok((record.verified && fits && record.due_at_us > context.epoch_us).then_some(calibration))
 }

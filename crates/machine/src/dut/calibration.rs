@@ -13,45 +13,27 @@ pub enum Calibration {
 }
 
 impl Calibration {
-    /// True when it measures everything that the kind needs, reference parts included.
-    pub fn is_complete(&self) -> bool {
+    /// Returns what every kind of calibration says of itself.
+    pub fn facts(&self) -> CalibrationFacts {
         match self {
-            Self::EmRelay(relay) => relay.overshoots.is_some(),
+            Self::EmRelay(relay) => relay.facts(),
         }
     }
+}
 
+/// What every kind of calibration says of itself.
+#[derive(Debug, Clone)]
+pub struct CalibrationFacts {
     /// When the factors were found, microseconds since 1970 UTC.
-    pub fn made_at_us(&self) -> i64 {
-        match self {
-            Self::EmRelay(relay) => relay.made_at_us,
-        }
-    }
-
-    /// When they may no longer be used.
-    pub fn due_at_us(&self) -> i64 {
-        match self {
-            Self::EmRelay(relay) => relay.due_at_us,
-        }
-    }
-
-    /// Made on a simulated rig.
-    pub fn is_simulated(&self) -> bool {
-        match self {
-            Self::EmRelay(relay) => relay.simulated,
-        }
-    }
-
-    /// Nominal voltage of the parts it holds for, V.
-    pub fn nominal_v(&self) -> f64 {
-        match self {
-            Self::EmRelay(relay) => relay.nominal_v,
-        }
-    }
-
-    /// Every factor that was measured, with its name and unit.
-    pub fn factors(&self) -> Vec<Named> {
-        match self {
-            Self::EmRelay(relay) => relay.factors(),
-        }
-    }
+    pub made_at_us: i64,
+    /// When they expire, microseconds since 1970 UTC.
+    pub due_at_us: i64,
+    /// True on a simulated rig.
+    pub is_simulated: bool,
+    /// Nominal voltage of the parts that it holds for, V.
+    pub nominal_v: f64,
+    /// True when it has everything that the kind needs, reference parts included.
+    pub is_complete: bool,
+    /// Every measured factor, with its name and unit.
+    pub factors: Vec<Named>,
 }

@@ -7,6 +7,7 @@
 
 use super::overshoot::OvershootModel;
 use super::threshold::Direction;
+use crate::dut::calibration::CalibrationFacts;
 use crate::gauge::Factor;
 use crate::gauge::factor::Named;
 use serde::{Deserialize, Serialize};
@@ -188,8 +189,20 @@ impl Calibration {
         }
     }
 
-    /// Returns every measured factor; the slope of the coarse ramp is the maker's and therefore absent.
-    pub fn factors(&self) -> Vec<Named> {
+    /// Returns dates, nominal voltage and factors.
+    pub fn facts(&self) -> CalibrationFacts {
+        CalibrationFacts {
+            made_at_us: self.made_at_us,
+            due_at_us: self.due_at_us,
+            is_simulated: self.simulated,
+            nominal_v: self.nominal_v,
+            is_complete: self.overshoots.is_some(),
+            factors: self.factors(),
+        }
+    }
+
+    /// Returns every measured factor; the slope of the coarse ramp is the maker's and not among them.
+    fn factors(&self) -> Vec<Named> {
         let named = |name, unit, factor| Named { name, unit, factor };
         let mut all = vec![
             named("coil_input_gain", Unit::One, self.coil_input.gain),
