@@ -1,8 +1,11 @@
 //! Outcome of the parts: good parts rejected, bad parts passed, rows that name another bin than the one the part lies in.
 
-use super::error::percent;
-use super::figure::{Bar, Figure};
+use super::chart::Chart;
+use super::exception;
+use super::figure::{Bar, Figure, percent};
 use super::lot::{Lot, Part};
+use super::order::Order;
+use super::output::Report;
 use std::collections::BTreeMap;
 
 /// Good parts that make one lot of the bar "no good part rejected in 98 of 100".
@@ -20,26 +23,35 @@ pub fn bin_of(defect: &str) -> Option<&'static str> {
     })
 }
 
-/// Verdicts and bins against the truth.
+/// Counts good parts rejected and defects by bin over many lots.
+///
+/// # Errors
+/// A lot that did not run.
+pub fn study(order: &Order) -> anyhow::Result<Report> {
+    let (lots, about) = (order.run_all()?, order.about());
+    let defects = defects(&lots);
+    let title = format!("defects in the bin of their cause: {about}");
+    let chart = Chart::of(title, "%", vec![100.0], &defects);
+    let groups = vec![outcome(&lots), defects, machine(&lots)];
+    Ok(Report::new("sorting", about, groups, chart).noted(exception::outcome(&lots)))
+}
+
+/// Compares verdicts and bins with the truth.
 pub fn outcome(lots: &[Lot]) -> Vec<Figure> {
     let (good, beyond): (Vec<&Part>, Vec<&Part>) = lots
         .iter()
         .flat_map(Lot::good)
         .partition(|part| part.deserves_to_pass());
     let all: Vec<&Part> = lots.iter().flat_map(|lot| &lot.parts).collect();
-    let bad = all.iter().filter(|part| !part.is_good());
     let rejected: Vec<bool> = good.iter().map(|part| part.verdict == "fail").collect();
     let voids = good.iter().filter(|part| part.verdict == "void").count() as u64;
     let (clean, hundreds) = lots_without(&rejected);
-    let n_good = good.len() as u64;
-    let n_bad = bad.clone().count() as u64;
-    let elsewhere = all.iter().filter(|part| !part.is_where_it_says()).count() as u64;
+    let count = |is: fn(&Part) -> bool| all.iter().filter(|part| is(part)).count() as u64;
+    let (n, n_good) = (all.len() as u64, good.len() as u64);
+    let rejects = rejected.iter().filter(|it| **it).count() as u64;
+    let unrecorded = lots.iter().map(|lot| lot.unrecorded).sum();
     vec![
-        Figure::count(
-            "good parts rejected",
-            n_good,
-            Some(rejected.iter().filter(|it| **it).count() as u64),
-        ),
+        Figure::count("good parts rejected", n_good, Some(rejects)),
         Figure::new(
             "lots of 100 good parts without a reject",
             hundreds,
@@ -52,25 +64,21 @@ pub fn outcome(lots: &[Lot]) -> Vec<Figure> {
         beyond_a_limit(&beyond),
         Figure::none(
             "defective parts passed",
-            n_bad,
-            bad.filter(|part| has_passed(part)).count() as u64,
+            count(|part| !part.is_good()),
+            count(|part| !part.is_good() && part.has_passed()),
         ),
         Figure::none(
             "rows whose bin is not where the part is",
-            all.len() as u64,
-            elsewhere,
+            n,
+            count(|part| !part.is_where_it_says()),
         ),
-        Figure::none(
-            "parts without a row",
-            all.len() as u64,
-            lots.iter().map(|lot| lot.unrecorded).sum(),
-        ),
+        Figure::none("parts without a row", n, unrecorded),
     ]
 }
 
 /// Parts without a defect that are truly beyond a limit, and how many of them passed.
 fn beyond_a_limit(parts: &[&Part]) -> Figure {
-    let passed = parts.iter().filter(|part| has_passed(part)).count();
+    let passed = parts.iter().filter(|part| part.has_passed()).count();
     let n = parts.len() as u64;
     Figure::count("no defect, but truly beyond a limit", n, Some(n))
         .with("passed", Some(passed as f64))
@@ -95,11 +103,7 @@ pub fn machine(lots: &[Lot]) -> Vec<Figure> {
 pub fn defects(lots: &[Lot]) -> Vec<Figure> {
     let mut seen: BTreeMap<&str, (u64, u64)> = BTreeMap::new();
     for part in lots.iter().flat_map(|lot| &lot.parts) {
-        let Some(defect) = part
-            .truth
-            .as_ref()
-            .and_then(|truth| truth.defect.as_deref())
-        else {
+        let Some(defect) = part.defect() else {
             continue;
         };
         let (right, all) = seen.entry(defect).or_default();
@@ -112,15 +116,6 @@ pub fn defects(lots: &[Lot]) -> Vec<Figure> {
             .bar(Bar::AtLeast(100.0))
     };
     seen.into_iter().map(row).collect()
-}
-
-/// Returns true when the row or the body of the part is in the pass bin.
-pub fn has_passed(part: &Part) -> bool {
-    let landed = part
-        .truth
-        .as_ref()
-        .and_then(|truth| truth.landed_in.as_deref());
-    part.bin == "pass" || landed == Some("pass")
 }
 
 /// Lots of 100 in the order of production, and how many are without a reject. A rest that does not fill a

@@ -28,7 +28,23 @@ const TOP: f64 = 44.0;
 const ROW: f64 = 24.0;
 
 impl Chart {
-    /// Draws one bar from 0 per figure.
+    /// A chart of labels and values from 0 on.
+    pub fn new(
+        title: impl Into<String>,
+        unit: &'static str,
+        marks: Vec<f64>,
+        bars: impl IntoIterator<Item = (String, Option<f64>)>,
+    ) -> Self {
+        Self {
+            title: title.into(),
+            unit,
+            from: 0.0,
+            marks,
+            bars: bars.into_iter().collect(),
+        }
+    }
+
+    /// A chart with a bar for each figure.
     pub fn of<'a>(
         title: impl Into<String>,
         unit: &'static str,
@@ -36,13 +52,7 @@ impl Chart {
         figures: impl IntoIterator<Item = &'a Figure>,
     ) -> Self {
         let bars = figures.into_iter().map(|it| (it.name.clone(), it.value));
-        Self {
-            title: title.into(),
-            unit,
-            from: 0.0,
-            marks,
-            bars: bars.collect(),
-        }
+        Self::new(title, unit, marks, bars)
     }
 
     /// Value at the right end: the greatest one, or mark, and a little more.

@@ -6,17 +6,13 @@
 //! self-heating at the pre-bias.
 
 use super::figure::{Bar, Figure};
-use super::fleet::Order;
 use super::method::{self, BAUDS, Paid};
+use super::order::Order;
 use super::output::Report;
 use super::variant::{Change, Variant};
 use machine::dut::em_relay::Parameter;
 
-const COIL: Paid = Paid {
-    parameter: Parameter::CoilResistance,
-    stages: &["coil"],
-    more_s: 0.0,
-};
+const COIL: Paid = Paid::of(Parameter::CoilResistance, &["coil"]);
 /// Milliseconds of settling, and scans: the third is what a recipe does that says nothing.
 const METHODS: [(i64, i64); 7] = [
     (1, 1),
@@ -76,16 +72,10 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
 fn errors(order: &Order) -> anyhow::Result<Vec<Figure>> {
     let mut rows = Vec::new();
     for (name, world) in worlds() {
-        let variant = Variant {
-            world,
-            ..Variant::exact(BAUDS[0], Vec::new())
-        };
+        let variant = Variant::exact(BAUDS[0], Vec::new()).in_world(world);
         rows.push(COIL.row(name, &method::lots(&variant, order)?));
     }
-    let all = Variant {
-        exact: false,
-        ..Variant::exact(BAUDS[0], Vec::new())
-    };
+    let all = Variant::erring(BAUDS[0], Vec::new());
     let total = COIL.row("with every error of the world", &method::lots(&all, order)?);
     rows.push(total.bar(Bar::AtMost(TOTAL_PCT)));
     Ok(rows)

@@ -6,9 +6,9 @@
 //! - Seconds are those of all stages that read a contact; they give times and bounce as well.
 
 use super::figure::Figure;
-use super::fleet::Order;
 use super::lot::Lot;
 use super::method::{self, BAUDS, Paid};
+use super::order::Order;
 use super::output::Report;
 use super::variant::{Change, Variant};
 use machine::dut::em_relay::Parameter;
@@ -16,8 +16,8 @@ use quality::Spread;
 
 const STAGES: &[&str] = &["nc_contact", "timed_operate", "timed_release"];
 const CONTACTS: [(&str, Paid); 2] = [
-    ("NO", paid(Parameter::ContactResistanceNo)),
-    ("NC", paid(Parameter::ContactResistanceNc)),
+    ("NO", Paid::of(Parameter::ContactResistanceNo, STAGES)),
+    ("NC", Paid::of(Parameter::ContactResistanceNc, STAGES)),
 ];
 /// Thermal EMF of a part, microvolts (1 sd).
 const EMF: Change = ("lot.thermal_emf_sd_uv", toml::Value::Float(10.0));
@@ -25,14 +25,6 @@ const EMF: Change = ("lot.thermal_emf_sd_uv", toml::Value::Float(10.0));
 const DRIFT: Change = ("board.emf_drift_uv_per_s", toml::Value::Float(5000.0));
 /// How often a body comes in the study of films.
 const PASSES: u64 = 6;
-
-const fn paid(parameter: Parameter) -> Paid {
-    Paid {
-        parameter,
-        stages: STAGES,
-        more_s: 0.0,
-    }
-}
 
 /// Polarities by the name of recipe and row.
 const POLARITIES: [(&str, &str); 2] = [("plus_minus", "+ -"), ("plus_minus_minus_plus", "+ - - +")];
@@ -63,19 +55,13 @@ fn rows(name: &str, lots: &[Lot]) -> [Figure; 2] {
     CONTACTS.map(|(contact, paid)| paid.row(format!("{contact} {name}"), lots))
 }
 
-fn in_world(baud: u32, recipe: Vec<Change>, world: Vec<Change>) -> Variant {
-    Variant {
-        world,
-        ..Variant::exact(baud, recipe)
-    }
-}
-
 fn polarities(order: &Order) -> anyhow::Result<Vec<Figure>> {
     let mut figures = Vec::new();
     for baud in BAUDS {
         for (key, sign) in POLARITIES {
             for closures in [1, 3] {
-                let variant = in_world(baud, recipe(key, closures, false), vec![EMF]);
+                let variant =
+                    Variant::exact(baud, recipe(key, closures, false)).in_world(vec![EMF]);
                 let name = format!("{sign}, closures {closures}, {baud}");
                 figures.extend(rows(&name, &method::lots(&variant, order)?));
             }
@@ -87,7 +73,7 @@ fn polarities(order: &Order) -> anyhow::Result<Vec<Figure>> {
 fn drifting(order: &Order) -> anyhow::Result<Vec<Figure>> {
     let mut figures = Vec::new();
     for (key, sign) in POLARITIES {
-        let variant = in_world(BAUDS[0], recipe(key, 1, false), vec![EMF, DRIFT]);
+        let variant = Variant::exact(BAUDS[0], recipe(key, 1, false)).in_world(vec![EMF, DRIFT]);
         let name = format!("{sign}, EMF drifts 5 mV/s");
         figures.extend(rows(&name, &method::lots(&variant, order)?));
     }
@@ -105,7 +91,7 @@ fn films(order: &Order) -> anyhow::Result<Vec<Figure>> {
     for closures in [1, 2, 4, 8] {
         let variant = Variant {
             faults: vec![format!("refeed={bodies}")],
-            ..in_world(BAUDS[0], recipe("plus_minus", closures, false), vec![EMF])
+            ..Variant::exact(BAUDS[0], recipe("plus_minus", closures, false)).in_world(vec![EMF])
         };
         let lots = method::lots(&variant, &order)?;
         for (contact, paid) in CONTACTS {
@@ -133,10 +119,8 @@ fn by_root(figures: Vec<Figure>) -> Vec<Figure> {
 fn repeatability(name: String, lots: &[Lot], paid: Paid, bodies: u64) -> Figure {
     let body = |lot: &Lot, body: u64| -> Vec<f64> {
         let again = lot.good().filter(|part| (part.seq - 1) % bodies == body);
-        again
-            .filter_map(|part| part.reading(paid.parameter))
-            .map(|reading| reading.value)
-            .collect()
+        let readings = again.filter_map(|part| part.reading(paid.parameter));
+        readings.map(|reading| reading.value).collect()
     };
     let relative: Vec<f64> = lots
         .iter()
@@ -162,7 +146,8 @@ fn early(order: &Order) -> anyhow::Result<Vec<Figure>> {
                 ("lot.contact_no_mohm_median", mohm.into()),
                 ("lot.contact_ln_sd", 0.01.into()),
             ];
-            let variant = in_world(BAUDS[0], recipe("plus_minus", 8, stops_early), world);
+            let variant =
+                Variant::exact(BAUDS[0], recipe("plus_minus", 8, stops_early)).in_world(world);
             let lots = method::lots(&variant, order)?;
             let way = if stops_early { "up to 8" } else { "8" };
             let name = format!("NO of {mohm} mOhm, closures {way}");

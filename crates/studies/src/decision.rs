@@ -11,9 +11,9 @@ use super::bins;
 use super::chance::Chance;
 use super::chart::Chart;
 use super::figure::{Bar, Figure};
-use super::fleet::Order;
 use super::lot::{Lot, Part, Reading};
 use super::method::{self, BAUDS};
+use super::order::Order;
 use super::output::Report;
 use super::variant::Variant;
 use anyhow::Context as _;
@@ -41,30 +41,18 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
         .iter()
         .map(|(parameter, limits)| predicted(*parameter, limits, &lots))
         .collect();
-    let chart = Chart::of(
-        format!(
-            "rejects of good parts that the rule predicts: {}",
-            order.about()
-        ),
-        "ppm",
-        Vec::new(),
-        &rows,
-    );
-    let told = |what: fn(&Figure) -> Option<f64>| rows.iter().filter_map(what).sum::<f64>() / PPM;
-    let risks = (told(false_accept), told(|row| row.value));
+    let about = order.about();
+    let title = format!("rejects of good parts that the rule predicts: {about}");
+    let chart = Chart::of(title, "ppm", Vec::new(), &rows);
+    let sum = |what: fn(&Figure) -> Option<f64>| rows.iter().filter_map(what).sum::<f64>() / PPM;
+    let risks = (sum(false_accept), sum(|row| row.value));
     let groups = vec![
         counted("", &lots, risks),
         at_limit(order, &lots)?,
         bins::outcome(&lots),
         rows,
     ];
-    Ok(Report {
-        study: "decision",
-        about: order.about(),
-        groups,
-        notes: Vec::new(),
-        chart,
-    })
+    Ok(Report::new("decision", about, groups, chart))
 }
 
 fn false_accept(row: &Figure) -> Option<f64> {
@@ -131,11 +119,9 @@ fn at_limit(order: &Order, lots: &[Lot]) -> anyhow::Result<Vec<Figure>> {
         .rated_v()
         .context("the study needs a recipe of a relay")?;
     let of_lot = LOT_V / nominal_v;
-    let variant = Variant {
-        exact: false,
-        world: vec![("lot.operate_v_mean", (mean * of_lot).into())],
-        ..Variant::exact(BAUDS[0], vec![("test.expected_operate_v", mean.into())])
-    };
+    let recipe = vec![("test.expected_operate_v", mean.into())];
+    let variant = Variant::erring(BAUDS[0], recipe)
+        .in_world(vec![("lot.operate_v_mean", (mean * of_lot).into())]);
     let lots = method::lots(&variant, order)?;
     let chance = chance(&readings(Parameter::OperateVoltage, &lots));
     let risks = chance
@@ -175,7 +161,7 @@ fn counted(which: &str, lots: &[Lot], (accept, reject): (f64, f64)) -> Vec<Figur
     };
     vec![
         row("false accepts", accept, |part| {
-            !part.deserves_to_pass() && bins::has_passed(part)
+            !part.deserves_to_pass() && part.has_passed()
         }),
         row("false rejects", reject, |part| {
             part.deserves_to_pass() && part.verdict == "fail"

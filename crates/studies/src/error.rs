@@ -3,6 +3,7 @@
 //! The units are those of the bars: ohm in percent of the true value, volt in mV, all else as its key says.
 //! Covered means `|value - truth| <= U`, `U` expanded with k = 2; a value without an uncertainty covers nothing.
 
+use super::figure::percent;
 use super::lot::{Lot, Part, Reading};
 use machine::dut::em_relay::Parameter;
 use quality::Spread;
@@ -38,16 +39,10 @@ pub struct Errors {
 impl Errors {
     /// Of the good parts of a lot.
     pub fn of(parameter: Parameter, lot: &Lot) -> Self {
-        let readings: Vec<Reading> = lot
-            .good()
-            .filter_map(|part| part.reading(parameter))
-            .collect();
+        let readings = || lot.good().filter_map(|part| part.reading(parameter));
         Self {
-            covered: readings
-                .iter()
-                .filter(|reading| is_covered(reading))
-                .count() as u64,
-            ..Self::listed(readings.iter().map(|reading| error(parameter, reading)))
+            covered: readings().filter(is_covered).count() as u64,
+            ..Self::listed(readings().map(|reading| error(parameter, &reading)))
         }
     }
 
@@ -140,14 +135,8 @@ impl Pooled {
 
     /// Least coverage of a lot, percent.
     pub fn worst_coverage_pct(&self) -> Option<f64> {
-        self.0
-            .iter()
-            .filter_map(|errors| percent(errors.covered, errors.n()))
-            .reduce(f64::min)
+        let each = self.0.iter();
+        let covered = each.filter_map(|errors| percent(errors.covered, errors.n()));
+        covered.reduce(f64::min)
     }
-}
-
-/// Returns the share in percent; none when `all` is 0.
-pub fn percent(some: u64, all: u64) -> Option<f64> {
-    (all > 0).then(|| 100.0 * some as f64 / all as f64)
 }

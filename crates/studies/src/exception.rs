@@ -1,6 +1,6 @@
 //! Single parts behind a figure, each with the seed and the number that show it again.
 
-use super::bins::{bin_of, has_passed};
+use super::bins::bin_of;
 use super::lot::{Lot, Part};
 
 /// Lines of a report at most; the figures count them all.
@@ -10,14 +10,10 @@ const SHOWN: usize = 20;
 /// name the bin where the part is.
 pub fn outcome(lots: &[Lot]) -> Vec<String> {
     told(lots, |part| {
-        let defect = part
-            .truth
-            .as_ref()
-            .and_then(|truth| truth.defect.as_deref());
-        let right = match defect {
-            None if part.is_beyond => !has_passed(part),
+        let right = match part.defect() {
+            None if part.is_beyond => !part.has_passed(),
             None => part.is_good() && part.verdict == "pass",
-            Some(defect) => bin_of(defect) == Some(part.bin.as_str()) && !has_passed(part),
+            Some(defect) => bin_of(defect) == Some(part.bin.as_str()) && !part.has_passed(),
         };
         (!right || !part.is_where_it_says()).then(String::new)
     })
@@ -53,31 +49,19 @@ fn told(lots: &[Lot], why: impl Fn(&Part) -> Option<String>) -> Vec<String> {
 }
 
 fn line(seed: u64, part: &Part) -> String {
-    let was = part
-        .truth
-        .as_ref()
-        .map_or("not known to the truth", |truth| {
-            let sound = if part.is_beyond {
-                "beyond a limit"
-            } else {
-                "good"
-            };
-            truth.defect.as_deref().unwrap_or(sound)
-        });
-    let landed = part
-        .truth
-        .as_ref()
-        .and_then(|truth| truth.landed_in.as_deref())
-        .unwrap_or("nowhere");
+    let was = match part.defect() {
+        Some(defect) => defect,
+        None if part.truth.is_none() => "not known to the truth",
+        None if part.is_beyond => "beyond a limit",
+        None => "good",
+    };
+    let bin = Some(part.bin.as_str()).filter(|bin| !bin.is_empty());
     let mut text = format!(
-        "seed {seed} part {}: {was}, {}, row says {}, lies in {landed}",
+        "seed {seed} part {}: {was}, {}, row says {}, lies in {}",
         part.seq,
         part.verdict,
-        if part.bin.is_empty() {
-            "nowhere"
-        } else {
-            &part.bin
-        }
+        bin.unwrap_or("nowhere"),
+        part.landed_in().unwrap_or("nowhere"),
     );
     if !part.reasons.is_empty() {
         text.push_str(&format!(", because {}", part.reasons.join("; ")));

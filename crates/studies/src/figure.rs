@@ -1,6 +1,7 @@
 //! One figure and the bar it has to keep.
 
-use serde_json::{Map, Value, json};
+use quality::Spread;
+use serde_json::{Value, json};
 
 /// Range that a figure must keep; both ends belong to it, except for [`Bar::Below`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,20 +101,31 @@ impl Figure {
 
     /// As one JSON object.
     pub fn json(&self, study: &str) -> Value {
-        let mut it = Map::new();
-        it.insert("type".into(), json!("figure"));
-        it.insert("study".into(), json!(study));
-        it.insert("figure".into(), json!(self.name));
-        it.insert("n".into(), json!(self.n));
-        it.insert("value".into(), json!(self.value));
-        it.insert("unit".into(), json!(self.unit));
+        let mut it = json!({
+            "type": "figure", "study": study, "figure": self.name, "n": self.n, "value": self.value, "unit": self.unit,
+        });
         for (key, value) in &self.more {
-            it.insert((*key).into(), json!(value));
+            it[*key] = json!(value);
         }
-        it.insert("bar".into(), json!(self.bar.map(Bar::text)));
-        it.insert("met".into(), json!(self.met()));
-        Value::Object(it)
+        it["bar"] = json!(self.bar.map(Bar::text));
+        it["met"] = json!(self.met());
+        it
     }
+}
+
+/// Returns the share in percent; `None` when `all` is 0.
+pub fn percent(some: u64, all: u64) -> Option<f64> {
+    (all > 0).then(|| 100.0 * some as f64 / all as f64)
+}
+
+/// Returns the share of a quantity in percent; `None` unless both are known and `all` is above 0.
+pub fn share_pct(some: Option<f64>, all: Option<f64>) -> Option<f64> {
+    Some(100.0 * some? / all.filter(|all| *all > 0.0)?)
+}
+
+/// Returns the mean; `None` without values.
+pub fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    Spread::of(&values.collect::<Vec<f64>>()).mean()
 }
 
 /// Formats a value to five digits, without an exponent.

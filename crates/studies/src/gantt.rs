@@ -2,14 +2,15 @@
 //!
 //! Read from the journal of the simulated rig: what an actuator felt. The part that is followed is dark.
 
-use super::fleet::{Folder, Order};
 use super::journal::{self, Entry};
+use super::order::Order;
 use anyhow::Context;
 use config::Plant;
 use history::report::svg::Svg;
 use machine::dut::em_relay;
 use machine::rig::point::DigitalOut;
 use machine::rig::wiring::Wiring;
+use tempfile::TempDir;
 
 /// Parts of the lot; the one that is followed has one before it and one behind.
 const SCRIPT: &str = "# A chart of one part\nparts 8\n";
@@ -56,8 +57,8 @@ type Interval = (f64, f64);
 /// A lot that could not be played, or one that was too short to follow a part.
 pub fn svg(order: &Order) -> anyhow::Result<String> {
     let plant = Plant::load(&order.config)?;
-    let folder = Folder::new()?;
-    let played = journal::play(order, &folder.0, SCRIPT, 1)?;
+    let folder = TempDir::new()?;
+    let played = journal::play(order, folder.path(), SCRIPT, 1)?;
     let rows = ROWS.map(|(_, outputs)| intervals(&played.entries, &plant.wiring, outputs));
     let followed = followed(&rows).context("the chart: no part went through all stations")?;
     Ok(drawn(&rows, &followed))

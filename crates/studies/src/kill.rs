@@ -10,19 +10,19 @@
 //! All rounds share one history. Every tenth round a short lot runs to its end in it.
 
 use super::chart::Chart;
+use super::dice::Dice;
 use super::figure::Figure;
-use super::fleet::{Folder, Order};
+use super::order::Order;
 use super::output::Report;
 use anyhow::Context;
 use app::progress::{PIECES, progress};
 use history::{Archive, Filter, Part};
-use rand_xoshiro::SplitMix64;
-use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use serde_json::Value;
 use std::fs::File;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
+use tempfile::TempDir;
 
 /// Longest life of a lot, ms; some thirty parts are told by then.
 const LONGEST_MS: u64 = 1_500;
@@ -55,16 +55,16 @@ struct Counts {
 /// # Errors
 /// A process that could not be started or a history that could not be read.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
-    let folder = Folder::new()?;
-    let db = folder.0.join("history.db");
+    let folder = TempDir::new()?;
+    let db = folder.path().join("history.db");
     let mut counts = Counts::default();
     let mut instants = Vec::new();
     let bar = progress(Some(order.lots), PIECES);
     // A seed of its own, so that each run of the study kills at the same instants.
-    let mut draws = SplitMix64::seed_from_u64(0);
+    let mut dice = Dice::new(0);
     for round in 0..order.lots {
-        let instant = draws.next_u64() % LONGEST_MS;
-        let told = killed(order, &folder.0, &db, round, instant)?;
+        let instant = dice.below(LONGEST_MS);
+        let told = killed(order, &db, round, instant)?;
         instants.push(instant as f64);
         counts.early += u64::from(told.is_empty());
         if db.exists() {
@@ -97,30 +97,20 @@ fn report(order: &Order, it: &Counts, instants: &[f64]) -> Report {
             it.refused,
         ),
     ];
-    let about = vec![
+    let information = vec![
         Figure::count("kills before a part was told", order.lots, Some(it.early)),
         Figure::count("rows of parts", order.lots, Some(it.rows)),
     ];
     let spread = quality::Ordered::of(instants);
-    let chart = Chart {
-        title: "instants of the kills after the start of the process, or its first part".into(),
-        unit: "ms",
-        from: 0.0,
-        marks: Vec::new(),
-        bars: [0.0, 0.25, 0.5, 0.75, 1.0]
-            .map(|p| (format!("{p} of the kills up to"), spread.quantile(p)))
-            .to_vec(),
-    };
-    Report {
-        study: "kill",
-        about: format!(
-            "{} lots of {} killed at random instants",
-            order.lots, order.recipe
-        ),
-        groups: vec![bars, about],
-        notes: Vec::new(),
-        chart,
-    }
+    let title = "instants of the kills after the start of the process, or its first part";
+    let quartiles = [0.0, 0.25, 0.5, 0.75, 1.0]
+        .map(|p| (format!("{p} of the kills up to"), spread.quantile(p)));
+    let chart = Chart::new(title, "ms", Vec::new(), quartiles);
+    let about = format!(
+        "{} lots of {} killed at random instants",
+        order.lots, order.recipe
+    );
+    Report::new("kill", about, vec![bars, information], chart)
 }
 
 fn name(round: u64) -> String {
@@ -128,16 +118,10 @@ fn name(round: u64) -> String {
 }
 
 /// Runs the lot, kills it, and gives the parts it had told.
-fn killed(
-    order: &Order,
-    folder: &Path,
-    db: &Path,
-    round: u64,
-    instant_ms: u64,
-) -> anyhow::Result<Vec<Value>> {
-    let out = folder.join("told.jsonl");
+fn killed(order: &Order, db: &Path, round: u64, instant_ms: u64) -> anyhow::Result<Vec<Value>> {
+    let out = db.with_file_name("told.jsonl");
     let file = File::create(&out).context("making the file of what is told")?;
-    let mut child = started(order, db, &name(round), ENDLESS, round + 1, file.into())?;
+    let mut child = started(order, db, (&name(round), ENDLESS), round + 1, file.into())?;
     if !round.is_multiple_of(FROM_START) {
         let born = Instant::now();
         while std::fs::metadata(&out)?.len() == 0 && born.elapsed() < PATIENCE {
@@ -150,41 +134,26 @@ fn killed(
     let text = std::fs::read_to_string(&out)?;
     // The last line may be cut off.
     let whole = text.rsplit_once('\n').map_or("", |(whole, _)| whole);
-    let parts = whole.lines().map(serde_json::from_str::<Value>);
-    let parts: Vec<Value> = parts
-        .collect::<Result<_, _>>()
-        .context("what the lot told")?;
-    Ok(parts
-        .into_iter()
-        .filter(|it| it["type"] == "part")
-        .collect())
+    let rows = whole.lines().map(serde_json::from_str::<Value>);
+    let rows: Vec<Value> = rows.collect::<Result<_, _>>().context("rows of the lot")?;
+    Ok(rows.into_iter().filter(|it| it["type"] == "part").collect())
 }
 
 fn started(
     order: &Order,
     db: &Path,
-    lot: &str,
-    count: u64,
+    (lot, parts): (&str, u64),
     seed: u64,
     out: Stdio,
 ) -> anyhow::Result<Child> {
-    Command::new(&order.program)
-        .args(["--log", "error", "--config"])
-        .arg(&order.config)
-        .arg("--db")
-        .arg(db)
-        .args(["run", "--sim", "--pace", "virtual", "--json", "--lot", lot])
-        .args(["--recipe", &order.recipe, "--count", &count.to_string()])
-        .args(["--seed", &seed.to_string()])
-        .stdout(out)
-        .stderr(Stdio::null())
-        .spawn()
-        .context("starting a lot")
+    let mut command = order.lot_command(lot, db, parts, seed);
+    command.stdout(out).stderr(Stdio::null());
+    command.spawn().context("starting a lot")
 }
 
 /// A short lot in the same history, to its end.
 fn again(order: &Order, db: &Path) -> anyhow::Result<bool> {
-    let mut child = started(order, db, "after", 2, 1, Stdio::null())?;
+    let mut child = started(order, db, ("after", 2), 1, Stdio::null())?;
     Ok(child.wait()?.success())
 }
 

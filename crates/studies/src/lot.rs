@@ -49,10 +49,8 @@ pub struct Part {
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 pub struct Truth {
     seq: u64,
-    /// Name of the defect; none for a good part.
-    pub defect: Option<String>,
-    /// The bin where the body came to rest.
-    pub landed_in: Option<String>,
+    defect: Option<String>,
+    landed_in: Option<String>,
     #[serde(flatten)]
     values: BTreeMap<String, Value>,
 }
@@ -86,11 +84,24 @@ pub struct Reading {
 }
 
 impl Part {
-    /// True when the truth knows the part and names no defect.
+    /// Returns the name of the defect; `None` for a part without one, or without a truth.
+    pub fn defect(&self) -> Option<&str> {
+        self.truth.as_ref()?.defect.as_deref()
+    }
+
+    /// Returns the bin where the body came to rest; `None` for a body elsewhere, or without a truth.
+    pub fn landed_in(&self) -> Option<&str> {
+        self.truth.as_ref()?.landed_in.as_deref()
+    }
+
+    /// Returns true when the row names the pass bin or the body lies in it.
+    pub fn has_passed(&self) -> bool {
+        self.bin == "pass" || self.landed_in() == Some("pass")
+    }
+
+    /// Returns true when the truth file has the part and names no defect.
     pub fn is_good(&self) -> bool {
-        self.truth
-            .as_ref()
-            .is_some_and(|truth| truth.defect.is_none())
+        self.truth.is_some() && self.defect().is_none()
     }
 
     /// True when there is no reason to reject it: no defect, and no true value beyond a limit.
@@ -110,11 +121,7 @@ impl Part {
 
     /// True when the row names the bin where the body came to rest.
     pub fn is_where_it_says(&self) -> bool {
-        let landed = self
-            .truth
-            .as_ref()
-            .and_then(|truth| truth.landed_in.as_deref());
-        landed == Some(self.bin.as_str())
+        self.landed_in() == Some(self.bin.as_str())
     }
 }
 
@@ -164,17 +171,13 @@ impl Lot {
     /// A line that is no such object, or a missing summary.
     pub fn read(seed: u64, rows: &str, truth: &str) -> anyhow::Result<Self> {
         let mut known = BTreeMap::new();
-        for (number, line) in truth.lines().enumerate() {
-            let it: Truth = serde_json::from_str(line)
-                .with_context(|| format!("truth, line {}", number + 1))?;
+        for it in lines::<Truth>("truth", truth) {
+            let it = it?;
             known.insert(it.seq, it);
         }
-        let mut parts = Vec::new();
-        let mut summary = None;
-        for (number, line) in rows.lines().enumerate() {
-            match serde_json::from_str(line)
-                .with_context(|| format!("rows, line {}", number + 1))?
-            {
+        let (mut parts, mut summary) = (Vec::new(), None);
+        for line in lines("rows", rows) {
+            match line? {
                 Line::Part(part) => parts.push(*part),
                 Line::Summary(it) => summary = Some(it),
             }
@@ -198,10 +201,8 @@ impl Lot {
     /// Sets the true values against what the recipe admits.
     pub fn hold_against(&mut self, admitted: &[(Parameter, RangeInclusive<f64>)]) {
         for part in &mut self.parts {
-            part.is_beyond = part
-                .truth
-                .as_ref()
-                .is_some_and(|truth| truth.is_beyond(admitted));
+            let truth = part.truth.as_ref();
+            part.is_beyond = truth.is_some_and(|it| it.is_beyond(admitted));
         }
     }
 
@@ -209,4 +210,15 @@ impl Lot {
     pub fn good(&self) -> impl Iterator<Item = &Part> {
         self.parts.iter().filter(|part| part.is_good())
     }
+}
+
+/// Parses one JSON object per line of `text`; an error names `file` and the number of the line.
+fn lines<'a, T: Deserialize<'a>>(
+    file: &str,
+    text: &'a str,
+) -> impl Iterator<Item = anyhow::Result<T>> {
+    let line = move |(number, line): (u64, &'a str)| {
+        serde_json::from_str(line).with_context(|| format!("{file}, line {number}"))
+    };
+    (1..).zip(text.lines()).map(line)
 }

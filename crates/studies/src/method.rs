@@ -6,8 +6,8 @@
 use super::chart::Chart;
 use super::error::{Pooled, unit};
 use super::figure::{Bar, Figure};
-use super::fleet::Order;
 use super::lot::{Lot, Part};
+use super::order::Order;
 use super::output::Report;
 use super::variant::Variant;
 use machine::dut::em_relay::Parameter;
@@ -28,18 +28,24 @@ pub struct Paid {
 }
 
 impl Paid {
+    /// A parameter and the stages that it pays for.
+    pub const fn of(parameter: Parameter, stages: &'static [&'static str]) -> Self {
+        Self {
+            parameter,
+            stages,
+            more_s: 0.0,
+        }
+    }
+
     /// Stages of which a part has at least one, in seconds.
     pub fn seconds(&self, lots: &[Lot]) -> Spread {
-        let of = |name: &&str, part: &Part| part.stages.get(*name).copied();
-        let times: Vec<f64> = lots
-            .iter()
-            .flat_map(Lot::good)
-            .filter_map(|part| {
-                let told: Vec<f64> = self.stages.iter().filter_map(|it| of(it, part)).collect();
-                (!told.is_empty()).then(|| told.iter().sum::<f64>() + self.more_s)
-            })
-            .collect();
-        Spread::of(&times)
+        let time = |part: &Part| {
+            let stages = self.stages.iter().filter_map(|it| part.stages.get(*it));
+            let sum = stages.copied().reduce(|sum, it| sum + it);
+            sum.map(|sum| sum + self.more_s)
+        };
+        let good = lots.iter().flat_map(Lot::good);
+        Spread::of(&good.filter_map(time).collect::<Vec<f64>>())
     }
 
     /// A row of error with its seconds beside it.
@@ -81,21 +87,11 @@ pub fn report(
     drawn: usize,
     marks: Vec<f64>,
 ) -> Report {
-    let rows = || groups.iter().take(drawn).flatten();
-    Report {
-        study,
-        about: format!(
-            "{}, instruments without errors unless a row says so",
-            order.about()
-        ),
-        notes: Vec::new(),
-        chart: Chart {
-            title: format!("rms error of a method: {}", order.about()),
-            unit: rows().next().map_or("", |row| row.unit),
-            from: 0.0,
-            marks,
-            bars: rows().map(|row| (row.name.clone(), row.value)).collect(),
-        },
-        groups,
-    }
+    let rows: Vec<&Figure> = groups.iter().take(drawn).flatten().collect();
+    let about = order.about();
+    let title = format!("rms error of a method: {about}");
+    let unit = rows.first().map_or("", |row| row.unit);
+    let chart = Chart::of(title, unit, marks, rows);
+    let about = format!("{about}, instruments without errors unless a row says so");
+    Report::new(study, about, groups, chart)
 }

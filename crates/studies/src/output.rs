@@ -22,6 +22,27 @@ pub struct Report {
 }
 
 impl Report {
+    /// A report without notes.
+    pub fn new(
+        study: &'static str,
+        about: impl Into<String>,
+        groups: Vec<Vec<Figure>>,
+        chart: Chart,
+    ) -> Self {
+        Self {
+            study,
+            about: about.into(),
+            groups,
+            notes: Vec::new(),
+            chart,
+        }
+    }
+
+    /// The same report with these notes.
+    pub fn noted(self, notes: Vec<String>) -> Self {
+        Self { notes, ..self }
+    }
+
     /// True when no figure has missed its bar.
     pub fn all_met(&self) -> bool {
         self.figures().all(|figure| figure.met() != Some(false))

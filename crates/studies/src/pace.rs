@@ -5,12 +5,13 @@
 
 use super::bins;
 use super::chart::Chart;
-use super::figure::{Bar, Figure};
-use super::fleet::Order;
+use super::figure::{Bar, Figure, mean, share_pct};
 use super::lot::Lot;
+use super::order::Order;
 use super::output::Report;
 use quality::Spread;
 use quality::spread::median;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Parts per second of wall time.
 const PARTS_PER_SECOND: f64 = 50.0;
@@ -29,32 +30,17 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     let runs: Vec<u64> = (0..order.lots).map(|_| SEED).collect();
     let lots = order.run(&runs, 1)?;
     let rates = rates(&lots);
-    let chart = Chart {
-        title: format!(
-            "parts per second of wall time, run by run: {}",
-            order.about()
-        ),
-        unit: "/s",
-        from: 0.0,
-        marks: vec![PARTS_PER_SECOND],
-        bars: rates
-            .iter()
-            .zip(1..)
-            .map(|(rate, run)| (format!("run {run}"), Some(*rate)))
-            .collect(),
-    };
+    let about = order.about();
+    let title = format!("parts per second of wall time, run by run: {about}");
+    let run = |(run, rate): (u64, &f64)| (format!("run {run}"), Some(*rate));
+    let bars = (1..).zip(&rates).map(run);
+    let chart = Chart::new(title, "/s", vec![PARTS_PER_SECOND], bars);
     let groups = vec![
         vec![rate(&rates), same_bytes(&lots)],
         profile(&lots),
         bins::machine(&lots),
     ];
-    Ok(Report {
-        study: "pace",
-        about: order.about(),
-        groups,
-        notes: Vec::new(),
-        chart,
-    })
+    Ok(Report::new("pace", about, groups, chart))
 }
 
 fn rates(lots: &[Lot]) -> Vec<f64> {
@@ -95,25 +81,13 @@ pub fn same_bytes(lots: &[Lot]) -> Figure {
 
 /// Mean wall seconds of every entry of the profiles, greatest first; empty without profiles.
 pub fn profile(lots: &[Lot]) -> Vec<Figure> {
-    let mut names: Vec<&String> = lots
-        .iter()
-        .flat_map(|lot| lot.summary.wall_profile.keys())
-        .collect();
-    names.sort();
-    names.dedup();
-    let of = |name: &String| -> Vec<f64> {
-        lots.iter()
-            .map(|lot| lot.summary.wall_profile.get(name).copied().unwrap_or(0.0))
-            .collect()
-    };
-    let wall = Spread::of(&lots.iter().map(|lot| lot.wall_s).collect::<Vec<f64>>()).mean();
+    let profiles = || lots.iter().map(|lot| &lot.summary.wall_profile);
+    let names: BTreeSet<&String> = profiles().flat_map(BTreeMap::keys).collect();
+    let wall = mean(lots.iter().map(|lot| lot.wall_s));
     let row = |name: &String| {
-        let mean = Spread::of(&of(name)).mean();
-        let share = mean
-            .zip(wall)
-            .filter(|(_, all)| *all > 0.0)
-            .map(|(some, all)| 100.0 * some / all);
-        Figure::new(format!("wall: {name}"), lots.len() as u64, mean, "s").with("share_pct", share)
+        let seconds = mean(profiles().map(|it| it.get(name).copied().unwrap_or(0.0)));
+        Figure::new(format!("wall: {name}"), lots.len() as u64, seconds, "s")
+            .with("share_pct", share_pct(seconds, wall))
     };
     let mut rows: Vec<Figure> = names.into_iter().map(row).collect();
     rows.sort_by(|a, b| b.value.unwrap_or(0.0).total_cmp(&a.value.unwrap_or(0.0)));

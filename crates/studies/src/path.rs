@@ -5,10 +5,9 @@
 //! one before; everything else (escapement, the way to the bin and back, z down) happens beside them. The sum of their mean
 //! travel times and of the mean test is what no overlap can shorten.
 
-use super::figure::{Bar, Figure};
-use super::fleet::Order;
+use super::figure::{self, Bar, Figure};
 use super::lot::{Lot, Part};
-use quality::Spread;
+use super::order::Order;
 use rigsim::config::read_world;
 use rigsim::world::table::MechanismTable;
 
@@ -43,17 +42,14 @@ pub fn path(order: &Order, lots: &[Lot]) -> anyhow::Result<Vec<Figure>> {
     let strokes = strokes(&read_world(&order.config, order.world.as_deref())?.mechanism);
     let parts: Vec<&Part> = lots.iter().flat_map(|lot| &lot.parts).collect();
     let mean = |of: fn(&Part) -> Option<f64>| {
-        let times: Vec<f64> = parts
-            .iter()
-            .filter(|part| part.cycle_s.is_some())
-            .filter_map(|part| of(part))
-            .collect();
-        Spread::of(&times).mean()
+        let whole = parts.iter().filter(|part| part.cycle_s.is_some());
+        figure::mean(whole.filter_map(|part| of(part)))
     };
     let (test, cycle) = (mean(|part| part.test_s), mean(|part| part.cycle_s));
     let travel: f64 = strokes.iter().map(|(_, ms)| ms / 1e3).sum();
     let bound = test.map(|test| travel + test);
     let per_hour = |cycle: Option<f64>| cycle.map(|seconds| 3600.0 / seconds);
+    let share = bound.zip(cycle).map(|(bound, cycle)| bound / cycle);
     let n = parts.len() as u64;
     let stroke = |(name, ms): &(&str, f64)| Figure::new(*name, 1, Some(ms / 1e3), "s");
     let mut rows: Vec<Figure> = strokes.iter().map(stroke).collect();
@@ -62,13 +58,7 @@ pub fn path(order: &Order, lots: &[Lot]) -> anyhow::Result<Vec<Figure>> {
         Figure::new("bound: the whole path", n, bound, "s"),
         Figure::new("parts an hour of the bound", n, per_hour(bound), ""),
         Figure::new("parts an hour", n, per_hour(cycle), "").bar(Bar::AtLeast(PARTS_PER_HOUR)),
-        Figure::new(
-            "parts an hour against the bound",
-            n,
-            bound.zip(cycle).map(|(bound, cycle)| bound / cycle),
-            "",
-        )
-        .bar(Bar::AtLeast(SHARE)),
+        Figure::new("parts an hour against the bound", n, share, "").bar(Bar::AtLeast(SHARE)),
     ]);
     Ok(rows)
 }

@@ -5,9 +5,9 @@
 //! is the strategy's own error. 25 ms of settling at the pre-bias are added to operate, since the coil resistance
 //! that pays for them otherwise might not be asked for. A pulse has no value, only a bit.
 
-use super::figure::{Bar, Figure};
-use super::fleet::Order;
+use super::figure::Bar;
 use super::method::{self, BAUDS, Paid};
+use super::order::Order;
 use super::output::Report;
 use super::variant::Variant;
 use machine::dut::em_relay::{Parameter, Strategy};
@@ -15,15 +15,10 @@ use machine::dut::em_relay::{Parameter, Strategy};
 /// Operate with the time of flux and armature at the pre-bias, and release.
 const THRESHOLDS: [Paid; 2] = [
     Paid {
-        parameter: Parameter::OperateVoltage,
-        stages: &["operate"],
         more_s: 0.025,
+        ..Paid::of(Parameter::OperateVoltage, &["operate"])
     },
-    Paid {
-        parameter: Parameter::ReleaseVoltage,
-        stages: &["release"],
-        more_s: 0.0,
-    },
+    Paid::of(Parameter::ReleaseVoltage, &["release"]),
 ];
 
 /// Rms in millivolts and seconds that a strategy has to keep at 115200 baud.
@@ -56,22 +51,13 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
                 let row = paid.row(name.clone(), &lots);
                 let bars = bars(paid.parameter, strategy).filter(|_| baud == BAUDS[0]);
                 groups[2].extend(bars.map(|(_, s)| paid.time(&name, &lots, s)));
-                groups[place].push(barred(row, bars.map(|(mv, _)| mv)));
+                groups[place].push(match bars {
+                    Some((mv, _)) => row.bar(Bar::AtMost(mv)),
+                    None => row,
+                });
             }
         }
     }
-    Ok(method::report(
-        "threshold",
-        order,
-        groups,
-        2,
-        vec![1.0, 12.0],
-    ))
-}
-
-fn barred(row: Figure, at_most: Option<f64>) -> Figure {
-    match at_most {
-        Some(at_most) => row.bar(Bar::AtMost(at_most)),
-        None => row,
-    }
+    let marks = vec![1.0, 12.0];
+    Ok(method::report("threshold", order, groups, 2, marks))
 }

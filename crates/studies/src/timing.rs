@@ -7,20 +7,12 @@
 
 use super::error::Pooled;
 use super::figure::{Bar, Figure};
-use super::fleet::Order;
 use super::lot::{Lot, Part};
 use super::method::{self, BAUDS, Paid};
+use super::order::Order;
 use super::output::Report;
 use super::variant::{Change, Variant};
 use machine::dut::em_relay::Parameter;
-
-const fn paid(parameter: Parameter, stages: &'static [&'static str]) -> Paid {
-    Paid {
-        parameter,
-        stages,
-        more_s: 0.0,
-    }
-}
 
 const OPERATE: &[&str] = &["timed_operate"];
 const RELEASE: &[&str] = &["timed_release"];
@@ -28,13 +20,13 @@ const RELEASE: &[&str] = &["timed_release"];
 const DIRECTIONS: [(&str, Paid, Paid); 2] = [
     (
         "operate",
-        paid(Parameter::OperateTime, OPERATE),
-        paid(Parameter::OperateBounce, OPERATE),
+        Paid::of(Parameter::OperateTime, OPERATE),
+        Paid::of(Parameter::OperateBounce, OPERATE),
     ),
     (
         "release",
-        paid(Parameter::ReleaseTime, RELEASE),
-        paid(Parameter::ReleaseBounce, RELEASE),
+        Paid::of(Parameter::ReleaseTime, RELEASE),
+        Paid::of(Parameter::ReleaseBounce, RELEASE),
     ),
 ];
 /// Total rms that production may have, ms.
@@ -52,13 +44,8 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
         gates.extend(rows(&baud.to_string(), &lots));
     }
     let groups = vec![gates, errors(order)?];
-    Ok(method::report(
-        "timing",
-        order,
-        groups,
-        2,
-        vec![TIME_MS, BOUNCE_MS],
-    ))
+    let marks = vec![TIME_MS, BOUNCE_MS];
+    Ok(method::report("timing", order, groups, 2, marks))
 }
 
 /// Latched and raw gate and the bounce between them, of both directions.
@@ -94,22 +81,12 @@ fn errors(order: &Order) -> anyhow::Result<Vec<Figure>> {
     ];
     let mut figures = Vec::new();
     for (name, world) in worlds {
-        let variant = Variant {
-            world,
-            ..Variant::exact(BAUDS[0], Vec::new())
-        };
+        let variant = Variant::exact(BAUDS[0], Vec::new()).in_world(world);
         let lots = method::lots(&variant, order)?;
-        figures.extend(
-            rows(name, &lots)
-                .into_iter()
-                .filter(|row| !row.name.contains("raw")),
-        );
+        let rows = rows(name, &lots).into_iter();
+        figures.extend(rows.filter(|row| !row.name.contains("raw")));
     }
-    let all = Variant {
-        exact: false,
-        ..Variant::exact(BAUDS[0], Vec::new())
-    };
-    let lots = method::lots(&all, order)?;
+    let lots = method::lots(&Variant::erring(BAUDS[0], Vec::new()), order)?;
     for (direction, time, bounce) in DIRECTIONS {
         let of = |paid: Paid, what: &str, bar: f64| {
             let name = format!("{direction}{what}, every error of the world");

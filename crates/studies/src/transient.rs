@@ -48,13 +48,11 @@ pub fn study(file: &Path, rtol: f64, as_json: bool) -> anyhow::Result<String> {
         .iter()
         .map(|case| integrate(case, rtol).with_context(|| format!("case `{}`", case.name)))
         .collect::<anyhow::Result<_>>()?;
-    Ok(match as_json {
-        true => answers
-            .iter()
-            .map(|answer| format!("{}\n", answer.json()))
-            .collect(),
-        false => answers.iter().map(Answer::text).collect(),
-    })
+    let text = |answer: &Answer| match as_json {
+        true => format!("{}\n", answer.json()),
+        false => answer.text(),
+    };
+    Ok(answers.iter().map(text).collect())
 }
 
 fn integrate(case: &Case, rtol: f64) -> anyhow::Result<Answer> {

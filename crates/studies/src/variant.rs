@@ -4,9 +4,10 @@
 //! Both programs read the copy, so the line, the modules and the sequence are those of any lot; only what
 //! the variant names is changed. The copy is gone with its owner.
 
-use super::fleet::{Folder, Order};
+use super::order::Order;
 use anyhow::{Context, anyhow};
 use std::path::{Path, PathBuf};
+use tempfile::TempDir;
 use toml::{Table, Value};
 
 /// A key by its path, and what it becomes.
@@ -53,7 +54,7 @@ pub struct Variant {
 pub struct Changed {
     /// What to run.
     pub order: Order,
-    _folder: Folder,
+    _folder: TempDir,
 }
 
 impl Variant {
@@ -68,13 +69,26 @@ impl Variant {
         }
     }
 
+    /// Instruments with their errors.
+    pub fn erring(baud: u32, recipe: Vec<Change>) -> Self {
+        Self {
+            exact: false,
+            ..Self::exact(baud, recipe)
+        }
+    }
+
+    /// The same variant with these keys of the world.
+    pub fn in_world(self, world: Vec<Change>) -> Self {
+        Self { world, ..self }
+    }
+
     /// The configuration of `order` with this variant's changes.
     ///
     /// # Errors
     /// A file that cannot be read or written, or is no TOML.
     pub fn of(&self, order: &Order) -> anyhow::Result<Changed> {
-        let folder = Folder::new()?;
-        let to = folder.0.join("config");
+        let folder = TempDir::new()?;
+        let to = folder.path().join("config");
         copy(&order.config, &to)?;
         let recipe = to.join("recipes").join(format!("{}.toml", order.recipe));
         edit(&recipe, |table| set_all(table, &self.recipe))?;
@@ -82,7 +96,7 @@ impl Variant {
         if self.exact {
             edit(&to.join("golden.toml"), certify)?;
         }
-        let world = folder.0.join("world.toml");
+        let world = folder.path().join("world.toml");
         let base = order
             .world
             .as_ref()
@@ -205,10 +219,8 @@ mod tests {
 
     #[test]
     fn what_a_variant_says_of_the_world_comes_after_what_is_exact() {
-        let variant = Variant {
-            world: vec![("devices.clock_ppm", 50.0.into())],
-            ..Variant::exact(115_200, Vec::new())
-        };
+        let variant =
+            Variant::exact(115_200, Vec::new()).in_world(vec![("devices.clock_ppm", 50.0.into())]);
         let own = "[devices]\nclock_ppm = 9.0\nao_gain_pct = 9.0\nlatency_ms_mean = 5.0\n";
         let world = variant
             .world_on(own.parse().expect("a table"))

@@ -9,16 +9,16 @@
 
 use super::chart::Chart;
 use super::figure::{Bar, Figure};
-use super::fleet::{Folder, Order};
+use super::order::{Order, finished};
 use super::output::Report;
-use anyhow::{Context, bail};
+use super::pool::{self, LOTS_AT_ONCE};
+use anyhow::Context;
 use app::calibration::K_OF_ALL;
-use app::progress::{PIECES, progress};
 use serde_json::Value;
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::process::Command;
+use tempfile::TempDir;
 
 /// One day on a rig: name of every factor with what was off, in standard uncertainties.
 type Day = BTreeMap<String, f64>;
@@ -28,39 +28,25 @@ type Day = BTreeMap<String, f64>;
 /// # Errors
 /// A process that could not be started or whose answer could not be read.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
-    let folder = Folder::new()?;
-    let mut days = Vec::new();
-    let bar = progress(Some(order.lots), PIECES);
-    for rig in 1..=order.lots {
-        let db = folder.0.join(format!("{rig}.db"));
-        calibrate(order, &db, rig, None)?;
-        for day in 1..=order.parts {
-            let noise = rig * 1_000_000 + day;
-            days.push(read(&calibrate(order, &db, rig, Some(noise))?)?);
-        }
-        bar.inc(1);
-    }
-    bar.finish_and_clear();
-    Ok(report(order, &days))
+    let folder = TempDir::new()?;
+    let rigs: Vec<u64> = (1..=order.lots).collect();
+    let days = pool::map(&rigs, LOTS_AT_ONCE, |rig| {
+        let db = folder.path().join(format!("{rig}.db"));
+        calibrate(order, &db, *rig, None)?;
+        let day = |day| read(&calibrate(order, &db, *rig, Some(rig * 1_000_000 + day))?);
+        (1..=order.parts)
+            .map(day)
+            .collect::<anyhow::Result<Vec<Day>>>()
+    })?;
+    Ok(report(order, &days.concat()))
 }
 
 fn calibrate(order: &Order, db: &Path, rig: u64, noise: Option<u64>) -> anyhow::Result<String> {
-    let mut command = Command::new(&order.program);
-    command.arg("--config").arg(&order.config).arg("--db");
-    command
-        .arg(db)
-        .args(["--log", "error", "calibrate", "--sim", "--json"]);
-    command.args(["--recipe", &order.recipe, "--seed", &rig.to_string()]);
-    if let Some(world) = &order.world {
-        command.arg("--world").arg(world);
-    }
+    let mut command = order.rig_command("calibrate", db, rig);
     if let Some(noise) = noise {
         command.args(["--verify", "--fault", &format!("noise_seed={noise}")]);
     }
-    let done = command.output().context("calibrate")?;
-    if !matches!(done.status.code(), Some(0 | 1)) {
-        bail!("rig {rig}: {}", String::from_utf8_lossy(&done.stderr));
-    }
+    let done = finished(&mut command, &[0, 1]).with_context(|| format!("rig {rig}"))?;
     Ok(String::from_utf8(done.stdout)?)
 }
 
@@ -104,32 +90,18 @@ fn report(order: &Order, days: &[Day]) -> Report {
             .iter()
             .filter_map(|day| day.get(*name))
             .map(|off| off * off);
-        (squares.sum::<f64>() / n).sqrt()
+        Some((squares.sum::<f64>() / n).sqrt())
     };
-    let factors = names.iter().map(|name| {
-        Figure::new(
-            format!("{name}: scatter against stated"),
-            days.len() as u64,
-            Some(scatter(name)),
-            "",
-        )
-    });
-    Report {
-        study: "verification",
-        about: format!("{} rigs on {} other days each", order.lots, order.parts),
-        groups: vec![vec![rate], factors.collect()],
-        notes: Vec::new(),
-        chart: Chart {
-            title: "scatter of a factor from day to day against its stated uncertainty".into(),
-            unit: "",
-            from: 0.0,
-            marks: vec![1.0],
-            bars: names
-                .iter()
-                .map(|name| (name.to_string(), Some(scatter(name))))
-                .collect(),
-        },
-    }
+    let factor = |name: &&String| {
+        let text = format!("{name}: scatter against stated");
+        Figure::new(text, days.len() as u64, scatter(name), "")
+    };
+    let factors = names.iter().map(factor).collect();
+    let title = "scatter of a factor from day to day against its stated uncertainty";
+    let bars = names.iter().map(|name| (name.to_string(), scatter(name)));
+    let chart = Chart::new(title, "", vec![1.0], bars);
+    let about = format!("{} rigs on {} other days each", order.lots, order.parts);
+    Report::new("verification", about, vec![vec![rate], factors], chart)
 }
 
 #[cfg(test)]

@@ -22,7 +22,6 @@ mod tests;
 mod world;
 
 use super::output::Report;
-use super::scatter::Scatter;
 use anyhow::Context;
 use lpm::{Answer, Model, Mover};
 use paper::Stepping;
@@ -50,10 +49,10 @@ const ROUNDING_MM: f64 = 1e-12;
 ///
 /// # Errors
 /// The scene could not be built (it always can).
-pub fn study() -> anyhow::Result<(Report, Scatter)> {
+pub fn study() -> anyhow::Result<(Report, String)> {
     let world = World::drawn(SEED, EACH);
     let scored = scored(&world)?;
-    let small = small_world::judged(SMALL_WORLD);
+    let small = small_world::judged(SMALL_WORLD)?;
     let about = format!(
         "{} bodies, a mover of {} parts, {} moves ({} each of {}), seed {SEED}",
         world.elements.len(),
@@ -62,20 +61,15 @@ pub fn study() -> anyhow::Result<(Report, Scatter)> {
         EACH,
         KINDS.join(", ")
     );
-    let report = Report {
-        study: "collision",
-        groups: vec![
-            speeds(&scored),
-            errors(&scored),
-            missed_by_kind(&scored),
-            refined(&world.ways),
-            bars(&scored, &small),
-        ],
-        notes: notes(),
-        chart: wrong_verdicts(&scored),
-        about,
-    };
-    Ok((report, speed_against_error(&scored)))
+    let groups = vec![
+        speeds(&scored),
+        errors(&scored),
+        missed_by_kind(&scored),
+        refined(&world.ways),
+        bars(&scored, &small),
+    ];
+    let report = Report::new("collision", about, groups, wrong_verdicts(&scored)).noted(notes());
+    Ok((report, speed_against_error(&scored).svg()))
 }
 
 fn scored(world: &World) -> anyhow::Result<Vec<Scored>> {
@@ -91,33 +85,34 @@ fn scored(world: &World) -> anyhow::Result<Vec<Scored>> {
 }
 
 fn methods(world: &World) -> anyhow::Result<Vec<Method>> {
-    let mut methods = Vec::new();
-    for step_mm in STEPS_MM {
+    let method = |name: &str, ask: Ask| Method {
+        name: name.to_owned(),
+        ask,
+    };
+    let stepping = |step_mm: f64| {
         let mut stepping = Stepping::new(&world.elements, &world.parts);
-        methods.push(Method {
-            name: format!("paper, step {step_mm} mm"),
-            ask: Box::new(move |way| stepping.first_contact(way, step_mm)),
-        });
-    }
+        let ask = Box::new(move |way: &world::Way| stepping.first_contact(way, step_mm));
+        method(&format!("paper, step {step_mm} mm"), ask)
+    };
     let boxes = |bodies: &[lpm::exact::Body]| bodies.iter().map(world::boxed).collect::<Vec<_>>();
-    methods.push(Method {
-        name: "swept boxes".to_owned(),
-        ask: swept(&boxes(&world.elements), &boxes(&world.parts))?,
-    });
-    methods.push(Method {
-        name: OURS.to_owned(),
-        ask: swept(&world.elements, &world.parts)?,
-    });
     let double = peer::double::Peer::new(&world.elements, &world.parts);
     let single = peer::single::Peer::new(&world.elements, &world.parts);
-    methods.push(Method {
-        name: "parry3d f64".to_owned(),
-        ask: Box::new(move |way| double.first_contact(way)),
-    });
-    methods.push(Method {
-        name: "parry3d f32".to_owned(),
-        ask: Box::new(move |way| single.first_contact(way)),
-    });
+    let mut methods: Vec<Method> = STEPS_MM.map(stepping).into();
+    methods.extend([
+        method(
+            "swept boxes",
+            swept(&boxes(&world.elements), &boxes(&world.parts))?,
+        ),
+        method(OURS, swept(&world.elements, &world.parts)?),
+        method(
+            "parry3d f64",
+            Box::new(move |way| double.first_contact(way)),
+        ),
+        method(
+            "parry3d f32",
+            Box::new(move |way| single.first_contact(way)),
+        ),
+    ]);
     Ok(methods)
 }
 
@@ -125,13 +120,9 @@ fn methods(world: &World) -> anyhow::Result<Vec<Method>> {
 fn swept(elements: &[lpm::exact::Body], parts: &[lpm::exact::Body]) -> anyhow::Result<Ask> {
     let mut model = Model::new();
     for (number, body) in elements.iter().enumerate() {
-        model
-            .insert(
-                &number.to_string(),
-                &body.shape(UNIT_MM),
-                &body.pose(UNIT_MM),
-            )
-            .context("building the scene of the study")?;
+        let (name, shape, pose) = (number.to_string(), body.shape(UNIT_MM), body.pose(UNIT_MM));
+        let inserted = model.insert(&name, &shape, &pose);
+        inserted.context("building the scene of the study")?;
     }
     let mover = Mover::new(&world::compound(parts)).context("building the mover of the study")?;
     Ok(Box::new(move |way| {

@@ -2,6 +2,7 @@
 //! moved past every other one by every whole move of -3 to 3: 16,003,008 moves, each held against the
 //! exact truth in verdict and time.
 
+use crate::pool;
 use lpm::exact::{Body, first_contact};
 use lpm::{Answer, Model, Move, Mover, Pose};
 
@@ -33,24 +34,13 @@ impl Judged {
 }
 
 /// Goes through the world with corners 0 to `most`, on all cores.
-pub fn judged(most: i64) -> Judged {
+///
+/// # Errors
+/// A block that the core refuses.
+pub fn judged(most: i64) -> anyhow::Result<Judged> {
     let blocks = every_block(most);
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let share = blocks.len().div_ceil(cores).max(1);
-    std::thread::scope(|scope| {
-        let started: Vec<_> = blocks
-            .chunks(share)
-            .map(|some| {
-                scope.spawn(|| {
-                    some.iter()
-                        .map(|it| against(it, &blocks, most))
-                        .fold(Judged::default(), Judged::and)
-                })
-            })
-            .collect();
-        let ended = started.into_iter().filter_map(|it| it.join().ok());
-        ended.fold(Judged::default(), Judged::and)
-    })
+    let judged = pool::map(&blocks, pool::cores(), |it| against(it, &blocks, most))?;
+    Ok(judged.into_iter().fold(Judged::default(), Judged::and))
 }
 
 /// Centres and half extents doubled, so that they are whole.
@@ -67,24 +57,14 @@ fn every_block(most: i64) -> Vec<Body> {
     blocks
 }
 
-fn against(element: &Body, movers: &[Body], most: i64) -> Judged {
+fn against(element: &Body, movers: &[Body], most: i64) -> anyhow::Result<Judged> {
     let mut model = Model::new();
     let mut counted = Judged::default();
-    if model
-        .insert(
-            "element",
-            &element.shape(0.5),
-            &Pose::at(element.pose(0.5).position),
-        )
-        .is_err()
-    {
-        return counted;
-    }
+    let pose = Pose::at(element.pose(0.5).position);
+    model.insert("element", &element.shape(0.5), &pose)?;
     let steps = || (-most..=most).map(|it| 2 * it);
     for mover in movers {
-        let Ok(body) = Mover::new(&mover.shape(0.5)) else {
-            continue;
-        };
+        let body = Mover::new(&mover.shape(0.5))?;
         let runs = steps().flat_map(|x| steps().flat_map(move |y| steps().map(move |z| [x, y, z])));
         for run in runs {
             let order = Move {
@@ -100,7 +80,7 @@ fn against(element: &Body, movers: &[Body], most: i64) -> Judged {
             counted = counted.and(compared(first_contact(element, mover, run), found));
         }
     }
-    counted
+    Ok(counted)
 }
 
 fn compared(truth: Option<f64>, found: Option<f64>) -> Judged {

@@ -6,7 +6,7 @@ use super::score::quantile;
 use super::small_world::{Judged, judged};
 use super::world::{Way, World, thinner};
 use super::*;
-use crate::scatter::Point;
+use crate::scatter::{Point, Scatter};
 use lpm::exact::{Body, first_contact};
 
 const MM: i64 = 1024;
@@ -98,7 +98,7 @@ fn the_smallest_world_is_judged_without_a_wrong_answer() {
         moves: 27 * 27 * 125,
         ..Judged::default()
     };
-    assert_eq!(judged(2), expected);
+    assert_eq!(judged(2).unwrap(), expected);
 }
 
 #[test]

@@ -6,10 +6,9 @@
 //! needle of half a millimetre that reaches beyond the fingers. Moves: jogs of 5 mm, descents, 300 mm beside each other, ways across the
 //! whole plate, and passes that graze one body by 0 to 1 mm. Everything follows from one seed.
 
+use crate::dice::Dice;
 use lpm::exact::{Body, Form, UPRIGHT, first_contact};
 use lpm::{Move, Pose, Shape};
-use rand_xoshiro::SplitMix64;
-use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 /// Millimetres of a unit: a power of two, so that every number is exact in `f32` and `f64`.
 pub const UNIT_MM: f64 = 1.0 / 1024.0;
@@ -79,7 +78,7 @@ pub struct World {
 impl World {
     /// Draws everything; `each` moves of every kind.
     pub fn drawn(seed: u64, each: usize) -> World {
-        let mut dice = Dice(SplitMix64::seed_from_u64(seed));
+        let mut dice = Dice::new(seed);
         let (elements, edge, top) = stacks(&mut dice);
         let parts = gripper();
         let mut world = World {
@@ -117,7 +116,7 @@ impl World {
             }
             "local" => {
                 let from = place(top / 2, top);
-                let (x, y) = dice.direction();
+                let (x, y) = direction(dice);
                 (from, [300 * x * MM / 13, 300 * y * MM / 13, 0])
             }
             "traverse" => {
@@ -133,17 +132,10 @@ impl World {
 
     /// Past one element on a tangent, with a gap or an overlap of up to a millimetre.
     fn grazing(&self, dice: &mut Dice) -> ([i64; 3], [i64; 3]) {
-        let element = &self.elements[dice.within(0, self.elements.len() as i64 - 1) as usize];
-        let part = &self.parts[dice.within(0, self.parts.len() as i64 - 1) as usize];
-        let deltas = [0, 1, 4, 16, 64, 256, MM];
-        let delta =
-            deltas[dice.within(0, 6) as usize] * if dice.within(0, 1) == 0 { 1 } else { -1 };
+        let (element, part) = (dice.one(&self.elements), dice.one(&self.parts));
+        let delta = dice.one(&[0, 1, 4, 16, 64, 256, MM]) * dice.one(&[1, -1]);
         let (a, b) = (reach(element), reach(part));
-        let (across, along) = if dice.within(0, 1) == 0 {
-            (0, 1)
-        } else {
-            (1, 0)
-        };
+        let (across, along) = *dice.one(&[(0, 1), (1, 0)]);
         let mut from = [0, 1, 2].map(|axis| element.centre[axis] - part.centre[axis]);
         from[across] += a[across] + b[across] + delta;
         from[along] -= 25 * MM;
@@ -227,20 +219,16 @@ pub fn reach(body: &Body) -> [i64; 3] {
     }
 }
 
-/// Whether the boxes of both meet during the run.
+/// Returns whether the boxes of both meet during the run.
 fn boxes_meet(element: &Body, part: &Body, run: [i64; 3]) -> bool {
-    let upright = |body: &Body| Body::block(body.centre, reach(body));
-    first_contact_of_boxes(&upright(element), &upright(part), run)
-}
-
-fn first_contact_of_boxes(element: &Body, part: &Body, run: [i64; 3]) -> bool {
-    // A quick no before the slabs: most of the scene is far away.
+    let (a, b) = (reach(element), reach(part));
+    // Most of the scene is far away: a comparison per axis spares the exact test of the boxes.
     let far = (0..3).any(|axis| {
-        let apart = part.centre[axis] - element.centre[axis];
-        let sum = reach(element)[axis] + reach(part)[axis];
+        let (apart, sum) = (part.centre[axis] - element.centre[axis], a[axis] + b[axis]);
         apart + run[axis].min(0) > sum || apart + run[axis].max(0) < -sum
     });
-    !far && first_contact(element, part, run).is_some()
+    let (a, b) = (Body::block(element.centre, a), Body::block(part.centre, b));
+    !far && first_contact(&a, &b, run).is_some()
 }
 
 /// Elements, length of an edge of the plate, height of the highest stack.
@@ -282,7 +270,7 @@ fn standing(dice: &mut Dice, centre: [i64; 3], half_height: i64) -> Body {
             centre,
             form: Form::Block {
                 half: [x, y, half_height],
-                rotation: TURNS[dice.within(0, 3) as usize],
+                rotation: *dice.one(&TURNS),
             },
         },
         9 => Body::block(centre, [dice.within(MM / 20, MM / 4), y, half_height]),
@@ -303,22 +291,12 @@ fn gripper() -> Vec<Body> {
     ]
 }
 
-/// A small generator, so that the study is the same on every machine.
-struct Dice(SplitMix64);
-
-impl Dice {
-    /// A whole number, both ends included.
-    fn within(&mut self, low: i64, high: i64) -> i64 {
-        low + (self.0.next_u64() % (high - low + 1) as u64) as i64
-    }
-
-    /// A direction whose length is 13 exactly.
-    fn direction(&mut self) -> (i64, i64) {
-        let (x, y) = [(13, 0), (0, 13), (5, 12), (12, 5)][self.within(0, 3) as usize];
-        let signs = self.within(0, 3);
-        (
-            if signs & 1 == 0 { x } else { -x },
-            if signs & 2 == 0 { y } else { -y },
-        )
-    }
+/// Draws a direction whose length is 13 exactly.
+fn direction(dice: &mut Dice) -> (i64, i64) {
+    let (x, y) = *dice.one(&[(13, 0), (0, 13), (5, 12), (12, 5)]);
+    let signs = dice.within(0, 3);
+    (
+        if signs & 1 == 0 { x } else { -x },
+        if signs & 2 == 0 { y } else { -y },
+    )
 }

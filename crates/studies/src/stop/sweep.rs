@@ -1,7 +1,7 @@
 //! Where the stops of a lot fall, and the script that presses them.
 
 use super::LATE_MS;
-use crate::fleet::Order;
+use crate::order::Order;
 
 /// Parts from one stop to the next: two go to retest, and the line is in step again.
 const PARTS_BETWEEN: u64 = 5;

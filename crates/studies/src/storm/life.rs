@@ -3,6 +3,7 @@
 
 use super::operator::{Operator, Said};
 use super::weather::Life;
+use crate::dice::Dice;
 use anyhow::Context;
 use app::controls::Controls;
 use app::exit::Exit;
@@ -107,7 +108,7 @@ impl Shop<'_> {
         lot: &str,
         life: &Life,
         calibration: Option<Calibration>,
-        whims: super::dice::Dice,
+        whims: Dice,
     ) -> anyhow::Result<Lived> {
         self.rig.advance(self.rig.now_us() + life.pause_us);
         let began_us = self.rig.now_us();
@@ -131,7 +132,7 @@ impl Shop<'_> {
         &self,
         (lot, purpose, source): (&str, Purpose, RigSource),
         life: &Life,
-        whims: Option<super::dice::Dice>,
+        whims: Option<Dice>,
         outer: &mut dyn Subscriber,
     ) -> anyhow::Result<(End, RigTime, Vec<Said>)> {
         let mut builder = tokio::runtime::Builder::new_current_thread();

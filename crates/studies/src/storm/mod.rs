@@ -9,7 +9,6 @@
 //! A seed that breaks a rule is printed with what was broken, the last lines of its trace, and the command that
 //! shows it again: the same seed gives the same trace, bit for bit.
 
-mod dice;
 mod judge;
 mod life;
 mod operator;
@@ -18,11 +17,11 @@ mod weather;
 
 use super::chart::Chart;
 use super::figure::{Bar, Figure};
-use super::fleet::{Folder, Order};
+use super::order::Order;
 use super::output::Report;
+use super::pool;
 use anyhow::Context;
 use app::exit::Exit;
-use app::progress::{PIECES, progress};
 use config::{Plant, load_recipe};
 use history::{Archive, Filter};
 use judge::Case;
@@ -30,10 +29,11 @@ use life::{End, Shop};
 use machine::dut::Calibration;
 use machine::dut::Recipe;
 use rigsim::{Options, SharedRig};
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
+use tempfile::TempDir;
+use tracing::subscriber::{NoSubscriber, with_default};
 use units::Span;
 use weather::{CEASES_US, Life, RIGS, Weather};
 
@@ -90,7 +90,7 @@ struct Sea<'a> {
     order: &'a Order,
     plant: Plant,
     recipe: Arc<Recipe>,
-    folder: Folder,
+    folder: TempDir,
     calibrations: [OnceLock<Calibration>; RIGS as usize],
 }
 
@@ -112,8 +112,8 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
 
 impl<'a> Sea<'a> {
     fn new(order: &'a Order) -> anyhow::Result<Self> {
-        let folder = Folder::new()?;
-        std::fs::write(folder.0.join("world.toml"), weather::WORLD)?;
+        let folder = TempDir::new()?;
+        std::fs::write(folder.path().join("world.toml"), weather::WORLD)?;
         Ok(Self {
             order,
             plant: Plant::load(&order.config)?,
@@ -123,44 +123,22 @@ impl<'a> Sea<'a> {
         })
     }
 
-    /// Every seed, on as many threads as the machine has.
+    /// Runs every seed, on all cores.
     fn all(&self, seeds: &[u64]) -> anyhow::Result<Vec<Outcome>> {
-        let next = AtomicU64::new(0);
-        let done: Mutex<Vec<anyhow::Result<Outcome>>> = Mutex::new(Vec::new());
-        let bar = progress(Some(seeds.len() as u64), PIECES);
-        let worker = || {
-            // Alarms are what a storm is made of; nobody wants to read them as they come.
-            tracing::subscriber::with_default(tracing::subscriber::NoSubscriber::new(), || {
-                while let Some(seed) = usize::try_from(next.fetch_add(1, Ordering::Relaxed))
-                    .ok()
-                    .and_then(|place| seeds.get(place))
-                {
-                    let outcome = self.one(*seed).with_context(|| format!("seed {seed}"));
-                    bar.inc(1);
-                    let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
-                    done.push(outcome);
-                }
-            });
-        };
-        std::thread::scope(|scope| {
-            for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
-                scope.spawn(worker);
-            }
-        });
-        bar.finish_and_clear();
-        let done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let mut outcomes = done.into_iter().collect::<anyhow::Result<Vec<_>>>()?;
-        outcomes.sort_by_key(|one| one.seed);
-        Ok(outcomes)
+        // The report counts the alarms of a storm: a log line for each would bury it.
+        let quiet = |seed| with_default(NoSubscriber::new(), || self.one(seed));
+        pool::map(seeds, pool::cores(), |seed| {
+            quiet(*seed).with_context(|| format!("seed {seed}"))
+        })
     }
 
     fn one(&self, seed: u64) -> anyhow::Result<Outcome> {
-        let folder = self.folder.0.join(seed.to_string());
+        let folder = self.folder.path().join(seed.to_string());
         std::fs::create_dir(&folder)?;
         let case = self.case(seed, &folder.join("history.db"))?;
         std::fs::remove_dir_all(&folder)?;
         let (broken, trace) = (case.broken(), trace::lines(&case));
-        let digest = trace::digest(trace.iter());
+        let digest = trace::digest(&trace);
         let is_shown = !broken.is_empty() || self.order.seed.is_some();
         Ok(Outcome {
             seed,
@@ -199,16 +177,10 @@ impl<'a> Sea<'a> {
                 killed_after_us: None,
                 pause_us,
             };
-            lives.push(shop.live(
-                &format!("calm-{n}"),
-                &life,
-                calibration.clone(),
-                whims.apart(),
-            )?);
-            if lives
-                .last()
-                .is_some_and(|life| life.end == End::Exit(Exit::Done))
-            {
+            let lot = format!("calm-{n}");
+            lives.push(shop.live(&lot, &life, calibration.clone(), whims.apart())?);
+            let last = lives.last();
+            if last.is_some_and(|life| life.end == End::Exit(Exit::Done)) {
                 break;
             }
         }
@@ -259,7 +231,7 @@ impl<'a> Sea<'a> {
     }
 
     fn rig(&self, seed: u64, golden: bool, faults: &[String]) -> anyhow::Result<SharedRig> {
-        let storms: PathBuf = self.folder.0.join("world.toml");
+        let storms = self.folder.path().join("world.toml");
         Ok(rigsim::build(&Options {
             config_dir: self.order.config.clone(),
             world: Some(self.order.world.clone().unwrap_or(storms)),
@@ -286,12 +258,12 @@ impl<'a> Sea<'a> {
 
 fn report(order: &Order, outcomes: &[Outcome], minutes: f64) -> Report {
     let n = outcomes.len() as u64;
-    let broken: Vec<&Outcome> = outcomes.iter().filter(|it| !it.broken.is_empty()).collect();
+    let broken = outcomes.iter().filter(|it| !it.broken.is_empty()).count() as u64;
     let sum = |of: fn(&Counts) -> u64| outcomes.iter().map(|it| of(&it.counts)).sum::<u64>();
     let hours = sum(|it| it.rig_us) as f64 / 3.6e9;
     let lives = sum(|it| it.lives);
     let about = |name: &str, of: u64, count: u64| Figure::count(name, of, Some(count));
-    let rule = Figure::count("seeds that broke a rule", n, Some(broken.len() as u64));
+    let rule = Figure::count("seeds that broke a rule", n, Some(broken));
     let counts = vec![
         about("kills of the controller", lives, sum(|it| it.kills)),
         about("lots completed", lives, sum(|it| it.completed)),
@@ -303,34 +275,17 @@ fn report(order: &Order, outcomes: &[Outcome], minutes: f64) -> Report {
     ];
     let per_minute = Some(hours / minutes);
     let pace = Figure::new("virtual hours per minute of wall time", n, per_minute, "h");
-    let digests: Vec<String> = outcomes
-        .iter()
-        .map(|it| format!("{:016x}", it.digest))
-        .collect();
-    let digest = trace::digest(digests.iter());
+    let digests = outcomes.iter().map(|it| format!("{:016x}", it.digest));
+    let digest = trace::digest(digests);
     let mut notes = vec![format!("digest of all traces: {digest:016x}")];
     let shows = |it: &&Outcome| order.seed.is_some() || !it.broken.is_empty();
-    notes.extend(
-        outcomes
-            .iter()
-            .filter(shows)
-            .take(SHOWN)
-            .map(|it| shown(order, it)),
-    );
+    let worth = outcomes.iter().filter(shows).take(SHOWN);
+    notes.extend(worth.map(|it| shown(order, it)));
     let alarms = |it: &Outcome| (format!("seed {}", it.seed), Some(it.counts.alarms as f64));
-    Report {
-        study: "storm",
-        about: order.about(),
-        groups: vec![vec![rule.bar(Bar::AtMost(0.0))], counts, vec![pace]],
-        notes,
-        chart: Chart {
-            title: format!("alarms by seed: {}", order.about()),
-            unit: "",
-            from: 0.0,
-            marks: Vec::new(),
-            bars: outcomes.iter().take(40).map(alarms).collect(),
-        },
-    }
+    let title = format!("alarms by seed: {}", order.about());
+    let chart = Chart::new(title, "", Vec::new(), outcomes.iter().take(40).map(alarms));
+    let groups = vec![vec![rule.bar(Bar::AtMost(0.0))], counts, vec![pace]];
+    Report::new("storm", order.about(), groups, chart).noted(notes)
 }
 
 fn shown(order: &Order, it: &Outcome) -> String {

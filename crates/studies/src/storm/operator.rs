@@ -2,7 +2,7 @@
 //! again whatever state it is in. Ends the program when the lot is complete, or when patience is at its end, and ends
 //! it at once when that takes too long.
 
-use super::dice::Dice;
+use crate::dice::Dice;
 use bus::Pace;
 use machine::station::orders::JOGS;
 use machine::station::packml::State;

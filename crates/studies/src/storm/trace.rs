@@ -54,9 +54,12 @@ pub fn last(lines: &[String]) -> &[String] {
 }
 
 /// FNV-1a over all bytes: equal traces, equal digests.
-pub fn digest<'a>(lines: impl Iterator<Item = &'a String>) -> u64 {
-    let bytes = lines.flat_map(|line| line.bytes());
-    bytes.fold(0xCBF2_9CE4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3)
-    })
+pub fn digest(lines: impl IntoIterator<Item = impl AsRef<[u8]>>) -> u64 {
+    let hash = |hash: u64, line: &[u8]| {
+        line.iter().fold(hash, |hash, byte| {
+            (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01B3)
+        })
+    };
+    let lines = lines.into_iter();
+    lines.fold(0xCBF2_9CE4_8422_2325, |sum, line| hash(sum, line.as_ref()))
 }

@@ -3,7 +3,7 @@
 //! Everything that strikes has struck, or has ended, [`CEASES_US`] after the start; what still waits for its part
 //! is called off then. The lives after that are calm.
 
-use super::dice::Dice;
+use crate::dice::Dice;
 use machine::rig::wiring::Wiring;
 
 /// Rigs that the seeds share; each is calibrated once.

@@ -33,6 +33,11 @@ impl Dice {
         from + self.below(to - from)
     }
 
+    /// From `low` to `high`, both included.
+    pub fn within(&mut self, low: i64, high: i64) -> i64 {
+        low + self.below((high - low + 1) as u64) as i64
+    }
+
     /// One of several.
     pub fn one<'a, T>(&mut self, of: &'a [T]) -> &'a T {
         let place = self.below(of.len() as u64);
