@@ -1,4 +1,5 @@
-//! Outcome of the parts: good parts rejected, bad parts passed, rows that name another bin than the one the part lies in.
+//! Outcome of the parts: good parts rejected, bad parts passed, rows that name a bin in which the part does not lie; and
+//! the study `sorting`, which shows them over many lots.
 
 use super::chart::Chart;
 use super::exception;
@@ -11,7 +12,7 @@ use std::collections::BTreeMap;
 /// Good parts that make one lot of the bar "no good part rejected in 98 of 100".
 const GOOD_PARTS_OF_A_LOT: usize = 100;
 
-/// The bin a defect belongs to; none for a defect that is not in the table of the rig.
+/// Returns the bin of the cause of a defect; `None` for a defect that the rig does not know.
 pub fn bin_of(defect: &str) -> Option<&'static str> {
     Some(match defect {
         "open_coil" | "shorted_turns" | "wrong_coil" => "coil",
@@ -41,11 +42,11 @@ pub fn outcome(lots: &[Lot]) -> Vec<Figure> {
     let (good, beyond): (Vec<&Part>, Vec<&Part>) = lots
         .iter()
         .flat_map(Lot::good)
-        .partition(|part| part.deserves_to_pass());
+        .partition(|part| part.is_conforming());
     let all: Vec<&Part> = lots.iter().flat_map(|lot| &lot.parts).collect();
     let rejected: Vec<bool> = good.iter().map(|part| part.verdict == "fail").collect();
     let voids = good.iter().filter(|part| part.verdict == "void").count() as u64;
-    let (clean, hundreds) = lots_without(&rejected);
+    let (clean, hundreds) = lots_without_reject(&rejected);
     let count = |is: fn(&Part) -> bool| all.iter().filter(|part| is(part)).count() as u64;
     let (n, n_good) = (all.len() as u64, good.len() as u64);
     let rejects = rejected.iter().filter(|it| **it).count() as u64;
@@ -61,7 +62,7 @@ pub fn outcome(lots: &[Lot]) -> Vec<Figure> {
         .bar(Bar::AtLeast(98.0)),
         Figure::new("voids of good parts", n_good, percent(voids, n_good), "%")
             .bar(Bar::Below(0.5)),
-        beyond_a_limit(&beyond),
+        out_of_limits(&beyond),
         Figure::none(
             "defective parts passed",
             count(|part| !part.is_good()),
@@ -70,14 +71,14 @@ pub fn outcome(lots: &[Lot]) -> Vec<Figure> {
         Figure::none(
             "rows whose bin is not where the part is",
             n,
-            count(|part| !part.is_where_it_says()),
+            count(|part| !part.is_in_named_bin()),
         ),
         Figure::none("parts without a row", n, unrecorded),
     ]
 }
 
-/// Parts without a defect that are truly beyond a limit, and how many of them passed.
-fn beyond_a_limit(parts: &[&Part]) -> Figure {
+/// Counts parts without a defect whose true value lies beyond a limit, and those of them that passed.
+fn out_of_limits(parts: &[&Part]) -> Figure {
     let passed = parts.iter().filter(|part| part.has_passed()).count();
     let n = parts.len() as u64;
     Figure::count("no defect, but truly beyond a limit", n, Some(n))
@@ -99,7 +100,7 @@ pub fn machine(lots: &[Lot]) -> Vec<Figure> {
     ]
 }
 
-/// One figure per defect: percent that went to the bin of its table.
+/// Returns one figure per defect: the share of its parts that went to the bin of the defect, percent.
 pub fn defects(lots: &[Lot]) -> Vec<Figure> {
     let mut seen: BTreeMap<&str, (u64, u64)> = BTreeMap::new();
     for part in lots.iter().flat_map(|lot| &lot.parts) {
@@ -118,9 +119,9 @@ pub fn defects(lots: &[Lot]) -> Vec<Figure> {
     seen.into_iter().map(row).collect()
 }
 
-/// Lots of 100 in the order of production, and how many are without a reject. A rest that does not fill a
-/// lot counts only when there is nothing else.
-pub fn lots_without(rejected: &[bool]) -> (u64, u64) {
+/// Cuts the parts into lots of 100 in the order of production and returns the number of lots without a reject and of all
+/// lots. Parts that do not fill a lot count only when there is no other lot.
+pub fn lots_without_reject(rejected: &[bool]) -> (u64, u64) {
     let size = GOOD_PARTS_OF_A_LOT.min(rejected.len()).max(1);
     let lots = rejected.chunks_exact(size);
     let clean = lots.clone().filter(|lot| !lot.contains(&true)).count();

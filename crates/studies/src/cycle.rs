@@ -1,8 +1,7 @@
 //! Rig time of a test and of a cycle, and where it goes.
 //!
-//! A cycle runs from nest exit to nest exit. What of it is not the test is mechanics; what of the test
-//! is not told by the rows is `rest`. Shares are means over parts that have both times, so the pieces add
-//! up to the mean cycle.
+//! A cycle runs from nest exit to nest exit. The cycle without the test is mechanics; the part of the test that the rows
+//! do not name is `rest`. Shares are means over parts that have both times, so that the pieces add up to the mean cycle.
 
 use super::bins;
 use super::chart::Chart;
@@ -17,18 +16,18 @@ use quality::spread::median;
 
 /// Longest test of a good part, seconds of rig time.
 const TEST_S: f64 = 0.85;
-/// The law that places the fine ramps ([`machine::dut::em_relay::overshoot`]) has six terms, and golden parts are chosen to lie far apart:
-/// before as many parts of a lot have taught it, it is sure of so little that ramps are long. That bounds the first.
-const TEACH: usize = 6;
-/// Longest test of any part: a defect may ask for another ramp.
+/// Parts after which the overshoot model ([`machine::dut::em_relay::overshoot`]) places the fine ramps well. It has six
+/// terms, and the reference parts lie far apart: with fewer parts its uncertainty makes the ramps of a lot long.
+const LEARNING_PARTS: usize = 6;
+/// Longest test of any part, seconds of rig time: a defect may need another ramp.
 const ANY_TEST_S: f64 = 1.0;
-/// Mean test of a recipe that measures adaptively.
+/// Longest mean test of a recipe that measures adaptively, seconds of rig time.
 const ADAPTIVE_MEAN_S: f64 = 0.60;
-/// Mean test against the bound of [`bound`].
+/// Greatest ratio of the mean test to the bound of [`bound`].
 const RATIO: f64 = 1.15;
 /// Longest cycle with overlap, seconds of rig time.
 const CYCLE_S: f64 = 2.5;
-/// Pieces of a test as the rows name them, and as a person reads them.
+/// Pieces of a test: key in the rows and name in the report.
 const PIECES: [(&str, &str); 4] = [
     ("bus_s", "bus"),
     ("settling_s", "settling"),
@@ -39,7 +38,7 @@ const PIECES: [(&str, &str); 4] = [
 /// Runs the lots and makes the report.
 ///
 /// # Errors
-/// A lot that could not be run.
+/// A lot that did not run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let lots = order.run_all()?;
     let adaptive = order.recipe.ends_with("-adaptive");
@@ -58,8 +57,8 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     Ok(Report::new("cycle", about, groups, chart).noted(notes))
 }
 
-/// Longest, mean and median of tests and cycles; tests of good parts also apart, as far as their lot had taught the law of
-/// its ramps.
+/// Returns longest, mean and median of tests and cycles; for good parts also those of the first [`LEARNING_PARTS`] of a
+/// lot and of the parts after them.
 pub fn times(lots: &[Lot]) -> Vec<Figure> {
     let good = |from: usize, to: usize| -> Vec<f64> {
         let of = move |lot| Lot::good(lot).skip(from).take(to - from);
@@ -79,11 +78,15 @@ pub fn times(lots: &[Lot]) -> Vec<Figure> {
         .flat_map(Lot::good)
         .filter_map(|it| it.cycle_s)
         .collect();
-    let first = format!("  of the first {TEACH} of a lot, which teach");
+    let first = format!("  of the first {LEARNING_PARTS} of a lot, which teach");
     vec![
         longest("test, longest of good parts", TEST_S, &good(0, usize::MAX)),
-        longest(first, TEST_S, &good(0, TEACH)),
-        longest("  of those after them", TEST_S, &good(TEACH, usize::MAX)),
+        longest(first, TEST_S, &good(0, LEARNING_PARTS)),
+        longest(
+            "  of those after them",
+            TEST_S,
+            &good(LEARNING_PARTS, usize::MAX),
+        ),
         longest(
             "test, longest of all parts",
             ANY_TEST_S,
@@ -108,8 +111,8 @@ fn longest(name: impl Into<String>, bar_s: f64, times: &[f64]) -> Figure {
         .bar(Bar::AtMost(bar_s))
 }
 
-/// Mean test of good parts against the same acts on a bus that takes no time: what conversion rate, settling
-/// and the contact events themselves leave.
+/// Compares the mean test of good parts with the same acts on a bus that takes no time, where conversion, settling and
+/// the contact events alone remain.
 pub fn bound(lots: &[Lot], mean_bar: f64) -> Vec<Figure> {
     let tests: Vec<(f64, f64)> = lots
         .iter()
@@ -127,7 +130,7 @@ pub fn bound(lots: &[Lot], mean_bar: f64) -> Vec<Figure> {
     ]
 }
 
-/// Mean seconds of each piece of a cycle.
+/// Returns the mean seconds of each piece of a cycle.
 pub fn pieces(lots: &[Lot]) -> Vec<Figure> {
     let parts: Vec<(&Part, f64, f64)> = lots
         .iter()

@@ -1,8 +1,8 @@
 //! Speed of the history on a made-up file as large as weeks of production.
 //!
-//! The file is written by `history generate` into a folder of its own and thrown away with it. Every
-//! query is asked as the program asks it, rows read to the end. Wall times; the file was just written, so
-//! most of it is in the page cache of the system, as that of a plant's latest weeks is.
+//! The generator of `history generate` writes the file into a temporary directory. Every query runs as the program runs
+//! it and reads its rows to the end. All times are wall times. Most of the new file is in the page cache of the system, as
+//! the latest weeks of a plant are.
 
 use super::chart::Chart;
 use super::figure::{Bar, Figure};
@@ -20,21 +20,21 @@ use std::process::Stdio;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// Parts of the sheet that is exported.
+/// Parts of the greater exported sheet.
 const SHEET: u64 = 100_000;
-/// Parts of the lesser sheet that its memory is compared with.
+/// Parts of the lesser exported sheet; its memory is the comparison.
 const LESSER: u64 = 10_000;
-/// Parts written one by one.
+/// Parts written in a transaction each.
 const SINGLE: u64 = 500;
-/// Filters asked.
+/// Number of filter queries.
 const FILTERS: usize = 300;
-/// Between two looks at the memory of the export.
+/// Interval between two readings of the memory of the export.
 const LOOK: Duration = Duration::from_millis(5);
 
-/// Writes the file, asks everything of it and makes the report.
+/// Writes the file, runs every query and makes the report.
 ///
 /// # Errors
-/// A file that could not be written or read.
+/// A file that cannot be written or read.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let folder = TempDir::new()?;
     let db = folder.path().join("history.db");
@@ -85,7 +85,7 @@ fn timed<T>(spent: &mut Vec<f64>, work: impl FnOnce() -> T) -> T {
     result
 }
 
-/// A rig records its parts alone: one transaction and one flush each.
+/// Writes parts as a rig does: one transaction and one flush for each.
 fn one_by_one(db: &Path) -> anyhow::Result<Figure> {
     let mut store = Store::open(db, &Identity::of_this_program())?;
     store.begin_lot(&LotRecord {
@@ -118,7 +118,7 @@ fn measured(parameter: &Parameter) -> history::MeasurementRecord {
     }
 }
 
-/// Lot, verdict and value range together; rejects over a wide range, good parts over a narrow one.
+/// Queries by lot, verdict and value range: rejects over a wide range, good parts over a narrow one.
 fn filters(archive: &Archive) -> anyhow::Result<Figure> {
     let lots = archive.lots(&Filter::default())?;
     let mut spent = Vec::new();
@@ -168,12 +168,12 @@ fn last_day(archive: &Archive) -> anyhow::Result<Figure> {
         .bar(Bar::AtMost(50.0)))
 }
 
-/// What SQLite itself takes to pass over the values that statistics are made of: nothing leaves it but a sum.
+/// Query that reads the values behind statistics inside SQLite and returns only their sum: the least time of a pass.
 const PLAIN: &str = "SELECT total(m.value) FROM measurement AS m
     JOIN parameter ON parameter.id = m.parameter_id
     WHERE parameter.key = ?1 AND m.population = 'lot'";
 
-/// A filter for which the packed values of whole runs are of no use.
+/// Returns a filter for which the history cannot use the packed values of whole runs.
 fn good() -> Filter {
     Filter {
         verdict: Some("pass".to_owned()),
@@ -181,7 +181,7 @@ fn good() -> Filter {
     }
 }
 
-/// Every parameter three times, from the query to the last figure; before each the plain pass over all values.
+/// Computes the statistics of every parameter three times, each after a plain pass over all values.
 fn stats(archive: &Archive, db: &Path, name: &str, filter: &Filter) -> anyhow::Result<Figure> {
     let plain = rusqlite::Connection::open(db)?;
     let mut passes = Vec::new();
@@ -202,7 +202,7 @@ fn stats(archive: &Archive, db: &Path, name: &str, filter: &Filter) -> anyhow::R
         .with("median_over_plain", ratio.map(|(ours, plain)| ours / plain)))
 }
 
-/// Spreadsheets of two sizes, each by a process of its own: time of the greater, memory of both.
+/// Exports spreadsheets of two sizes, each in a process of its own; returns time of the greater, memory of both.
 fn sheets(order: &Order, db: &Path) -> anyhow::Result<Vec<Figure>> {
     let (_, little) = exported(order, db, LESSER)?;
     let (wall, much) = exported(order, db, SHEET)?;
@@ -215,7 +215,7 @@ fn sheets(order: &Order, db: &Path) -> anyhow::Result<Vec<Figure>> {
     ])
 }
 
-/// Wall seconds, and peak of resident memory in MB where the system tells it (Linux).
+/// Exports a spreadsheet; returns wall seconds, and the peak of resident memory in MB on Linux.
 fn exported(order: &Order, db: &Path, parts: u64) -> anyhow::Result<(f64, Option<f64>)> {
     let from = Instant::now();
     let mut command = order.command(db, "warn");
@@ -242,7 +242,7 @@ fn peak_memory_mb(process: u32) -> Option<f64> {
     Some(kilobytes / 1024.0)
 }
 
-/// Milliseconds at the share `p`, with median and greatest beside it.
+/// Returns the quantile `p` of times in milliseconds, with median and 99 % quantile as further columns.
 fn times(name: &str, spent: &[f64], p: f64) -> Figure {
     let ordered = Ordered::of(spent);
     Figure::new(name, spent.len() as u64, ordered.quantile(p), "ms")

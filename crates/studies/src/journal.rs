@@ -37,7 +37,7 @@ pub struct Played {
     /// Entries of the journal, in order of time.
     pub entries: Vec<Entry>,
     /// Whether the story came to the end of its script.
-    pub whole: bool,
+    pub completed: bool,
 }
 
 /// Plays a script with `relayrig story`; its files go to `folder`.
@@ -64,6 +64,6 @@ pub fn play(order: &Order, folder: &Path, script: &str, seed: u64) -> anyhow::Re
             .collect::<Result<_, _>>()
             .with_context(|| format!("the journal of the story with seed {seed}"))?,
         text: String::from_utf8_lossy(&output.stdout).into_owned(),
-        whole: output.status.success(),
+        completed: output.status.success(),
     })
 }

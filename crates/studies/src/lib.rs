@@ -15,7 +15,6 @@
 //! integrates the relay model of the simulated rig.
 
 mod bins;
-mod chance;
 mod chart;
 mod coil;
 mod collision;
@@ -38,6 +37,7 @@ mod pace;
 mod parameters;
 mod path;
 mod pool;
+mod risk;
 mod scatter;
 mod stop;
 mod storm;

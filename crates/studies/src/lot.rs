@@ -1,8 +1,7 @@
-//! What one lot said about its parts, joined with what the parts really were.
+//! The rows of one lot, joined with the truth about its parts.
 //!
-//! Two files of one run are read: the rows of `run --json` and the truth of `--truth`, both one JSON
-//! object per line. They are joined by `seq`. Keys that are not known are passed over, so that either file
-//! may grow.
+//! [`Lot::read`] joins two files of one run by `seq`: the rows of `run --json` and the truth of `--truth`, both one JSON
+//! object per line. It ignores unknown keys, so that either file may grow.
 
 use anyhow::{Context, bail};
 use machine::dut::em_relay::Parameter;
@@ -11,16 +10,16 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
-/// One judged part.
+/// One judged part: its row, and its truth.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 pub struct Part {
     /// Order of entering the nest, from 1.
     pub seq: u64,
     /// `pass`, `fail` or `void`.
     pub verdict: String,
-    /// Where the row says the part went; empty when it never landed.
+    /// Bin that the row names; empty for a part that never landed.
     pub bin: String,
-    /// Why it did not pass.
+    /// Reasons for a verdict other than `pass`.
     #[serde(default)]
     pub reasons: Vec<String>,
     #[serde(default)]
@@ -31,21 +30,21 @@ pub struct Part {
     pub test_s: Option<f64>,
     /// Rig time between successive nest exits.
     pub cycle_s: Option<f64>,
-    /// Where the test time went: what to seconds.
+    /// Pieces of the test time: name of the piece to seconds of rig time.
     #[serde(default)]
     pub spent: BTreeMap<String, f64>,
-    /// Rig time by what it was spent on measuring: name of the stage to seconds.
+    /// Rig time of each stage of the test: name of the stage to seconds.
     #[serde(default)]
     pub stages: BTreeMap<String, f64>,
     /// True when a true value lies beyond a limit of the recipe, defect or not.
     #[serde(skip)]
-    pub is_beyond: bool,
-    /// What the part really was; none when the truth file has no such part.
+    pub is_out_of_limits: bool,
+    /// Truth about the part; `None` when the truth file has no such part.
     #[serde(skip)]
     pub truth: Option<Truth>,
 }
 
-/// What a part really was.
+/// Truth about a part.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 pub struct Truth {
     seq: u64,
@@ -55,7 +54,7 @@ pub struct Truth {
     values: BTreeMap<String, Value>,
 }
 
-/// What the recipe admits, by parameter.
+/// Range that the recipe admits, by parameter, in the unit of the parameter.
 pub type Admitted = Vec<(Parameter, RangeInclusive<f64>)>;
 
 impl Truth {
@@ -63,7 +62,7 @@ impl Truth {
         self.values.get(parameter.name())?.as_f64()
     }
 
-    fn is_beyond(&self, admitted: &[(Parameter, RangeInclusive<f64>)]) -> bool {
+    fn is_out_of_limits(&self, admitted: &[(Parameter, RangeInclusive<f64>)]) -> bool {
         let out = |(parameter, range): &(Parameter, RangeInclusive<f64>)| {
             self.value(*parameter)
                 .is_some_and(|value| !range.contains(&value))
@@ -72,14 +71,14 @@ impl Truth {
     }
 }
 
-/// A value beside its truth.
+/// A measured value and its truth, in the unit of the parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
-    /// As measured.
+    /// Measured value.
     pub value: f64,
-    /// Expanded, k = 2.
+    /// Expanded uncertainty, k = 2.
     pub uncertainty: Option<f64>,
-    /// As it was.
+    /// True value.
     pub truth: f64,
 }
 
@@ -104,12 +103,12 @@ impl Part {
         self.truth.is_some() && self.defect().is_none()
     }
 
-    /// True when there is no reason to reject it: no defect, and no true value beyond a limit.
-    pub fn deserves_to_pass(&self) -> bool {
-        self.is_good() && !self.is_beyond
+    /// Returns true for a part without a defect whose true values all lie within the limits.
+    pub fn is_conforming(&self) -> bool {
+        self.is_good() && !self.is_out_of_limits
     }
 
-    /// None when it was not measured, or the part never showed the quantity.
+    /// Returns value and truth of a parameter; `None` when the row has no value or the part has no true one.
     pub fn reading(&self, parameter: Parameter) -> Option<Reading> {
         let key = parameter.name();
         Some(Reading {
@@ -119,8 +118,8 @@ impl Part {
         })
     }
 
-    /// True when the row names the bin where the body came to rest.
-    pub fn is_where_it_says(&self) -> bool {
+    /// Returns true when the row names the bin where the body came to rest.
+    pub fn is_in_named_bin(&self) -> bool {
         self.landed_in() == Some(self.bin.as_str())
     }
 }
@@ -130,12 +129,12 @@ impl Part {
 pub struct Summary {
     /// Alarms raised.
     pub alarms: u64,
-    /// Writes to any EEPROM during the lot; none when nobody counted.
+    /// Writes to any EEPROM during the lot; `None` when the run did not count them.
     pub eeprom_writes: Option<u64>,
     /// Fingerprint of the bytes of each line.
     #[serde(default)]
     pub bytes: BTreeMap<String, String>,
-    /// Wall time by what it was spent on, seconds.
+    /// Wall time by activity, seconds.
     #[serde(default)]
     pub wall_profile: BTreeMap<String, f64>,
 }
@@ -165,10 +164,10 @@ enum Line {
 }
 
 impl Lot {
-    /// From the rows of `run --json` and the text of the truth file.
+    /// Reads a lot from the rows of `run --json` and the text of the truth file.
     ///
     /// # Errors
-    /// A line that is no such object, or a missing summary.
+    /// A line that does not parse, or rows without a summary.
     pub fn read(seed: u64, rows: &str, truth: &str) -> anyhow::Result<Self> {
         let mut known = BTreeMap::new();
         for it in lines::<Truth>("truth", truth) {
@@ -198,15 +197,15 @@ impl Lot {
         })
     }
 
-    /// Sets the true values against what the recipe admits.
-    pub fn hold_against(&mut self, admitted: &[(Parameter, RangeInclusive<f64>)]) {
+    /// Marks the parts with a true value outside its range.
+    pub fn mark_out_of_limits(&mut self, admitted: &[(Parameter, RangeInclusive<f64>)]) {
         for part in &mut self.parts {
             let truth = part.truth.as_ref();
-            part.is_beyond = truth.is_some_and(|it| it.is_beyond(admitted));
+            part.is_out_of_limits = truth.is_some_and(|it| it.is_out_of_limits(admitted));
         }
     }
 
-    /// Parts without a defect.
+    /// Returns the parts without a defect.
     pub fn good(&self) -> impl Iterator<Item = &Part> {
         self.parts.iter().filter(|part| part.is_good())
     }

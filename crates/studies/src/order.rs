@@ -79,7 +79,7 @@ impl Order {
         let wall_s = began.elapsed().as_secs_f64();
         let rows = String::from_utf8_lossy(&output.stdout);
         let mut lot = Lot::read(seed, &rows, &std::fs::read_to_string(&truth)?)?;
-        lot.hold_against(&self.admitted);
+        lot.mark_out_of_limits(&self.admitted);
         Ok(Lot {
             errors_logged: String::from_utf8_lossy(&output.stderr).lines().count() as u64,
             wall_s,

@@ -1,7 +1,7 @@
 //! Parts per second of wall time, and whether the same seed gives the same bytes.
 //!
-//! The same lot is run at least twice, one process at a time. The wall time is that of the whole
-//! process: start, calibration, golden parts and history included.
+//! The study runs the same lot at least twice, one process at a time. The wall time is that of the whole process, with
+//! start, calibration, reference parts and history.
 
 use super::bins;
 use super::chart::Chart;
@@ -13,7 +13,7 @@ use quality::Spread;
 use quality::spread::median;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Parts per second of wall time.
+/// Least parts per second of wall time.
 const PARTS_PER_SECOND: f64 = 50.0;
 /// Seed of every run.
 const SEED: u64 = 1;
@@ -21,7 +21,7 @@ const SEED: u64 = 1;
 /// Runs the lot several times and makes the report.
 ///
 /// # Errors
-/// A run that could not be made.
+/// A lot that did not run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let order = &Order {
         lots: order.lots.max(2),
@@ -62,15 +62,16 @@ fn rate(rates: &[f64]) -> Figure {
     .bar(Bar::AtLeast(PARTS_PER_SECOND))
 }
 
-/// Runs whose bytes differ from those of the run before; none when a run told no bytes, or was alone.
+/// Counts runs whose bytes differ from those of the run before; without a value when a run reports no bytes, or when
+/// there is only one run.
 pub fn same_bytes(lots: &[Lot]) -> Figure {
-    let told = lots.iter().all(|lot| !lot.summary.bytes.is_empty());
+    let have_bytes = lots.iter().all(|lot| !lot.summary.bytes.is_empty());
     let differ = lots
         .iter()
         .zip(lots.iter().skip(1))
         .filter(|(a, b)| a.summary.bytes != b.summary.bytes)
         .count();
-    let count = (told && lots.len() > 1).then_some(differ as u64);
+    let count = (have_bytes && lots.len() > 1).then_some(differ as u64);
     Figure::count(
         "repeats of a seed with other bytes",
         lots.len() as u64,
@@ -79,7 +80,7 @@ pub fn same_bytes(lots: &[Lot]) -> Figure {
     .bar(Bar::AtMost(0.0))
 }
 
-/// Mean wall seconds of every entry of the profiles, greatest first; empty without profiles.
+/// Returns the mean wall seconds of every entry of the profiles, greatest first; empty without profiles.
 pub fn profile(lots: &[Lot]) -> Vec<Figure> {
     let profiles = || lots.iter().map(|lot| &lot.summary.wall_profile);
     let names: BTreeSet<&String> = profiles().flat_map(BTreeMap::keys).collect();

@@ -1,9 +1,9 @@
 //! The critical path of a cycle, and how near the line comes to it.
 //!
-//! From nest exit to nest exit the nest is never free: the next part is pushed in, clamped while the pusher goes back,
-//! probed, tested, taken by the fingers while the probes go down, let go by the jaws and lifted. Each of these waits for the
-//! one before; everything else (escapement, the way to the bin and back, z down) happens beside them. The sum of their mean
-//! travel times and of the mean test is what no overlap can shorten.
+//! The nest is never free from nest exit to nest exit: the pusher pushes the next part in, the jaws clamp it while the
+//! pusher returns, the probes rise, the test runs, the fingers grip while the probes go down, the jaws open and z lifts
+//! the part. Each of these strokes waits for the one before; all others (escapement, the way to the bin and back, z down)
+//! overlap with them. No overlap can shorten the sum of the mean travel times of the path and the mean test.
 
 use super::figure::{self, Bar, Figure};
 use super::lot::{Lot, Part};
@@ -11,12 +11,12 @@ use super::order::Order;
 use rigsim::config::read_world;
 use rigsim::world::table::MechanismTable;
 
-/// Parts an hour at the default recipe.
+/// Least parts an hour at the default recipe.
 const PARTS_PER_HOUR: f64 = 1850.0;
-/// Share of the bound.
+/// Least share of the bound, as parts an hour.
 const SHARE: f64 = 0.95;
 
-/// Strokes of the path with their mean times, ms; of two that happen at once the longer one counts.
+/// Returns the strokes of the path with their mean times, ms; of two simultaneous strokes the longer one.
 fn strokes(mechanism: &MechanismTable) -> [(&'static str, f64); 6] {
     [
         ("path: pusher to the nest", mechanism.pusher_ms),
@@ -34,7 +34,7 @@ fn strokes(mechanism: &MechanismTable) -> [(&'static str, f64); 6] {
     ]
 }
 
-/// The path stroke by stroke, its sum, and parts an hour beside it.
+/// Returns the path stroke by stroke, its sum, and parts an hour.
 ///
 /// # Errors
 /// A world that cannot be read.

@@ -1,10 +1,10 @@
-//! The emergency stop pressed at every instant of a cycle and of homing, and how long outputs that move something stay on.
+//! Reaction time of motion outputs to the emergency stop, pressed at every instant of a cycle and of homing.
 //!
-//! Every lot is a story (`relayrig story`) in which the stop is pressed again and again, each time a little later after
-//! a part has left the nest, or after the reset of a line that was stopped in the middle of a test; released, cleared,
-//! reset and started anew. The journal of the simulated rig tells at its terminals when the contact opened and when the
-//! last output that moves something went off. The bound is derived from `rig.toml` and holds whatever one transaction
-//! meets; so every second lot runs with replies that come at the last moment.
+//! Every lot is a story (`relayrig story`) that presses the stop again and again, each time a little later after a part
+//! leaves the nest, or after the reset of a line that was stopped in the middle of a test; then it releases the stop,
+//! clears, resets and starts anew. The journal of the simulated rig gives the instants at which the contact opens and the
+//! last motion output goes off. The bound follows from `rig.toml` and holds for any delay or loss of one transaction;
+//! every second lot therefore runs with replies at the end of their timeout.
 
 mod reaction;
 mod sweep;
@@ -25,21 +25,21 @@ use std::path::Path;
 use sweep::Sweep;
 use tempfile::TempDir;
 
-/// Replies of every second lot come so much later, ms: what the allowance of `rig.toml` leaves, but for 3 ms.
+/// Delay of the replies in every second lot, ms: 3 ms less than `rig.toml` allows.
 const LATE_MS: f64 = 25.0;
-/// Classes of the chart.
+/// Number of bars of the chart.
 const CLASSES: usize = 20;
 
-/// One stop.
+/// One press of the emergency stop.
 #[derive(Debug, Clone, Copy)]
 struct Stop {
-    /// Seconds after the begin of what is swept.
+    /// Time since the begin of the swept interval, seconds.
     instant_s: f64,
-    /// Milliseconds from the contact to the last output off; none when nothing was on.
+    /// Time from the opening of the contact until the last motion output is off, milliseconds; `None` when none was on.
     reaction_ms: Option<f64>,
 }
 
-/// What the lots of one sweep result, with modules as they are or with late replies.
+/// Result of the lots of one sweep, with usual or with late replies.
 #[derive(Debug)]
 struct SweepResult {
     sweep: Sweep,
@@ -50,7 +50,7 @@ struct SweepResult {
 }
 
 impl SweepResult {
-    fn nothing(sweep: Sweep, slow: bool) -> Self {
+    fn empty(sweep: Sweep, slow: bool) -> Self {
         Self {
             sweep,
             slow,
@@ -72,18 +72,18 @@ impl SweepResult {
 /// Plays the lots and makes the report.
 ///
 /// # Errors
-/// A configuration that does not load, or a story that could not be played.
+/// A configuration that does not load, or a story that does not run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let plant = Plant::load(&order.config)?;
     let bound_ms = plant.wiring.longest_reaction().as_seconds() * 1e3;
     let folder = TempDir::new()?;
-    let of = |sweep| [false, true].map(|slow| SweepResult::nothing(sweep, slow));
+    let of = |sweep| [false, true].map(|slow| SweepResult::empty(sweep, slow));
     let mut all: Vec<SweepResult> = Sweep::ALL.into_iter().flat_map(of).collect();
     let lots = order.lots * Sweep::ALL.len() as u64;
     let bar = progress(Some(lots), PIECES);
     for result in &mut all {
         for lot in (u64::from(result.slow)..order.lots).step_by(2) {
-            played(order, folder.path(), &plant.wiring, lot, result)?;
+            play_lot(order, folder.path(), &plant.wiring, lot, result)?;
             bar.inc(1);
         }
     }
@@ -114,7 +114,7 @@ fn reaction(result: &SweepResult, bound_ms: f64) -> Figure {
         .bar(Bar::AtMost(bound_ms))
 }
 
-/// Worst reaction by the instant in the cycle.
+/// Draws the longest reaction over the instant in the cycle.
 fn chart(result: &SweepResult, bound_ms: f64) -> Chart {
     let width = result.sweep.span_s() / CLASSES as f64;
     let worst = |class: usize| {
@@ -128,7 +128,7 @@ fn chart(result: &SweepResult, bound_ms: f64) -> Chart {
     Chart::new(title, "ms", vec![bound_ms], bars)
 }
 
-fn played(
+fn play_lot(
     order: &Order,
     folder: &Path,
     wiring: &Wiring,
@@ -151,11 +151,11 @@ fn played(
             reaction_ms,
         }));
     result.touched += played.text.matches("BODIES TOUCHED").count() as u64;
-    result.unfinished += u64::from(!played.whole);
+    result.unfinished += u64::from(!played.completed);
     Ok(())
 }
 
-/// Bits that move something, by module.
+/// Returns the bits of motion outputs by name of the module.
 fn moving(wiring: &Wiring) -> BTreeMap<String, u16> {
     let mut bits = BTreeMap::new();
     for point in DigitalOut::ALL.iter().filter(|point| point.moves()) {

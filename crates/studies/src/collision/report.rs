@@ -1,14 +1,14 @@
-//! The report: what became of every move, as figures and plots.
+//! The report: results of all moves as figures and plots.
 
 use super::score::{Outcome, quantile};
-use super::small_world::Judged;
-use super::world::{KINDS, Way};
+use super::small_world::SmallWorldCounts;
+use super::world::{KINDS, TestMove};
 use super::{OURS, ROUNDING_MM};
 use crate::chart::Chart;
 use crate::figure::{Bar, Figure};
 use crate::scatter::{Point, Scatter};
 
-/// A method with what became of every move.
+/// A method with its results.
 pub(super) struct Scored {
     pub(super) name: String,
     pub(super) outcomes: Vec<Outcome>,
@@ -49,7 +49,7 @@ impl Scored {
         self.outcomes.iter().filter_map(|it| it.late_mm)
     }
 
-    /// The error, either way, that 99 of 100 contacts stay below, mm.
+    /// Returns the absolute error that 99 of 100 contacts stay below, mm.
     fn error_mm(&self) -> Option<f64> {
         quantile(&mut self.late_mm().map(f64::abs).collect::<Vec<_>>(), 0.99)
     }
@@ -67,7 +67,7 @@ fn ours(scored: &[Scored]) -> Option<&Scored> {
     scored.iter().find(|it| it.name == OURS)
 }
 
-/// Wall time of one move, and how many of ours fit into it.
+/// Returns the wall time of one move, and its ratio to the time of [`OURS`].
 pub(super) fn speeds(scored: &[Scored]) -> Vec<Figure> {
     let row = |it: &Scored| {
         let ratio = |of: &dyn Fn(&Scored) -> Option<f64>| Some(of(it)? / of(ours(scored)?)?);
@@ -110,10 +110,10 @@ pub(super) fn missed_by_kind(scored: &[Scored]) -> Vec<Figure> {
     scored.iter().map(row).collect()
 }
 
-/// What the scene did not need to have looked at.
-pub(super) fn refined(ways: &[Way]) -> Vec<Figure> {
+/// Returns the number of bodies near a move by kind: only these need an exact test.
+pub(super) fn bodies_near(moves: &[TestMove]) -> Vec<Figure> {
     let row = |kind: usize| {
-        let of_kind = ways.iter().filter(|it| it.kind == kind);
+        let of_kind = moves.iter().filter(|it| it.kind == kind);
         let mut near: Vec<f64> = of_kind.map(|it| it.near as f64).collect();
         let mean = near.iter().sum::<f64>() / near.len() as f64;
         let name = format!("bodies near a move: {}", KINDS[kind]);
@@ -124,7 +124,7 @@ pub(super) fn refined(ways: &[Way]) -> Vec<Figure> {
     (0..KINDS.len()).map(row).collect()
 }
 
-pub(super) fn bars(scored: &[Scored], small: &Judged) -> Vec<Figure> {
+pub(super) fn bars(scored: &[Scored], small: &SmallWorldCounts) -> Vec<Figure> {
     let ours = ours(scored);
     let moves = ours.map_or(0, Scored::moves);
     let zero = |name: &str, n: u64, count: Option<u64>| {
@@ -155,7 +155,7 @@ pub(super) fn notes() -> Vec<String> {
     vec![
         "Modelled: every body of the scene in its true shape; the mover as five rigid parts. Left out, because no \
          move needs it: bodies whose box the swept boxes of the mover do not meet (counted above: of 1,000 only \
-         those are refined), tilts, meshes, margins."
+         those are bodies_near), tilts, meshes, margins."
             .to_owned(),
         "paper: our own rebuilding of a method whose later chapters are not at hand; a cylinder is drawn with 32 \
          corners on its mantle. Its stop is the last clear pose."

@@ -1,19 +1,19 @@
-//! The storm: short lots under random faults of world and line, random orders of a restless operator, and kills of
-//! the controller, in virtual time, in this process.
+//! The storm: short lots under random faults of world and line, random orders of an operator, and kills of the
+//! controller, in virtual time, in this process.
 //!
-//! A seed is one rig that lives through several lives of the controller: `weather` draws what strikes and when,
-//! `life` runs the program as `run` does and kills it, `operator` presses buttons. When the storm has passed
-//! the controller is started again, up to [`CALM`] times, and has to complete a lot. Then `judge` sets the rig's truth
-//! against the history.
+//! A seed is one rig under several lives of the controller; a life lasts from start to end of the program. `scenario`
+//! draws the faults and their instants, `life` runs the program as `run` does and kills it, `operator` gives orders. When
+//! all faults are over, the controller starts again, up to [`CALM`] times, and must complete a lot. Then `judge` compares
+//! the truth of the rig with the history.
 //!
-//! A seed that breaks a rule is printed with what was broken, the last lines of its trace, and the command that
-//! shows it again: the same seed gives the same trace, bit for bit.
+//! The report shows each seed that breaks a rule with the broken rules, the last lines of its trace and the command that
+//! reproduces it: the same seed gives the same trace, bit for bit.
 
 mod judge;
 mod life;
 mod operator;
+mod scenario;
 mod trace;
-mod weather;
 
 use super::chart::Chart;
 use super::figure::{Bar, Figure};
@@ -25,36 +25,36 @@ use app::exit::Exit;
 use config::{Plant, load_recipe};
 use history::{Archive, Filter};
 use judge::Case;
-use life::{End, Shop};
+use life::{End, Runner};
 use machine::dut::Calibration;
 use machine::dut::Recipe;
 use rigsim::{Options, SharedRig};
+use scenario::{CEASES_US, Life, RIGS, Scenario};
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 use tempfile::TempDir;
 use tracing::subscriber::{NoSubscriber, with_default};
 use units::Span;
-use weather::{CEASES_US, Life, RIGS, Weather};
 
-/// Starts after the storm, one of which must complete its lot: the first may have to clear up.
+/// Starts after the faults, of which one must complete its lot; the first may have to discharge parts.
 const CALM: u64 = 3;
-/// Parts of a calm lot.
+/// Parts of a lot without faults.
 const CALM_PARTS: u64 = 2;
-/// Seeds that are shown; the figures count them all.
+/// Most seeds that the report shows; the figures count all of them.
 const SHOWN: usize = 10;
 
-/// What one seed came to: a case is heavy, so it keeps counts, and a trace only where a rule was broken.
+/// Result of one seed: counts, and the trace only of a seed that breaks a rule, since a case is large.
 struct Outcome {
     seed: u64,
     counts: Counts,
-    broken: Vec<String>,
+    violations: Vec<String>,
     faults: Vec<String>,
     trace: Vec<String>,
     digest: u64,
 }
 
-/// What there was to judge.
+/// Size of a case.
 #[derive(Debug, Clone, Copy, Default)]
 struct Counts {
     lives: u64,
@@ -78,15 +78,15 @@ impl Counts {
             bodies: case.bodies.len() as u64,
             rows: case.rows.len() as u64,
             alarms: case.alarms.len() as u64,
-            orders: case.lives.iter().map(|it| it.said.len() as u64).sum(),
+            orders: case.lives.iter().map(|it| it.answers.len() as u64).sum(),
             motions: case.driven.len() as u64,
             rig_us: case.lives.last().map_or(0, |life| life.ended_us),
         }
     }
 }
 
-/// What all seeds share.
-struct Sea<'a> {
+/// Inputs of all seeds.
+struct Storm<'a> {
     order: &'a Order,
     plant: Plant,
     recipe: Arc<Recipe>,
@@ -94,26 +94,26 @@ struct Sea<'a> {
     calibrations: [OnceLock<Calibration>; RIGS as usize],
 }
 
-/// Runs the seeds (or the one that is asked for) and makes the report.
+/// Runs the seeds of the order and makes the report.
 ///
 /// # Errors
-/// Files that cannot be read or written, or a rig that cannot be built.
+/// A file that cannot be read or written, or a rig that cannot be built.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let began = Instant::now();
-    let sea = Sea::new(order)?;
+    let storm = Storm::new(order)?;
     let seeds: Vec<u64> = match order.seed {
         Some(seed) => vec![seed],
         None => (order.from..).take(order.lots as usize).collect(),
     };
-    let outcomes = sea.all(&seeds)?;
+    let outcomes = storm.all(&seeds)?;
     let minutes = began.elapsed().as_secs_f64() / 60.0;
     Ok(report(order, &outcomes, minutes))
 }
 
-impl<'a> Sea<'a> {
+impl<'a> Storm<'a> {
     fn new(order: &'a Order) -> anyhow::Result<Self> {
         let folder = TempDir::new()?;
-        std::fs::write(folder.path().join("world.toml"), weather::WORLD)?;
+        std::fs::write(folder.path().join("world.toml"), scenario::WORLD)?;
         Ok(Self {
             order,
             plant: Plant::load(&order.config)?,
@@ -137,36 +137,36 @@ impl<'a> Sea<'a> {
         std::fs::create_dir(&folder)?;
         let case = self.case(seed, &folder.join("history.db"))?;
         std::fs::remove_dir_all(&folder)?;
-        let (broken, trace) = (case.broken(), trace::lines(&case));
+        let (violations, trace) = (case.violations(), trace::lines(&case));
         let digest = trace::digest(&trace);
-        let is_shown = !broken.is_empty() || self.order.seed.is_some();
+        let is_shown = !violations.is_empty() || self.order.seed.is_some();
         Ok(Outcome {
             seed,
             counts: Counts::of(&case),
             faults: case.faults,
             trace: if is_shown { trace } else { Vec::new() },
-            broken,
+            violations,
             digest,
         })
     }
 
-    /// Lives through a seed.
+    /// Runs all lives of a seed.
     fn case(&self, seed: u64, db: &Path) -> anyhow::Result<Case> {
-        let weather = Weather::of(seed, self.order.parts, &self.plant.wiring);
-        let rig = self.rig(weather.rig, weather.uncalibrated, &weather.faults)?;
-        let shop = self.shop(&rig, db);
-        let mut calibration = match weather.uncalibrated {
+        let scenario = Scenario::of(seed, self.order.parts, &self.plant.wiring);
+        let rig = self.rig(scenario.rig, scenario.uncalibrated, &scenario.faults)?;
+        let runner = self.runner(&rig, db);
+        let mut calibration = match scenario.uncalibrated {
             true => None,
-            false => Some(self.calibration(weather.rig, db)?),
+            false => Some(self.calibration(scenario.rig, db)?),
         };
-        let mut whims = weather.whims.clone();
+        let mut operator_dice = scenario.operator_dice.clone();
         let mut lives = Vec::new();
-        for life in &weather.lives {
+        for life in &scenario.lives {
             let lot = format!("life-{}", lives.len() + 1);
-            lives.push(shop.live(&lot, life, calibration.clone(), whims.apart())?);
+            lives.push(runner.run_life(&lot, life, calibration.clone(), operator_dice.apart())?);
         }
         if calibration.is_none() {
-            calibration = Some(self.calibration(weather.rig, db)?);
+            calibration = Some(self.calibration(scenario.rig, db)?);
         }
         rig.cancel_faults();
         for n in 1..=CALM {
@@ -178,20 +178,20 @@ impl<'a> Sea<'a> {
                 pause_us,
             };
             let lot = format!("calm-{n}");
-            lives.push(shop.live(&lot, &life, calibration.clone(), whims.apart())?);
+            lives.push(runner.run_life(&lot, &life, calibration.clone(), operator_dice.apart())?);
             let last = lives.last();
             if last.is_some_and(|life| life.end == End::Exit(Exit::Done)) {
                 break;
             }
         }
-        self.judged(&weather, &rig, lives, db)
+        self.judged(&scenario, &rig, lives, db)
     }
 
     fn judged(
         &self,
-        weather: &Weather,
+        scenario: &Scenario,
         rig: &SharedRig,
-        lives: Vec<life::Lived>,
+        lives: Vec<life::EndedLife>,
         db: &Path,
     ) -> anyhow::Result<Case> {
         let archive = Archive::open(db)?;
@@ -213,16 +213,16 @@ impl<'a> Sea<'a> {
             limits: limits
                 .map(|(key, range)| (key.name(), *range.start(), *range.end()))
                 .collect(),
-            faults: weather.faults.clone(),
-            disturbed_us: weather.disturbed_us.clone(),
+            faults: scenario.faults.clone(),
+            disturbed_us: scenario.disturbed_us.clone(),
             reaction,
             reaction_in_trouble: reaction + watchdog + watchdog,
-            lines_suffer: weather.lines_suffer,
+            lines_disturbed: scenario.lines_disturbed,
         })
     }
 
-    fn shop<'b>(&'b self, rig: &'b SharedRig, db: &'b Path) -> Shop<'b> {
-        Shop {
+    fn runner<'b>(&'b self, rig: &'b SharedRig, db: &'b Path) -> Runner<'b> {
+        Runner {
             plant: &self.plant,
             recipe: &self.recipe,
             db,
@@ -243,7 +243,7 @@ impl<'a> Sea<'a> {
         })?)
     }
 
-    /// The factors of a rig, found on a calm day.
+    /// Returns the calibration of a rig without faults, from the first seed that needed it.
     fn calibration(&self, rig: u64, db: &Path) -> anyhow::Result<Calibration> {
         let place = usize::try_from(rig % RIGS)?;
         if let Some(known) = self.calibrations[place].get() {
@@ -251,19 +251,22 @@ impl<'a> Sea<'a> {
         }
         let calm = self.rig(rig, true, &[])?;
         let apart = db.with_file_name("calibration.db");
-        let found = self.shop(&calm, &apart).calibrated()?;
+        let found = self.runner(&calm, &apart).calibrated()?;
         Ok(self.calibrations[place].get_or_init(|| found).clone())
     }
 }
 
 fn report(order: &Order, outcomes: &[Outcome], minutes: f64) -> Report {
     let n = outcomes.len() as u64;
-    let broken = outcomes.iter().filter(|it| !it.broken.is_empty()).count() as u64;
+    let violations = outcomes
+        .iter()
+        .filter(|it| !it.violations.is_empty())
+        .count() as u64;
     let sum = |of: fn(&Counts) -> u64| outcomes.iter().map(|it| of(&it.counts)).sum::<u64>();
     let hours = sum(|it| it.rig_us) as f64 / 3.6e9;
     let lives = sum(|it| it.lives);
     let about = |name: &str, of: u64, count: u64| Figure::count(name, of, Some(count));
-    let rule = Figure::count("seeds that broke a rule", n, Some(broken));
+    let rule = Figure::count("seeds that broke a rule", n, Some(violations));
     let counts = vec![
         about("kills of the controller", lives, sum(|it| it.kills)),
         about("lots completed", lives, sum(|it| it.completed)),
@@ -278,7 +281,7 @@ fn report(order: &Order, outcomes: &[Outcome], minutes: f64) -> Report {
     let digests = outcomes.iter().map(|it| format!("{:016x}", it.digest));
     let digest = trace::digest(digests);
     let mut notes = vec![format!("digest of all traces: {digest:016x}")];
-    let shows = |it: &&Outcome| order.seed.is_some() || !it.broken.is_empty();
+    let shows = |it: &&Outcome| order.seed.is_some() || !it.violations.is_empty();
     let worth = outcomes.iter().filter(shows).take(SHOWN);
     notes.extend(worth.map(|it| shown(order, it)));
     let alarms = |it: &Outcome| (format!("seed {}", it.seed), Some(it.counts.alarms as f64));
@@ -290,12 +293,12 @@ fn report(order: &Order, outcomes: &[Outcome], minutes: f64) -> Report {
 
 fn shown(order: &Order, it: &Outcome) -> String {
     let seed = it.seed;
-    // Who asks for one seed wants to see how it came to that.
+    // A report of one seed shows the whole trace.
     let last = match order.seed {
         Some(_) => it.trace.join("\n  "),
         None => trace::last(&it.trace).join("\n  "),
     };
-    let what = match it.broken.as_slice() {
+    let what = match it.violations.as_slice() {
         [] => "no rule broken".to_owned(),
         some => some.join("; "),
     };

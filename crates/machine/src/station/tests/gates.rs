@@ -20,7 +20,7 @@ use crate::station::wants::Ending;
 
 const BAD: Specimen = Specimen::OpenCoil;
 
-/// What a test finds on a reference part that is so many standard deviations off in one parameter.
+/// Returns the record of a reference part whose parameter `off` deviates by `deviations` standard deviations.
 fn read(part: &ReferencePart, off: Parameter, deviations: f64) -> TestRecord {
     let mut record = TestRecord::default();
     for (parameter, certified) in [

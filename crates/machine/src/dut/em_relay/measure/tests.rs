@@ -29,7 +29,7 @@ fn origin() -> Origin {
     }
 }
 
-/// A reading of so many units at a terminal of this gain; NaN unless it is good.
+/// Returns a sample of `value` at a terminal with this gain; NaN unless its quality is good.
 fn sample(point: AnalogIn, quality: Quality, value: f64, gain: f64) -> Sample {
     let value = if quality == Quality::Good {
         value

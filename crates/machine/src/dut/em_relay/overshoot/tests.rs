@@ -1,4 +1,4 @@
-//! What the law of the overshoot knows after so many parts.
+//! Predictions of the overshoot model by number of parts learnt.
 
 use super::*;
 
@@ -18,7 +18,7 @@ fn part(at: u32) -> (Shown, Volt) {
     (shown, Volt(fine))
 }
 
-/// Taught by so many parts, each read wrong by `noise_v` in turn upwards and downwards.
+/// Returns a model that has learnt `parts` parts, each with an error of `noise_v`, alternately up and down.
 fn taught(parts: u32, noise_v: f64) -> OvershootModel {
     let mut law = OvershootModel::guess(0.80);
     for at in 0..parts {

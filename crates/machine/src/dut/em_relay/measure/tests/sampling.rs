@@ -84,7 +84,7 @@ fn a_coil_is_scanned_as_often_as_its_recipe_says_and_the_mean_is_less_in_doubt()
     assert!((u(&reading(1)) / u(&reading(4)) - 2.0).abs() < 1e-9);
 }
 
-/// A test at its end, with so many closures of NO and NC behind it.
+/// Returns a test at its end after `closures` closures of NO and NC.
 fn after(context: Context, closures: usize, mohm: f64) -> Test {
     let per_v = context.calibration.contact_mohm_per_v.value;
     let mut test = Test::begin(context, Shop::at_rest().now);

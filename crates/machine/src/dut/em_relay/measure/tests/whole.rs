@@ -154,7 +154,7 @@ fn waits_after(acts: &[Act]) -> Span {
 }
 
 #[test]
-fn whoever_switches_under_a_live_source_waits_for_the_board_to_take_it_off_first() {
+fn switching_waits_until_the_board_removes_a_live_source() {
     let watched = [
         DigitalOut::CoilDrive,
         DigitalOut::SelectNo,
