@@ -9,7 +9,7 @@ use super::order::Order;
 use super::output::Report;
 use std::collections::BTreeMap;
 
-/// Good parts that make one lot of the bar "no good part rejected in 98 of 100".
+/// Good parts per lot of the figure `lots of 100 good parts without a reject`.
 const GOOD_PARTS_OF_A_LOT: usize = 100;
 
 /// Returns the bin of the cause of a defect; `None` for a defect that the rig does not know.
