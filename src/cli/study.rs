@@ -172,23 +172,24 @@ fn tolerance(text: &str) -> Result<f64, NoTolerance> {
 
 fn listed(as_json: bool) -> String {
     let one = |study: &Study| {
-        let usual = study.usual();
-        let about = study
-            .to_possible_value()
-            .and_then(|value| value.get_help().map(ToString::to_string))
+        let (usual, value) = (study.usual(), study.to_possible_value()?);
+        let about = value
+            .get_help()
+            .map(ToString::to_string)
             .unwrap_or_default();
         if as_json {
             let (lots, parts) = usual.unzip();
-            let it = json!({"study": study.name(), "about": about, "lots": lots, "parts": parts});
-            format!("{it}\n")
+            let it =
+                json!({"study": value.get_name(), "about": about, "lots": lots, "parts": parts});
+            Some(format!("{it}\n"))
         } else {
             let size = usual.map_or_else(String::new, |(lots, parts)| {
                 format!(" ({lots} x {parts} parts)")
             });
-            format!("{:<10} {about}{size}\n", study.name())
+            Some(format!("{:<10} {about}{size}\n", value.get_name()))
         }
     };
-    Study::value_variants().iter().map(one).collect()
+    Study::value_variants().iter().filter_map(one).collect()
 }
 
 fn written(path: &Path, text: &str) -> anyhow::Result<()> {

@@ -221,8 +221,8 @@ impl Cycle {
             answer.answered_at >= answer.asked_at,
             "answered before it was asked"
         );
-        // Reading the reset status clears it, so it is never asked twice: where its reply is lost, whoever asked, nobody knows
-        // whether the module has restarted under the part, which is void.
+        // Reading the reset status clears it, so that the line never repeats the query: when its reply is lost, a restart of
+        // the module during the test cannot be excluded, and the part is void.
         let is_status = matches!(
             answer.command,
             Command::Common(_, dcon::Common::ReadResetStatus)

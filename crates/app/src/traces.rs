@@ -5,7 +5,7 @@ use config::Plant;
 use machine::view::{LineTraffic, LineView, Message, ModuleView};
 use std::path::{Path, PathBuf};
 
-/// Traces of one run are at most so many per line: the first alarms are the ones that tell.
+/// Most traces of one run per line: the first alarms show the cause.
 const MOST: usize = 8;
 
 /// One line of the run.

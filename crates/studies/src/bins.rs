@@ -1,14 +1,18 @@
-//! Outcome of the parts: good parts rejected, bad parts passed, rows that name another bin than the one the part lies in.
+//! Outcome of the parts: good parts rejected, bad parts passed, rows that name a bin in which the part does not lie; and
+//! the study `sorting`, which shows them over many lots.
 
-use super::error::percent;
-use super::figure::{Bar, Figure};
+use super::chart::Chart;
+use super::exception;
+use super::figure::{Bar, Figure, percent};
 use super::lot::{Lot, Part};
+use super::order::Order;
+use super::output::Report;
 use std::collections::BTreeMap;
 
-/// Good parts that make one lot of the bar "no good part rejected in 98 of 100".
+/// Good parts per lot of the figure `lots of 100 good parts without a reject`.
 const GOOD_PARTS_OF_A_LOT: usize = 100;
 
-/// The bin a defect belongs to; none for a defect that is not in the table of the rig.
+/// Returns the bin of the cause of a defect; `None` for a defect that the rig does not know.
 pub fn bin_of(defect: &str) -> Option<&'static str> {
     Some(match defect {
         "open_coil" | "shorted_turns" | "wrong_coil" => "coil",
@@ -20,26 +24,35 @@ pub fn bin_of(defect: &str) -> Option<&'static str> {
     })
 }
 
-/// Verdicts and bins against the truth.
+/// Counts good parts rejected and defects by bin over many lots.
+///
+/// # Errors
+/// A lot that did not run.
+pub fn study(order: &Order) -> anyhow::Result<Report> {
+    let (lots, about) = (order.run_all()?, order.about());
+    let defects = defects(&lots);
+    let title = format!("defects in the bin of their cause: {about}");
+    let chart = Chart::of(title, "%", vec![100.0], &defects);
+    let groups = vec![outcome(&lots), defects, machine(&lots)];
+    Ok(Report::new("sorting", about, groups, chart).noted(exception::outcome(&lots)))
+}
+
+/// Compares verdicts and bins with the truth.
 pub fn outcome(lots: &[Lot]) -> Vec<Figure> {
     let (good, beyond): (Vec<&Part>, Vec<&Part>) = lots
         .iter()
         .flat_map(Lot::good)
-        .partition(|part| part.deserves_to_pass());
+        .partition(|part| part.is_conforming());
     let all: Vec<&Part> = lots.iter().flat_map(|lot| &lot.parts).collect();
-    let bad = all.iter().filter(|part| !part.is_good());
     let rejected: Vec<bool> = good.iter().map(|part| part.verdict == "fail").collect();
     let voids = good.iter().filter(|part| part.verdict == "void").count() as u64;
-    let (clean, hundreds) = lots_without(&rejected);
-    let n_good = good.len() as u64;
-    let n_bad = bad.clone().count() as u64;
-    let elsewhere = all.iter().filter(|part| !part.is_where_it_says()).count() as u64;
+    let (clean, hundreds) = lots_without_reject(&rejected);
+    let count = |is: fn(&Part) -> bool| all.iter().filter(|part| is(part)).count() as u64;
+    let (n, n_good) = (all.len() as u64, good.len() as u64);
+    let rejects = rejected.iter().filter(|it| **it).count() as u64;
+    let unrecorded = lots.iter().map(|lot| lot.unrecorded).sum();
     vec![
-        Figure::count(
-            "good parts rejected",
-            n_good,
-            Some(rejected.iter().filter(|it| **it).count() as u64),
-        ),
+        Figure::count("good parts rejected", n_good, Some(rejects)),
         Figure::new(
             "lots of 100 good parts without a reject",
             hundreds,
@@ -49,28 +62,24 @@ pub fn outcome(lots: &[Lot]) -> Vec<Figure> {
         .bar(Bar::AtLeast(98.0)),
         Figure::new("voids of good parts", n_good, percent(voids, n_good), "%")
             .bar(Bar::Below(0.5)),
-        beyond_a_limit(&beyond),
+        out_of_limits(&beyond),
         Figure::none(
             "defective parts passed",
-            n_bad,
-            bad.filter(|part| has_passed(part)).count() as u64,
+            count(|part| !part.is_good()),
+            count(|part| !part.is_good() && part.has_passed()),
         ),
         Figure::none(
             "rows whose bin is not where the part is",
-            all.len() as u64,
-            elsewhere,
+            n,
+            count(|part| !part.is_in_named_bin()),
         ),
-        Figure::none(
-            "parts without a row",
-            all.len() as u64,
-            lots.iter().map(|lot| lot.unrecorded).sum(),
-        ),
+        Figure::none("parts without a row", n, unrecorded),
     ]
 }
 
-/// Parts without a defect that are truly beyond a limit, and how many of them passed.
-fn beyond_a_limit(parts: &[&Part]) -> Figure {
-    let passed = parts.iter().filter(|part| has_passed(part)).count();
+/// Counts parts without a defect whose true value lies beyond a limit, and those of them that passed.
+fn out_of_limits(parts: &[&Part]) -> Figure {
+    let passed = parts.iter().filter(|part| part.has_passed()).count();
     let n = parts.len() as u64;
     Figure::count("no defect, but truly beyond a limit", n, Some(n))
         .with("passed", Some(passed as f64))
@@ -91,15 +100,11 @@ pub fn machine(lots: &[Lot]) -> Vec<Figure> {
     ]
 }
 
-/// One figure per defect: percent that went to the bin of its table.
+/// Returns one figure per defect: the share of its parts that went to the bin of the defect, percent.
 pub fn defects(lots: &[Lot]) -> Vec<Figure> {
     let mut seen: BTreeMap<&str, (u64, u64)> = BTreeMap::new();
     for part in lots.iter().flat_map(|lot| &lot.parts) {
-        let Some(defect) = part
-            .truth
-            .as_ref()
-            .and_then(|truth| truth.defect.as_deref())
-        else {
+        let Some(defect) = part.defect() else {
             continue;
         };
         let (right, all) = seen.entry(defect).or_default();
@@ -114,18 +119,9 @@ pub fn defects(lots: &[Lot]) -> Vec<Figure> {
     seen.into_iter().map(row).collect()
 }
 
-/// Returns true when the row or the body of the part is in the pass bin.
-pub fn has_passed(part: &Part) -> bool {
-    let landed = part
-        .truth
-        .as_ref()
-        .and_then(|truth| truth.landed_in.as_deref());
-    part.bin == "pass" || landed == Some("pass")
-}
-
-/// Lots of 100 in the order of production, and how many are without a reject. A rest that does not fill a
-/// lot counts only when there is nothing else.
-pub fn lots_without(rejected: &[bool]) -> (u64, u64) {
+/// Cuts the parts into lots of 100 in the order of production and returns the number of lots without a reject and of all
+/// lots. Parts that do not fill a lot count only when there is no other lot.
+pub fn lots_without_reject(rejected: &[bool]) -> (u64, u64) {
     let size = GOOD_PARTS_OF_A_LOT.min(rejected.len()).max(1);
     let lots = rejected.chunks_exact(size);
     let clean = lots.clone().filter(|lot| !lot.contains(&true)).count();

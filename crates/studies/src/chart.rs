@@ -1,23 +1,22 @@
-//! A bar chart as SVG: one horizontal bar per row, marks where the bars of the study stand.
+//! A bar chart as SVG: one horizontal bar per row, and a mark at each limit of the study.
 //!
-//! Lengths in px. The text is plain and the colours are fixed, so that the file reads the same in a page, in a
-//! viewer and on paper.
+//! Lengths are px. Plain text and fixed colours make the file look the same in a page, in a viewer and on paper.
 
 use super::figure::{Figure, shown};
 use history::report::svg::Svg;
 
-/// What to draw.
+/// Content of a chart.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Chart {
-    /// Above the chart.
+    /// Title above the chart.
     pub title: String,
-    /// Behind every number.
+    /// Unit behind every number.
     pub unit: &'static str,
     /// Value at the left end.
     pub from: f64,
     /// Values with a line across all bars.
     pub marks: Vec<f64>,
-    /// Label and value, from top to bottom; none draws no bar.
+    /// Label and value, from top to bottom; `None` draws no bar.
     pub bars: Vec<(String, Option<f64>)>,
 }
 
@@ -28,7 +27,23 @@ const TOP: f64 = 44.0;
 const ROW: f64 = 24.0;
 
 impl Chart {
-    /// Draws one bar from 0 per figure.
+    /// A chart of labels and values from 0 on.
+    pub fn new(
+        title: impl Into<String>,
+        unit: &'static str,
+        marks: Vec<f64>,
+        bars: impl IntoIterator<Item = (String, Option<f64>)>,
+    ) -> Self {
+        Self {
+            title: title.into(),
+            unit,
+            from: 0.0,
+            marks,
+            bars: bars.into_iter().collect(),
+        }
+    }
+
+    /// A chart with a bar for each figure.
     pub fn of<'a>(
         title: impl Into<String>,
         unit: &'static str,
@@ -36,16 +51,10 @@ impl Chart {
         figures: impl IntoIterator<Item = &'a Figure>,
     ) -> Self {
         let bars = figures.into_iter().map(|it| (it.name.clone(), it.value));
-        Self {
-            title: title.into(),
-            unit,
-            from: 0.0,
-            marks,
-            bars: bars.collect(),
-        }
+        Self::new(title, unit, marks, bars)
     }
 
-    /// Value at the right end: the greatest one, or mark, and a little more.
+    /// Returns the value at the right end: 2 % beyond the greatest value or mark.
     fn to(&self) -> f64 {
         let all = self
             .bars
@@ -60,12 +69,12 @@ impl Chart {
         }
     }
 
-    /// Place of a value, kept inside the plot.
+    /// Returns the x coordinate of a value, clamped to the plot.
     fn x(&self, value: f64) -> f64 {
         LABEL + PLOT * ((value - self.from) / (self.to() - self.from)).clamp(0.0, 1.0)
     }
 
-    /// The file.
+    /// Returns the chart as an SVG file.
     pub fn svg(&self) -> String {
         let bottom = TOP + ROW * self.bars.len() as f64;
         let mut svg = Svg::new([LABEL + PLOT + NUMBER, bottom + 28.0]);

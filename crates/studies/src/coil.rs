@@ -1,23 +1,19 @@
-//! Seconds against error of the coil resistance: how long the current settles, how many scans are averaged, how
-//! the coil warms meanwhile, and what temperature and converter add.
+//! Seconds against error of the coil resistance: settling time of the current, number of averaged scans, self-heating of
+//! the coil, and the errors of temperature and converter.
 //!
-//! A conversion is free-running and counts only when it began after the settling; two channels share the
-//! converter, so a first scan takes three periods of it, each further one two. The bias of many scans is the
+//! The converter runs freely, and a conversion counts only when it begins after the settling. Two channels share the
+//! converter: the first scan takes three conversion periods, each further scan two. The bias of many scans is the
 //! self-heating at the pre-bias.
 
 use super::figure::{Bar, Figure};
-use super::fleet::Order;
-use super::method::{self, BAUDS, Paid};
+use super::method::{self, BAUDS, TimedParameter};
+use super::order::Order;
 use super::output::Report;
 use super::variant::{Change, Variant};
 use machine::dut::em_relay::Parameter;
 
-const COIL: Paid = Paid {
-    parameter: Parameter::CoilResistance,
-    stages: &["coil"],
-    more_s: 0.0,
-};
-/// Milliseconds of settling, and scans: the third is what a recipe does that says nothing.
+const COIL: TimedParameter = TimedParameter::of(Parameter::CoilResistance, &["coil"]);
+/// Milliseconds of settling and number of scans; the third pair is the default of a recipe.
 const METHODS: [(i64, i64); 7] = [
     (1, 1),
     (4, 1),
@@ -27,10 +23,10 @@ const METHODS: [(i64, i64); 7] = [
     (13, 16),
     (13, 64),
 ];
-/// Total rms that production may have, percent.
+/// Greatest rms of production with all errors, percent.
 const TOTAL_PCT: f64 = 0.12;
 
-/// What is added to a world without errors, for production's own method.
+/// Returns worlds with one error each; production's method runs in them.
 fn worlds() -> [(&'static str, Vec<Change>); 3] {
     [
         (
@@ -54,7 +50,7 @@ fn worlds() -> [(&'static str, Vec<Change>); 3] {
 /// Runs the lots and makes the report.
 ///
 /// # Errors
-/// A lot that could not be run.
+/// A lot that did not run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let mut methods = Vec::new();
     for baud in BAUDS {
@@ -72,20 +68,14 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     Ok(method::report("coil", order, groups, 2, vec![TOTAL_PCT]))
 }
 
-/// Production's method in worlds with one error each, and with all of them.
+/// Runs production's method in worlds with one error each, and with all of them.
 fn errors(order: &Order) -> anyhow::Result<Vec<Figure>> {
     let mut rows = Vec::new();
     for (name, world) in worlds() {
-        let variant = Variant {
-            world,
-            ..Variant::exact(BAUDS[0], Vec::new())
-        };
+        let variant = Variant::exact(BAUDS[0], Vec::new()).in_world(world);
         rows.push(COIL.row(name, &method::lots(&variant, order)?));
     }
-    let all = Variant {
-        exact: false,
-        ..Variant::exact(BAUDS[0], Vec::new())
-    };
+    let all = Variant::erring(BAUDS[0], Vec::new());
     let total = COIL.row("with every error of the world", &method::lots(&all, order)?);
     rows.push(total.bar(Bar::AtMost(TOTAL_PCT)));
     Ok(rows)

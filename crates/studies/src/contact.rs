@@ -1,40 +1,38 @@
 //! Seconds against error of contact resistance: polarities, a drifting EMF, closures, early stop.
 //!
-//! - Error is against the closures that were read: what the meter does. EMF of 10 uV stands in every world here.
-//! - Repeatability is another thing: the same bodies are fed again and again, and what one body shows differs by
-//!   its films. It falls with the root of the closures, and the reading has next to no part in it.
-//! - Seconds are those of all stages that read a contact; they give times and bounce as well.
+//! - Error is the difference from the resistance of the closures that were read. Every world here has an EMF of 10 uV.
+//! - Repeatability is the scatter of the same bodies fed again and again. Films on the contact cause nearly all of it, and
+//!   it falls with the root of the number of closures.
+//! - Seconds are those of all stages that read a contact; the same stages measure times and bounce.
 
 use super::figure::Figure;
-use super::fleet::Order;
 use super::lot::Lot;
-use super::method::{self, BAUDS, Paid};
+use super::method::{self, BAUDS, TimedParameter};
+use super::order::Order;
 use super::output::Report;
 use super::variant::{Change, Variant};
 use machine::dut::em_relay::Parameter;
 use quality::Spread;
 
 const STAGES: &[&str] = &["nc_contact", "timed_operate", "timed_release"];
-const CONTACTS: [(&str, Paid); 2] = [
-    ("NO", paid(Parameter::ContactResistanceNo)),
-    ("NC", paid(Parameter::ContactResistanceNc)),
+const CONTACTS: [(&str, TimedParameter); 2] = [
+    (
+        "NO",
+        TimedParameter::of(Parameter::ContactResistanceNo, STAGES),
+    ),
+    (
+        "NC",
+        TimedParameter::of(Parameter::ContactResistanceNc, STAGES),
+    ),
 ];
 /// Thermal EMF of a part, microvolts (1 sd).
 const EMF: Change = ("lot.thermal_emf_sd_uv", toml::Value::Float(10.0));
-/// Drift at which two polarities begin to err more by the EMF than by their noise, microvolts per second.
+/// Drift of the EMF at which it adds more error to two polarities than noise does, microvolts per second.
 const DRIFT: Change = ("board.emf_drift_uv_per_s", toml::Value::Float(5000.0));
-/// How often a body comes in the study of films.
+/// Passes of each body in the comparison of films.
 const PASSES: u64 = 6;
 
-const fn paid(parameter: Parameter) -> Paid {
-    Paid {
-        parameter,
-        stages: STAGES,
-        more_s: 0.0,
-    }
-}
-
-/// Polarities by the name of recipe and row.
+/// Polarities: name in the recipe and in the report.
 const POLARITIES: [(&str, &str); 2] = [("plus_minus", "+ -"), ("plus_minus_minus_plus", "+ - - +")];
 
 fn recipe(polarities: &str, closures: i64, stops_early: bool) -> Vec<Change> {
@@ -48,7 +46,7 @@ fn recipe(polarities: &str, closures: i64, stops_early: bool) -> Vec<Change> {
 /// Runs the lots and makes the report.
 ///
 /// # Errors
-/// A lot that could not be run.
+/// A lot that did not run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let groups = vec![
         polarities(order)?,
@@ -60,14 +58,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
 }
 
 fn rows(name: &str, lots: &[Lot]) -> [Figure; 2] {
-    CONTACTS.map(|(contact, paid)| paid.row(format!("{contact} {name}"), lots))
-}
-
-fn in_world(baud: u32, recipe: Vec<Change>, world: Vec<Change>) -> Variant {
-    Variant {
-        world,
-        ..Variant::exact(baud, recipe)
-    }
+    CONTACTS.map(|(contact, timed)| timed.row(format!("{contact} {name}"), lots))
 }
 
 fn polarities(order: &Order) -> anyhow::Result<Vec<Figure>> {
@@ -75,7 +66,8 @@ fn polarities(order: &Order) -> anyhow::Result<Vec<Figure>> {
     for baud in BAUDS {
         for (key, sign) in POLARITIES {
             for closures in [1, 3] {
-                let variant = in_world(baud, recipe(key, closures, false), vec![EMF]);
+                let variant =
+                    Variant::exact(baud, recipe(key, closures, false)).in_world(vec![EMF]);
                 let name = format!("{sign}, closures {closures}, {baud}");
                 figures.extend(rows(&name, &method::lots(&variant, order)?));
             }
@@ -87,14 +79,14 @@ fn polarities(order: &Order) -> anyhow::Result<Vec<Figure>> {
 fn drifting(order: &Order) -> anyhow::Result<Vec<Figure>> {
     let mut figures = Vec::new();
     for (key, sign) in POLARITIES {
-        let variant = in_world(BAUDS[0], recipe(key, 1, false), vec![EMF, DRIFT]);
+        let variant = Variant::exact(BAUDS[0], recipe(key, 1, false)).in_world(vec![EMF, DRIFT]);
         let name = format!("{sign}, EMF drifts 5 mV/s");
         figures.extend(rows(&name, &method::lots(&variant, order)?));
     }
     Ok(figures)
 }
 
-/// What one body shows from pass to pass, percent of its resistance.
+/// Returns the scatter of one body from pass to pass by number of closures, percent of its resistance.
 fn films(order: &Order) -> anyhow::Result<Vec<Figure>> {
     let bodies = (order.parts / PASSES).max(2);
     let order = Order {
@@ -105,18 +97,19 @@ fn films(order: &Order) -> anyhow::Result<Vec<Figure>> {
     for closures in [1, 2, 4, 8] {
         let variant = Variant {
             faults: vec![format!("refeed={bodies}")],
-            ..in_world(BAUDS[0], recipe("plus_minus", closures, false), vec![EMF])
+            ..Variant::exact(BAUDS[0], recipe("plus_minus", closures, false)).in_world(vec![EMF])
         };
         let lots = method::lots(&variant, &order)?;
-        for (contact, paid) in CONTACTS {
+        for (contact, timed) in CONTACTS {
             let name = format!("{contact} of the same body, closures {closures}");
-            figures.push(repeatability(name, &lots, paid, bodies));
+            figures.push(repeatability(name, &lots, timed, bodies));
         }
     }
     Ok(by_root(figures))
 }
 
-/// Beside each row what the root of the closures makes of the first of its contact; NC has one more, at rest.
+/// Adds to each row the value of the first row of its contact, scaled with the root of the number of closures; NC has one
+/// more closure, at rest.
 fn by_root(figures: Vec<Figure>) -> Vec<Figure> {
     let first: Vec<Option<f64>> = figures.iter().take(2).map(|row| row.value).collect();
     let root = |place: usize| {
@@ -129,14 +122,12 @@ fn by_root(figures: Vec<Figure>) -> Vec<Figure> {
         .collect()
 }
 
-/// Pooled scatter of the values of one body, relative to its mean.
-fn repeatability(name: String, lots: &[Lot], paid: Paid, bodies: u64) -> Figure {
+/// Returns the pooled scatter of the values of one body, percent of its mean.
+fn repeatability(name: String, lots: &[Lot], timed: TimedParameter, bodies: u64) -> Figure {
     let body = |lot: &Lot, body: u64| -> Vec<f64> {
         let again = lot.good().filter(|part| (part.seq - 1) % bodies == body);
-        again
-            .filter_map(|part| part.reading(paid.parameter))
-            .map(|reading| reading.value)
-            .collect()
+        let readings = again.filter_map(|part| part.reading(timed.parameter));
+        readings.map(|reading| reading.value).collect()
     };
     let relative: Vec<f64> = lots
         .iter()
@@ -149,10 +140,11 @@ fn repeatability(name: String, lots: &[Lot], paid: Paid, bodies: u64) -> Figure 
     let n = relative.len() as f64;
     let rms = (relative.iter().map(|it| it * it).sum::<f64>() / n).sqrt();
     Figure::new(name, relative.len() as u64, Some(rms), "%")
-        .with("seconds", paid.seconds(lots).mean())
+        .with("seconds", timed.seconds(lots).mean())
 }
 
-/// A part far from its limit is left after one closure, one near it is read up to eight times.
+/// Compares early stop with a fixed number of closures: early stop reads a part far from its limit once, one near the limit
+/// up to eight times.
 fn early(order: &Order) -> anyhow::Result<Vec<Figure>> {
     let mut figures = Vec::new();
     for mohm in [20.0, 60.0, 80.0, 95.0] {
@@ -162,7 +154,8 @@ fn early(order: &Order) -> anyhow::Result<Vec<Figure>> {
                 ("lot.contact_no_mohm_median", mohm.into()),
                 ("lot.contact_ln_sd", 0.01.into()),
             ];
-            let variant = in_world(BAUDS[0], recipe("plus_minus", 8, stops_early), world);
+            let variant =
+                Variant::exact(BAUDS[0], recipe("plus_minus", 8, stops_early)).in_world(world);
             let lots = method::lots(&variant, order)?;
             let way = if stops_early { "up to 8" } else { "8" };
             let name = format!("NO of {mohm} mOhm, closures {way}");

@@ -1,16 +1,14 @@
 //! Rig time of a test and of a cycle, and where it goes.
 //!
-//! A cycle runs from nest exit to nest exit. What of it is not the test is mechanics; what of the test
-//! is not told by the rows is `rest`. Shares are means over parts that have both times, so the pieces add
-//! up to the mean cycle.
+//! A cycle runs from nest exit to nest exit. The cycle without the test is mechanics; the part of the test that the rows
+//! do not name is `rest`. Shares are means over parts that have both times, so that the pieces add up to the mean cycle.
 
 use super::bins;
 use super::chart::Chart;
-use super::error::percent;
 use super::exception;
-use super::figure::{Bar, Figure};
-use super::fleet::Order;
+use super::figure::{Bar, Figure, mean, percent, share_pct};
 use super::lot::{Lot, Part};
+use super::order::Order;
 use super::output::Report;
 use super::path;
 use quality::Spread;
@@ -18,18 +16,18 @@ use quality::spread::median;
 
 /// Longest test of a good part, seconds of rig time.
 const TEST_S: f64 = 0.85;
-/// The law that places the fine ramps ([`machine::dut::em_relay::overshoot`]) has six terms, and golden parts are chosen to lie far apart:
-/// before as many parts of a lot have taught it, it is sure of so little that ramps are long. That bounds the first.
-const TEACH: usize = 6;
-/// Longest test of any part: a defect may ask for another ramp.
+/// Parts after which the overshoot model ([`machine::dut::em_relay::overshoot`]) places the fine ramps well. It has six
+/// terms, and the reference parts lie far apart: with fewer parts its uncertainty makes the ramps of a lot long.
+const LEARNING_PARTS: usize = 6;
+/// Longest test of any part, seconds of rig time: a defect may need another ramp.
 const ANY_TEST_S: f64 = 1.0;
-/// Mean test of a recipe that measures adaptively.
+/// Longest mean test of a recipe that measures adaptively, seconds of rig time.
 const ADAPTIVE_MEAN_S: f64 = 0.60;
-/// Mean test against the bound of [`bound`].
+/// Greatest ratio of the mean test to the bound of [`bound`].
 const RATIO: f64 = 1.15;
 /// Longest cycle with overlap, seconds of rig time.
 const CYCLE_S: f64 = 2.5;
-/// Pieces of a test as the rows name them, and as a person reads them.
+/// Pieces of a test: key in the rows and name in the report.
 const PIECES: [(&str, &str); 4] = [
     ("bus_s", "bus"),
     ("settling_s", "settling"),
@@ -40,18 +38,14 @@ const PIECES: [(&str, &str); 4] = [
 /// Runs the lots and makes the report.
 ///
 /// # Errors
-/// A lot that could not be run.
+/// A lot that did not run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let lots = order.run_all()?;
     let adaptive = order.recipe.ends_with("-adaptive");
     let mean_bar = if adaptive { ADAPTIVE_MEAN_S } else { TEST_S };
-    let pieces = pieces(&lots);
-    let chart = Chart::of(
-        format!("where a cycle goes, mean per part: {}", order.about()),
-        "s",
-        Vec::new(),
-        &pieces,
-    );
+    let (pieces, about) = (pieces(&lots), order.about());
+    let title = format!("where a cycle goes, mean per part: {about}");
+    let chart = Chart::of(title, "s", Vec::new(), &pieces);
     let groups = vec![
         times(&lots),
         bound(&lots, mean_bar),
@@ -59,32 +53,40 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
         pieces,
         bins::machine(&lots),
     ];
-    Ok(Report {
-        study: "cycle",
-        about: order.about(),
-        groups,
-        notes: exception::slow(&lots, TEST_S, CYCLE_S),
-        chart,
-    })
+    let notes = exception::slow(&lots, TEST_S, CYCLE_S);
+    Ok(Report::new("cycle", about, groups, chart).noted(notes))
 }
 
-/// Longest, mean and median of tests and cycles; tests of good parts also apart, as far as their lot had taught the law of
-/// its ramps.
+/// Returns longest, mean and median of tests and cycles; for good parts also those of the first [`LEARNING_PARTS`] of a
+/// lot and of the parts after them.
 pub fn times(lots: &[Lot]) -> Vec<Figure> {
-    let good = |from: usize, to: usize| {
+    let good = |from: usize, to: usize| -> Vec<f64> {
         let of = move |lot| Lot::good(lot).skip(from).take(to - from);
-        row_of(lots.iter().flat_map(of), |it| it.test_s)
+        lots.iter()
+            .flat_map(of)
+            .filter_map(|it| it.test_s)
+            .collect()
     };
-    let any = |of| row_of(lots.iter().flat_map(|lot| &lot.parts), of);
-    let cycles = row_of(lots.iter().flat_map(Lot::good), |it| it.cycle_s);
+    let any = |of: fn(&Part) -> Option<f64>| -> Vec<f64> {
+        lots.iter()
+            .flat_map(|lot| &lot.parts)
+            .filter_map(of)
+            .collect()
+    };
+    let cycles: Vec<f64> = lots
+        .iter()
+        .flat_map(Lot::good)
+        .filter_map(|it| it.cycle_s)
+        .collect();
+    let first = format!("  of the first {LEARNING_PARTS} of a lot, which teach");
     vec![
         longest("test, longest of good parts", TEST_S, &good(0, usize::MAX)),
+        longest(first, TEST_S, &good(0, LEARNING_PARTS)),
         longest(
-            format!("  of the first {TEACH} of a lot, which teach"),
+            "  of those after them",
             TEST_S,
-            &good(0, TEACH),
+            &good(LEARNING_PARTS, usize::MAX),
         ),
-        longest("  of those after them", TEST_S, &good(TEACH, usize::MAX)),
         longest(
             "test, longest of all parts",
             ANY_TEST_S,
@@ -99,10 +101,6 @@ pub fn times(lots: &[Lot]) -> Vec<Figure> {
     ]
 }
 
-fn row_of<'a>(parts: impl Iterator<Item = &'a Part>, of: fn(&Part) -> Option<f64>) -> Vec<f64> {
-    parts.filter_map(of).collect()
-}
-
 fn longest(name: impl Into<String>, bar_s: f64, times: &[f64]) -> Figure {
     let spread = Spread::of(times);
     let over = times.iter().filter(|it| **it > bar_s).count() as u64;
@@ -113,18 +111,16 @@ fn longest(name: impl Into<String>, bar_s: f64, times: &[f64]) -> Figure {
         .bar(Bar::AtMost(bar_s))
 }
 
-/// Mean test of good parts against the same acts on a bus that takes no time: what conversion rate, settling
-/// and the contact events themselves leave.
+/// Compares the mean test of good parts with the same acts on a bus that takes no time, where conversion, settling and
+/// the contact events alone remain.
 pub fn bound(lots: &[Lot], mean_bar: f64) -> Vec<Figure> {
     let tests: Vec<(f64, f64)> = lots
         .iter()
         .flat_map(Lot::good)
         .filter_map(|part| Some((part.test_s?, *part.spent.get("bound_s")?)))
         .collect();
-    let mean = |what: fn(&(f64, f64)) -> f64| {
-        Spread::of(&tests.iter().map(what).collect::<Vec<f64>>()).mean()
-    };
-    let (test, bound) = (mean(|it| it.0), mean(|it| it.1));
+    let test = mean(tests.iter().map(|it| it.0));
+    let bound = mean(tests.iter().map(|it| it.1));
     let n = tests.len() as u64;
     let ratio = test.zip(bound).map(|(test, bound)| test / bound);
     vec![
@@ -134,48 +130,36 @@ pub fn bound(lots: &[Lot], mean_bar: f64) -> Vec<Figure> {
     ]
 }
 
-/// Mean seconds of each piece of a cycle.
+/// Returns the mean seconds of each piece of a cycle.
 pub fn pieces(lots: &[Lot]) -> Vec<Figure> {
     let parts: Vec<(&Part, f64, f64)> = lots
         .iter()
         .flat_map(|lot| &lot.parts)
         .filter_map(|part| Some((part, part.test_s?, part.cycle_s?)))
         .collect();
-    let told = parts.iter().any(|(part, ..)| !part.spent.is_empty());
-    let mean = |what: &dyn Fn(&(&Part, f64, f64)) -> f64| {
-        Spread::of(&parts.iter().map(what).collect::<Vec<f64>>()).mean()
-    };
-    let cycle = mean(&|(_, _, cycle)| *cycle);
-    let row = |name: &str, seconds: Option<f64>| {
-        let share = seconds
-            .zip(cycle)
-            .filter(|(_, all)| *all > 0.0)
-            .map(|(some, all)| 100.0 * some / all);
-        Figure::new(name, parts.len() as u64, seconds, "s").with("share_pct", share)
+    let is_split = parts.iter().any(|(part, ..)| !part.spent.is_empty());
+    let cycle = mean(parts.iter().map(|(_, _, cycle)| *cycle));
+    let row = |name: &str, seconds: &dyn Fn(&(&Part, f64, f64)) -> f64| {
+        let seconds = mean(parts.iter().map(seconds));
+        Figure::new(name, parts.len() as u64, seconds, "s")
+            .with("share_pct", share_pct(seconds, cycle))
     };
     let spent = |part: &Part, key: &str| part.spent.get(key).copied().unwrap_or(0.0);
     let mut rows = vec![
-        row("cycle", cycle),
-        row(
-            "mechanics outside the test",
-            mean(&|(_, test, cycle)| cycle - test),
-        ),
+        row("cycle", &|(_, _, cycle)| *cycle),
+        row("mechanics outside the test", &|(_, test, cycle)| {
+            cycle - test
+        }),
     ];
-    if !told {
-        rows.push(row("test", mean(&|(_, test, _)| *test)));
+    if !is_split {
+        rows.push(row("test", &|(_, test, _)| *test));
         return rows;
     }
-    rows.extend(PIECES.map(|(key, name)| {
-        row(
-            &format!("test: {name}"),
-            mean(&|(part, ..)| spent(part, key)),
-        )
+    rows.extend(
+        PIECES.map(|(key, name)| row(&format!("test: {name}"), &|(part, ..)| spent(part, key))),
+    );
+    rows.push(row("test: rest", &|(part, test, _)| {
+        test - PIECES.iter().map(|(key, _)| spent(part, key)).sum::<f64>()
     }));
-    let rest =
-        |part: &Part, test: f64| test - PIECES.iter().map(|(key, _)| spent(part, key)).sum::<f64>();
-    rows.push(row(
-        "test: rest",
-        mean(&|(part, test, _)| rest(part, *test)),
-    ));
     rows
 }

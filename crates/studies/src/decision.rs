@@ -1,20 +1,21 @@
-//! False accepts and false rejects: counted against the truth, and as the rule predicts them.
+//! False accepts and false rejects: counted against the truth, and predicted by the decision rule ([`super::risk`]) from
+//! the rows.
 //!
-//! Predicted from what the rows say ([`super::chance`]). A lot in the middle of its limits has next to no risk, and
-//! a count of nothing proves little; so a second lot stands at the limit of the operate voltage, one standard
-//! deviation inside, where one part in six is beyond it and one in twenty is measured again.
+//! A lot in the middle of its limits has next to no risk, and a count of zero proves little. A second set of lots
+//! therefore has its mean operate voltage one standard deviation inside the limit: one part in six lies beyond the limit,
+//! and one in twenty gets a confirmation measurement.
 //!
-//! What every part of a lot shares (golden parts, instruments) makes lots differ by more than chance does: a count is
-//! held against its prediction with three standard deviations of the sum over lots, as the lots themselves scatter.
+//! Reference parts and instruments are common to all parts of a lot, so that lots differ by more than chance. The bar
+//! of a count is its prediction plus or minus three standard deviations of the sum over lots, from the scatter of the lots.
 
 use super::bins;
-use super::chance::Chance;
 use super::chart::Chart;
 use super::figure::{Bar, Figure};
-use super::fleet::Order;
 use super::lot::{Lot, Part, Reading};
 use super::method::{self, BAUDS};
+use super::order::Order;
 use super::output::Report;
+use super::risk::DecisionRisk;
 use super::variant::Variant;
 use anyhow::Context as _;
 use config::load_recipe;
@@ -25,15 +26,16 @@ use std::ops::RangeInclusive;
 
 /// Parts per million.
 const PPM: f64 = 1e6;
-/// Voltage of the part that `[lot]` of a world describes.
+/// Rated voltage of the part that `[lot]` of a world describes, V.
 const LOT_V: f64 = 12.0;
-/// What a U must fall by to be that of a slow repetition: noise alone moves it by less.
+/// A value has a confirmation measurement when its uncertainty is below this share of the usual one; noise alone changes
+/// it by less.
 const AGAIN: f64 = 0.98;
 
 /// Runs the lots and makes the report.
 ///
 /// # Errors
-/// A lot that could not be run.
+/// A lot that did not run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let lots = order.run_all()?;
     let rows: Vec<Figure> = order
@@ -41,30 +43,18 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
         .iter()
         .map(|(parameter, limits)| predicted(*parameter, limits, &lots))
         .collect();
-    let chart = Chart::of(
-        format!(
-            "rejects of good parts that the rule predicts: {}",
-            order.about()
-        ),
-        "ppm",
-        Vec::new(),
-        &rows,
-    );
-    let told = |what: fn(&Figure) -> Option<f64>| rows.iter().filter_map(what).sum::<f64>() / PPM;
-    let risks = (told(false_accept), told(|row| row.value));
+    let about = order.about();
+    let title = format!("rejects of good parts that the rule predicts: {about}");
+    let chart = Chart::of(title, "ppm", Vec::new(), &rows);
+    let sum = |what: fn(&Figure) -> Option<f64>| rows.iter().filter_map(what).sum::<f64>() / PPM;
+    let risks = (sum(false_accept), sum(|row| row.value));
     let groups = vec![
         counted("", &lots, risks),
         at_limit(order, &lots)?,
         bins::outcome(&lots),
         rows,
     ];
-    Ok(Report {
-        study: "decision",
-        about: order.about(),
-        groups,
-        notes: Vec::new(),
-        chart,
-    })
+    Ok(Report::new("decision", about, groups, chart))
 }
 
 fn false_accept(row: &Figure) -> Option<f64> {
@@ -73,7 +63,8 @@ fn false_accept(row: &Figure) -> Option<f64> {
         .and_then(|(_, value)| *value)
 }
 
-/// What the rule predicts of one parameter, parts per million; beside it, without a guard band.
+/// Returns the false rejects and accepts that the rule predicts for one parameter, parts per million, with and without
+/// guard band.
 fn predicted(parameter: Parameter, limits: &RangeInclusive<f64>, lots: &[Lot]) -> Figure {
     let readings = readings(parameter, lots);
     let chance = chance(&readings);
@@ -97,9 +88,10 @@ fn readings(parameter: Parameter, lots: &[Lot]) -> Vec<Reading> {
         .collect()
 }
 
-/// Process and measurement behind the rows: the values are normal, less the variance of measurement; U is that
-/// of most parts, and that of those whose U is clearly smaller is the one of slow repetitions.
-fn chance(readings: &[Reading]) -> Option<Chance> {
+/// Estimates process and measurement from the rows. The process is normal; its variance is that of the values less that
+/// of the measurement. The uncertainty is the median over parts; the median of clearly smaller ones belongs to the
+/// confirmation measurements.
+fn chance(readings: &[Reading]) -> Option<DecisionRisk> {
     let values = Spread::of(&readings.iter().map(|it| it.value).collect::<Vec<f64>>());
     let stated: Vec<f64> = readings.iter().filter_map(|it| it.uncertainty).collect();
     let u = median(&stated)? / 2.0;
@@ -109,7 +101,7 @@ fn chance(readings: &[Reading]) -> Option<Chance> {
         .filter(|it| *it < AGAIN * u)
         .collect();
     let sd = values.sd()?;
-    Some(Chance {
+    Some(DecisionRisk {
         mean: values.mean()?,
         sd: (sd * sd - u * u).max(sd * sd * 0.01).sqrt(),
         u,
@@ -117,7 +109,7 @@ fn chance(readings: &[Reading]) -> Option<Chance> {
     })
 }
 
-/// The same rig with a lot whose operate voltage stands one standard deviation inside its limit.
+/// Runs lots whose mean operate voltage lies one standard deviation inside its limit.
 fn at_limit(order: &Order, lots: &[Lot]) -> anyhow::Result<Vec<Figure>> {
     let known = |(parameter, _): &&(Parameter, _)| *parameter == Parameter::OperateVoltage;
     let limits = order.admitted.iter().find(known).map(|(_, limits)| limits);
@@ -133,11 +125,9 @@ fn at_limit(order: &Order, lots: &[Lot]) -> anyhow::Result<Vec<Figure>> {
         .nominal_v
         .context("the study needs a recipe of a relay")?;
     let of_lot = LOT_V / nominal_v;
-    let variant = Variant {
-        exact: false,
-        world: vec![("lot.operate_v_mean", (mean * of_lot).into())],
-        ..Variant::exact(BAUDS[0], vec![("test.expected_operate_v", mean.into())])
-    };
+    let recipe = vec![("test.expected_operate_v", mean.into())];
+    let variant = Variant::erring(BAUDS[0], recipe)
+        .in_world(vec![("lot.operate_v_mean", (mean * of_lot).into())]);
     let lots = method::lots(&variant, order)?;
     let chance = chance(&readings(Parameter::OperateVoltage, &lots));
     let risks = chance
@@ -154,12 +144,12 @@ fn at_limit(order: &Order, lots: &[Lot]) -> anyhow::Result<Vec<Figure>> {
     Ok(figures)
 }
 
-fn is_again(reading: &Reading, chance: Option<Chance>) -> bool {
+fn is_again(reading: &Reading, chance: Option<DecisionRisk>) -> bool {
     let (u, usual) = (reading.uncertainty, chance.map(|it| 2.0 * it.u));
     u.zip(usual).is_some_and(|(u, usual)| u < AGAIN * usual)
 }
 
-/// What happened, over good and bad parts alike, beside what was to be expected of so many.
+/// Counts false accepts and rejects over good and bad parts, beside the prediction for the same number of parts.
 fn counted(which: &str, lots: &[Lot], (accept, reject): (f64, f64)) -> Vec<Figure> {
     let row = |what: &str, risk: f64, is: fn(&Part) -> bool| {
         let each: Vec<f64> = lots
@@ -177,10 +167,10 @@ fn counted(which: &str, lots: &[Lot], (accept, reject): (f64, f64)) -> Vec<Figur
     };
     vec![
         row("false accepts", accept, |part| {
-            !part.deserves_to_pass() && bins::has_passed(part)
+            !part.is_conforming() && part.has_passed()
         }),
         row("false rejects", reject, |part| {
-            part.deserves_to_pass() && part.verdict == "fail"
+            part.is_conforming() && part.verdict == "fail"
         }),
     ]
 }

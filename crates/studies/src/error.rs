@@ -1,15 +1,17 @@
 //! Errors of one parameter against the truth, over good parts.
 //!
-//! The units are those of the bars: ohm in percent of the true value, volt in mV, all else as its key says.
-//! Covered means `|value - truth| <= U`, `U` expanded with k = 2; a value without an uncertainty covers nothing.
+//! An error has the unit of its bar: percent of the true value for ohm, mV for volt, the unit of the parameter
+//! otherwise. A value covers its truth when `|value - truth| <= U`, with `U` expanded by k = 2; a value without an
+//! uncertainty does not.
 
+use super::figure::percent;
 use super::lot::{Lot, Part, Reading};
 use machine::dut::em_relay::Parameter;
 use quality::Spread;
 use quality::spread::median;
 use units::Unit;
 
-/// Unit of the error of a parameter in reports.
+/// Returns the unit of the error of a parameter.
 pub fn unit(parameter: Parameter) -> &'static str {
     match parameter.facts().definition.unit {
         Unit::Ohm => "%",
@@ -18,7 +20,7 @@ pub fn unit(parameter: Parameter) -> &'static str {
     }
 }
 
-/// The error of a reading in [`unit`].
+/// Returns the error of a reading in [`unit`].
 pub fn error(parameter: Parameter, reading: &Reading) -> f64 {
     let difference = reading.value - reading.truth;
     match parameter.facts().definition.unit {
@@ -36,22 +38,16 @@ pub struct Errors {
 }
 
 impl Errors {
-    /// Of the good parts of a lot.
+    /// Collects the errors of the good parts of a lot.
     pub fn of(parameter: Parameter, lot: &Lot) -> Self {
-        let readings: Vec<Reading> = lot
-            .good()
-            .filter_map(|part| part.reading(parameter))
-            .collect();
+        let readings = || lot.good().filter_map(|part| part.reading(parameter));
         Self {
-            covered: readings
-                .iter()
-                .filter(|reading| is_covered(reading))
-                .count() as u64,
-            ..Self::listed(readings.iter().map(|reading| error(parameter, reading)))
+            covered: readings().filter(is_covered).count() as u64,
+            ..Self::listed(readings().map(|reading| error(parameter, &reading)))
         }
     }
 
-    /// Of errors without an uncertainty beside them.
+    /// Collects errors that have no uncertainty.
     fn listed(errors: impl Iterator<Item = f64>) -> Self {
         Self {
             spread: Spread::of(&errors.collect::<Vec<f64>>()),
@@ -69,7 +65,7 @@ impl Errors {
         self.spread.mean()
     }
 
-    /// Root of the mean square: `rms^2 = mean^2 + sd^2 (n - 1) / n`.
+    /// Returns the root of the mean square: `rms^2 = mean^2 + sd^2 (n - 1) / n`.
     pub fn rms(&self) -> Option<f64> {
         let mean = self.spread.mean()?;
         let n = self.n() as f64;
@@ -77,7 +73,7 @@ impl Errors {
         Some((mean * mean + sd * sd * (n - 1.0) / n).sqrt())
     }
 
-    /// Greatest error, as an absolute value.
+    /// Greatest absolute error.
     pub fn worst(&self) -> Option<f64> {
         Some(self.spread.min()?.abs().max(self.spread.max()?.abs()))
     }
@@ -94,12 +90,12 @@ fn is_covered(reading: &Reading) -> bool {
 pub struct Pooled(Vec<Errors>);
 
 impl Pooled {
-    /// Of the good parts of all lots.
+    /// Collects the errors of the good parts of all lots.
     pub fn of(parameter: Parameter, lots: &[Lot]) -> Self {
         Self(lots.iter().map(|lot| Errors::of(parameter, lot)).collect())
     }
 
-    /// Of good parts of all lots, of those for which `error` has one.
+    /// Collects the errors that `error` returns for the good parts of all lots.
     pub fn by(lots: &[Lot], error: impl Fn(&Part) -> Option<f64>) -> Self {
         let of = |lot: &Lot| Errors::listed(lot.good().filter_map(&error));
         Self(lots.iter().map(of).collect())
@@ -110,7 +106,7 @@ impl Pooled {
         self.0.iter().map(Errors::n).sum()
     }
 
-    /// Median over lots of the rms error; none when a lot has no value at all.
+    /// Median over lots of the rms error; `None` when a lot has no value.
     pub fn median_rms(&self) -> Option<f64> {
         let each: Option<Vec<f64>> = self.0.iter().map(Errors::rms).collect();
         median(&each?)
@@ -132,7 +128,7 @@ impl Pooled {
         self.0.iter().filter_map(Errors::worst).reduce(f64::max)
     }
 
-    /// Percent of all values whose stated uncertainty covers the truth.
+    /// Share of all values whose stated uncertainty covers the truth, percent.
     pub fn coverage_pct(&self) -> Option<f64> {
         let covered: u64 = self.0.iter().map(|errors| errors.covered).sum();
         percent(covered, self.n())
@@ -140,14 +136,8 @@ impl Pooled {
 
     /// Least coverage of a lot, percent.
     pub fn worst_coverage_pct(&self) -> Option<f64> {
-        self.0
-            .iter()
-            .filter_map(|errors| percent(errors.covered, errors.n()))
-            .reduce(f64::min)
+        let each = self.0.iter();
+        let covered = each.filter_map(|errors| percent(errors.covered, errors.n()));
+        covered.reduce(f64::min)
     }
-}
-
-/// Returns the share in percent; none when `all` is 0.
-pub fn percent(some: u64, all: u64) -> Option<f64> {
-    (all > 0).then(|| 100.0 * some as f64 / all as f64)
 }

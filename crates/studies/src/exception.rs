@@ -1,33 +1,29 @@
-//! Single parts behind a figure, each with the seed and the number that show it again.
+//! Single parts behind a figure, each with the seed and the number that reproduce it.
 
-use super::bins::{bin_of, has_passed};
+use super::bins::bin_of;
 use super::lot::{Lot, Part};
 
-/// Lines of a report at most; the figures count them all.
+/// Most parts that a report names; the figures count all of them.
 const SHOWN: usize = 20;
 
-/// Good parts that did not pass, others that did, defects in the bin of another cause, and rows that do not
-/// name the bin where the part is.
+/// Names good parts that did not pass, other parts that did, defects in the bin of another cause, and rows that do not
+/// name the bin where the part lies.
 pub fn outcome(lots: &[Lot]) -> Vec<String> {
-    told(lots, |part| {
-        let defect = part
-            .truth
-            .as_ref()
-            .and_then(|truth| truth.defect.as_deref());
-        let right = match defect {
-            None if part.is_beyond => !has_passed(part),
+    listed(lots, |part| {
+        let right = match part.defect() {
+            None if part.is_out_of_limits => !part.has_passed(),
             None => part.is_good() && part.verdict == "pass",
-            Some(defect) => bin_of(defect) == Some(part.bin.as_str()) && !has_passed(part),
+            Some(defect) => bin_of(defect) == Some(part.bin.as_str()) && !part.has_passed(),
         };
-        (!right || !part.is_where_it_says()).then(String::new)
+        (!right || !part.is_in_named_bin()).then(String::new)
     })
 }
 
-/// Parts with a test or a cycle longer than allowed, seconds of rig time.
+/// Names parts with a test longer than `test_s` or a cycle longer than `cycle_s`, seconds of rig time.
 pub fn slow(lots: &[Lot], test_s: f64, cycle_s: f64) -> Vec<String> {
     let over = |time: Option<f64>, bar: f64| time.is_some_and(|time| time > bar);
     let text = |time: Option<f64>| time.map_or_else(|| "-".into(), |time| format!("{time:.3}"));
-    told(lots, |part| {
+    listed(lots, |part| {
         (over(part.test_s, test_s) || over(part.cycle_s, cycle_s)).then(|| {
             format!(
                 ", test {} s, cycle {} s",
@@ -38,12 +34,12 @@ pub fn slow(lots: &[Lot], test_s: f64, cycle_s: f64) -> Vec<String> {
     })
 }
 
-fn told(lots: &[Lot], why: impl Fn(&Part) -> Option<String>) -> Vec<String> {
+fn listed(lots: &[Lot], why: impl Fn(&Part) -> Option<String>) -> Vec<String> {
     let parts = lots
         .iter()
         .flat_map(|lot| lot.parts.iter().map(|part| (lot.seed, part)));
     let mut found =
-        parts.filter_map(|(seed, part)| Some(format!("{}{}", line(seed, part), why(part)?)));
+        parts.filter_map(|(seed, part)| Some(format!("{}{}", description(seed, part), why(part)?)));
     let mut lines: Vec<String> = found.by_ref().take(SHOWN).collect();
     let more = found.count();
     if more > 0 {
@@ -52,32 +48,20 @@ fn told(lots: &[Lot], why: impl Fn(&Part) -> Option<String>) -> Vec<String> {
     lines
 }
 
-fn line(seed: u64, part: &Part) -> String {
-    let was = part
-        .truth
-        .as_ref()
-        .map_or("not known to the truth", |truth| {
-            let sound = if part.is_beyond {
-                "beyond a limit"
-            } else {
-                "good"
-            };
-            truth.defect.as_deref().unwrap_or(sound)
-        });
-    let landed = part
-        .truth
-        .as_ref()
-        .and_then(|truth| truth.landed_in.as_deref())
-        .unwrap_or("nowhere");
+fn description(seed: u64, part: &Part) -> String {
+    let was = match part.defect() {
+        Some(defect) => defect,
+        None if part.truth.is_none() => "not known to the truth",
+        None if part.is_out_of_limits => "beyond a limit",
+        None => "good",
+    };
+    let bin = Some(part.bin.as_str()).filter(|bin| !bin.is_empty());
     let mut text = format!(
-        "seed {seed} part {}: {was}, {}, row says {}, lies in {landed}",
+        "seed {seed} part {}: {was}, {}, row says {}, lies in {}",
         part.seq,
         part.verdict,
-        if part.bin.is_empty() {
-            "nowhere"
-        } else {
-            &part.bin
-        }
+        bin.unwrap_or("nowhere"),
+        part.landed_in().unwrap_or("nowhere"),
     );
     if !part.reasons.is_empty() {
         text.push_str(&format!(", because {}", part.reasons.join("; ")));

@@ -1,8 +1,9 @@
-//! One figure and the bar it has to keep.
+//! One figure and the bar that it must keep.
 
-use serde_json::{Map, Value, json};
+use quality::Spread;
+use serde_json::{Value, json};
 
-/// Range that a figure must keep; both ends belong to it, except for [`Bar::Below`].
+/// Range that a figure must keep; its ends belong to it, except for [`Bar::Below`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Bar {
     /// At most.
@@ -16,7 +17,7 @@ pub enum Bar {
 }
 
 impl Bar {
-    /// Checks a value; NaN never keeps a bar.
+    /// Returns whether a value keeps the bar; NaN never does.
     pub fn is_met(self, value: f64) -> bool {
         match self {
             Self::AtMost(high) => value <= high,
@@ -44,18 +45,18 @@ pub struct Figure {
     pub name: String,
     /// Number of parts, lots or runs behind the value.
     pub n: u64,
-    /// The figure that is held against the bar; none when nothing was measured.
+    /// The value to which the bar applies; `None` when nothing was measured.
     pub value: Option<f64>,
     /// Unit of `value` and of `more`, unless a column names its own.
     pub unit: &'static str,
     /// Further columns: key and number, no bar.
     pub more: Vec<(&'static str, Option<f64>)>,
-    /// None where the figure is for information.
+    /// Bar of the value; `None` for a figure that only informs.
     pub bar: Option<Bar>,
 }
 
 impl Figure {
-    /// A figure for information.
+    /// A figure without a bar; a value that is not finite becomes `None`.
     pub fn new(name: impl Into<String>, n: u64, value: Option<f64>, unit: &'static str) -> Self {
         let value = value.filter(|it| it.is_finite());
         Self {
@@ -68,17 +69,17 @@ impl Figure {
         }
     }
 
-    /// A number of things.
+    /// A count out of `n`, without a bar.
     pub fn count(name: impl Into<String>, n: u64, count: Option<u64>) -> Self {
         Self::new(name, n, count.map(|it| it as f64), "")
     }
 
-    /// Counts things that must not happen, held against zero.
+    /// A count of events that must not happen, with a bar of zero.
     pub fn none(name: impl Into<String>, n: u64, count: u64) -> Self {
         Self::count(name, n, Some(count)).bar(Bar::AtMost(0.0))
     }
 
-    /// The same, held against a bar.
+    /// The same figure with a bar.
     pub fn bar(self, bar: Bar) -> Self {
         Self {
             bar: Some(bar),
@@ -86,34 +87,45 @@ impl Figure {
         }
     }
 
-    /// The same with one column more.
+    /// The same figure with one more column.
     pub fn with(mut self, key: &'static str, value: Option<f64>) -> Self {
         self.more.push((key, value.filter(|it| it.is_finite())));
         self
     }
 
-    /// Returns whether the bar is kept: none without a bar, false without a value.
+    /// Returns whether the value keeps the bar: `None` without a bar, false without a value.
     pub fn met(&self) -> Option<bool> {
         self.bar
             .map(|bar| self.value.is_some_and(|value| bar.is_met(value)))
     }
 
-    /// As one JSON object.
+    /// Returns the figure as one JSON object of type `figure`.
     pub fn json(&self, study: &str) -> Value {
-        let mut it = Map::new();
-        it.insert("type".into(), json!("figure"));
-        it.insert("study".into(), json!(study));
-        it.insert("figure".into(), json!(self.name));
-        it.insert("n".into(), json!(self.n));
-        it.insert("value".into(), json!(self.value));
-        it.insert("unit".into(), json!(self.unit));
+        let mut it = json!({
+            "type": "figure", "study": study, "figure": self.name, "n": self.n, "value": self.value, "unit": self.unit,
+        });
         for (key, value) in &self.more {
-            it.insert((*key).into(), json!(value));
+            it[*key] = json!(value);
         }
-        it.insert("bar".into(), json!(self.bar.map(Bar::text)));
-        it.insert("met".into(), json!(self.met()));
-        Value::Object(it)
+        it["bar"] = json!(self.bar.map(Bar::text));
+        it["met"] = json!(self.met());
+        it
     }
+}
+
+/// Returns the share in percent; `None` when `all` is 0.
+pub fn percent(some: u64, all: u64) -> Option<f64> {
+    (all > 0).then(|| 100.0 * some as f64 / all as f64)
+}
+
+/// Returns the share of a quantity in percent; `None` unless both are known and `all` is above 0.
+pub fn share_pct(some: Option<f64>, all: Option<f64>) -> Option<f64> {
+    Some(100.0 * some? / all.filter(|all| *all > 0.0)?)
+}
+
+/// Returns the mean; `None` without values.
+pub fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    Spread::of(&values.collect::<Vec<f64>>()).mean()
 }
 
 /// Formats a value to five digits, without an exponent.

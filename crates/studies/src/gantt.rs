@@ -1,22 +1,23 @@
-//! One part through all stations, and its neighbours beside it: which output was on when, as SVG.
+//! One part through all stations, with its neighbours: the intervals in which each output was on, as SVG.
 //!
-//! Read from the journal of the simulated rig: what an actuator felt. The part that is followed is dark.
+//! The intervals come from the journal of the simulated rig, at the terminals of the actuators. The followed part is dark.
 
-use super::fleet::{Folder, Order};
 use super::journal::{self, Entry};
+use super::order::Order;
 use anyhow::Context;
 use config::Plant;
 use history::report::svg::Svg;
 use machine::dut::em_relay;
 use machine::rig::point::DigitalOut;
 use machine::rig::wiring::Wiring;
+use tempfile::TempDir;
 
-/// Parts of the lot; the one that is followed has one before it and one behind.
+/// Story of a lot long enough that the followed part has one before it and one behind.
 const SCRIPT: &str = "# A chart of one part\nparts 8\n";
-/// Parts behind the one that is followed.
+/// Number of parts behind the followed one.
 const BEHIND: usize = 3;
 
-/// Rows from top to bottom: label, and outputs of which one at least is on.
+/// Rows from top to bottom: label, and outputs; a row is on while at least one of its outputs is.
 const ROWS: [(&str, &[&str]); 8] = [
     ("escapement open", &[DigitalOut::EscapementRelease.name()]),
     ("pusher at the nest", &[DigitalOut::PusherExtend.name()]),
@@ -37,9 +38,9 @@ const ROWS: [(&str, &[&str]); 8] = [
         ],
     ),
 ];
-/// Place of the coil, which is driven several times for a part.
+/// Row of the coil, which a test drives several times.
 const COIL: usize = 4;
-/// Place of the probes.
+/// Row of the probes.
 const PROBES: usize = 3;
 
 const LABEL: f64 = 150.0;
@@ -47,23 +48,23 @@ const PLOT: f64 = 760.0;
 const TOP: f64 = 44.0;
 const ROW: f64 = 26.0;
 
-/// From when to when something was on, seconds.
+/// Begin and end of an interval, seconds.
 type Interval = (f64, f64);
 
-/// Plays a lot and draws it.
+/// Plays a lot and draws one part of it as SVG.
 ///
 /// # Errors
-/// A lot that could not be played, or one that was too short to follow a part.
+/// A lot that did not run, or without a part that went through all stations.
 pub fn svg(order: &Order) -> anyhow::Result<String> {
     let plant = Plant::load(&order.config)?;
-    let folder = Folder::new()?;
-    let played = journal::play(order, &folder.0, SCRIPT, 1)?;
+    let folder = TempDir::new()?;
+    let played = journal::play(order, folder.path(), SCRIPT, 1)?;
     let rows = ROWS.map(|(_, outputs)| intervals(&played.entries, &plant.wiring, outputs));
     let followed = followed(&rows).context("the chart: no part went through all stations")?;
     Ok(drawn(&rows, &followed))
 }
 
-/// When one of these outputs was on.
+/// Returns the intervals in which at least one of these outputs was on.
 fn intervals(entries: &[Entry], wiring: &Wiring, outputs: &[&str]) -> Vec<Interval> {
     let terminals: Vec<_> = outputs
         .iter()
@@ -95,7 +96,7 @@ fn intervals(entries: &[Entry], wiring: &Wiring, outputs: &[&str]) -> Vec<Interv
     intervals
 }
 
-/// The interval of each row that belongs to the part: its test, and what came before and after.
+/// Returns the interval of each row that belongs to the followed part.
 fn followed(rows: &[Vec<Interval>; 8]) -> Option<[Interval; 8]> {
     let before = |row: usize, at: f64| rows[row].iter().rev().find(|it| it.0 < at).copied();
     let after = |row: usize, at: f64| rows[row].iter().find(|it| it.0 >= at).copied();
@@ -143,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_part_is_followed_from_its_escapement_to_its_bin() {
+    fn a_part_is_followed_from_escapement_to_bin() {
         let cycle = |n: f64| [0.0, 1.8, 2.1, 2.4, 2.5, 2.6, 3.3, 3.9].map(|at| at + 2.0 * n);
         let long = |row: usize| if row == PROBES { 0.4 } else { 0.1 };
         let rows: [Vec<Interval>; 8] = std::array::from_fn(|row| {

@@ -1,12 +1,12 @@
 //! Speed of the history on a made-up file as large as weeks of production.
 //!
-//! The file is written by `history generate` into a folder of its own and thrown away with it. Every
-//! query is asked as the program asks it, rows read to the end. Wall times; the file was just written, so
-//! most of it is in the page cache of the system, as that of a plant's latest weeks is.
+//! The generator of `history generate` writes the file into a temporary directory. Every query runs as the program runs
+//! it and reads its rows to the end. All times are wall times. Most of the new file is in the page cache of the system, as
+//! the latest weeks of a plant are.
 
 use super::chart::Chart;
 use super::figure::{Bar, Figure};
-use super::fleet::{Folder, Order};
+use super::order::Order;
 use super::output::Report;
 use anyhow::Context;
 use app::generate::{Wanted, generate};
@@ -16,27 +16,28 @@ use history::{Archive, Filter, Identity, LotRecord, Moment, Row, Store};
 use machine::dut::em_relay::Parameter;
 use quality::Ordered;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
+use tempfile::TempDir;
 
-/// Parts of the sheet that is exported.
+/// Parts of the greater exported sheet.
 const SHEET: u64 = 100_000;
-/// Parts of the lesser sheet that its memory is compared with.
+/// Parts of the lesser exported sheet; its memory is the comparison.
 const LESSER: u64 = 10_000;
-/// Parts written one by one.
+/// Parts written in a transaction each.
 const SINGLE: u64 = 500;
-/// Filters asked.
+/// Number of filter queries.
 const FILTERS: usize = 300;
-/// Between two looks at the memory of the export.
+/// Interval between two readings of the memory of the export.
 const LOOK: Duration = Duration::from_millis(5);
 
-/// Writes the file, asks everything of it and makes the report.
+/// Writes the file, runs every query and makes the report.
 ///
 /// # Errors
-/// A file that could not be written or read.
+/// A file that cannot be written or read.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
-    let folder = Folder::new()?;
-    let db = folder.0.join("history.db");
+    let folder = TempDir::new()?;
+    let db = folder.path().join("history.db");
     let wanted = Wanted {
         parts: order.parts,
         seed: 1,
@@ -46,54 +47,45 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     let bar = progress(Some(order.parts), PIECES);
     let made = generate(&order.config, &db, &wanted, |parts| bar.set_position(parts))?;
     bar.finish_and_clear();
-    let rate = made.parts as f64 / made.writing.as_secs_f64();
-    let mut writing = vec![
-        Figure::new(
-            "inserted, 1000 parts a transaction",
-            made.parts,
-            Some(rate),
-            "/s",
-        )
-        .bar(Bar::AtLeast(2_000.0)),
-        Figure::count("measurement rows", made.parts, Some(made.measurements)),
-        Figure::new(
-            "file",
-            made.parts,
-            Some(std::fs::metadata(&db)?.len() as f64 / 1e9),
-            "GB",
-        ),
+    let n = made.parts;
+    let rate = n as f64 / made.writing.as_secs_f64();
+    let gigabytes = std::fs::metadata(&db)?.len() as f64 / 1e9;
+    let writing = vec![
+        Figure::new("inserted, 1000 parts a transaction", n, Some(rate), "/s")
+            .bar(Bar::AtLeast(2_000.0)),
+        Figure::count("measurement rows", n, Some(made.measurements)),
+        Figure::new("file", n, Some(gigabytes), "GB"),
+        one_by_one(&db.with_file_name("single.db"))?,
     ];
-    writing.push(one_by_one(&folder.0.join("single.db"))?);
     let archive = Archive::open(&db)?;
+    let all = Filter::default();
     let reading = vec![
         filters(&archive)?,
         last_day(&archive)?,
-        stats(
-            &archive,
-            &db,
-            "stats of one parameter, p95",
-            &Filter::default(),
-        )?
-        .bar(Bar::AtMost(300.0)),
+        stats(&archive, &db, "stats of one parameter, p95", &all)?.bar(Bar::AtMost(300.0)),
         stats(&archive, &db, "of its good parts, p95", &good())?,
     ];
-    let sheet = sheets(order, &folder.0, &db)?;
-    let chart = Chart::of(
-        format!("wall time of queries over {} parts", made.parts),
-        "ms",
-        vec![50.0, 300.0],
-        &reading,
-    );
-    Ok(Report {
-        study: "history",
-        about: format!("{} made-up parts of {}", made.parts, order.recipe),
-        groups: vec![writing, reading, sheet],
-        notes: Vec::new(),
+    let sheet = sheets(order, &db)?;
+    let title = format!("wall time of queries over {n} parts");
+    let chart = Chart::of(title, "ms", vec![50.0, 300.0], &reading);
+    let about = format!("{n} made-up parts of {}", order.recipe);
+    Ok(Report::new(
+        "history",
+        about,
+        vec![writing, reading, sheet],
         chart,
-    })
+    ))
 }
 
-/// A rig records its parts alone: one transaction and one flush each.
+/// Runs `work`, adds its wall time to `spent`, milliseconds, and returns its result.
+fn timed<T>(spent: &mut Vec<f64>, work: impl FnOnce() -> T) -> T {
+    let began = Instant::now();
+    let result = work();
+    spent.push(began.elapsed().as_secs_f64() * 1e3);
+    result
+}
+
+/// Writes parts as a rig does: one transaction and one flush for each.
 fn one_by_one(db: &Path) -> anyhow::Result<Figure> {
     let mut store = Store::open(db, &Identity::of_this_program())?;
     store.begin_lot(&LotRecord {
@@ -111,9 +103,7 @@ fn one_by_one(db: &Path) -> anyhow::Result<Figure> {
             measurements: Parameter::ALL.iter().map(measured).collect(),
             ..Default::default()
         };
-        let from = Instant::now();
-        store.record(&[Row::Part(part)])?;
-        spent.push(from.elapsed().as_secs_f64() * 1e3);
+        timed(&mut spent, || store.record(&[Row::Part(part)]))?;
     }
     Ok(times("one part a transaction, p99", &spent, 0.99))
 }
@@ -128,7 +118,7 @@ fn measured(parameter: &Parameter) -> history::MeasurementRecord {
     }
 }
 
-/// Lot, verdict and value range together; rejects over a wide range, good parts over a narrow one.
+/// Queries by lot, verdict and value range: rejects over a wide range, good parts over a narrow one.
 fn filters(archive: &Archive) -> anyhow::Result<Figure> {
     let lots = archive.lots(&Filter::default())?;
     let mut spent = Vec::new();
@@ -154,9 +144,7 @@ fn filters(archive: &Archive) -> anyhow::Result<Figure> {
             max,
             ..of_lot
         };
-        let from = Instant::now();
-        rows += archive.query(&filter)?.len();
-        spent.push(from.elapsed().as_secs_f64() * 1e3);
+        rows += timed(&mut spent, || archive.query(&filter))?.len();
     }
     Ok(times("lot + verdict + value range, p95", &spent, 0.95)
         .with("parts_each", Some(rows as f64 / FILTERS as f64))
@@ -173,21 +161,19 @@ fn last_day(archive: &Archive) -> anyhow::Result<Figure> {
     let mut spent = Vec::new();
     let mut parts = 0;
     for _ in 0..50 {
-        let from = Instant::now();
-        parts = archive.yield_between(since, end)?.parts;
-        spent.push(from.elapsed().as_secs_f64() * 1e3);
+        parts = timed(&mut spent, || archive.yield_between(since, end))?.parts;
     }
     Ok(times("yield of the last 24 hours, p95", &spent, 0.95)
         .with("parts_each", Some(parts as f64))
         .bar(Bar::AtMost(50.0)))
 }
 
-/// What SQLite itself takes to pass over the values that statistics are made of: nothing leaves it but a sum.
+/// Query that reads the values behind statistics inside SQLite and returns only their sum: the least time of a pass.
 const PLAIN: &str = "SELECT total(m.value) FROM measurement AS m
     JOIN parameter ON parameter.id = m.parameter_id
     WHERE parameter.key = ?1 AND m.population = 'lot'";
 
-/// A filter for which the packed values of whole runs are of no use.
+/// Returns a filter for which the history cannot use the packed values of whole runs.
 fn good() -> Filter {
     Filter {
         verdict: Some("pass".to_owned()),
@@ -195,20 +181,18 @@ fn good() -> Filter {
     }
 }
 
-/// Every parameter three times, from the query to the last figure; before each the plain pass over all values.
+/// Computes the statistics of every parameter three times, each after a plain pass over all values.
 fn stats(archive: &Archive, db: &Path, name: &str, filter: &Filter) -> anyhow::Result<Figure> {
     let plain = rusqlite::Connection::open(db)?;
     let mut passes = Vec::new();
     let mut spent = Vec::new();
     let mut parts = 0;
     for parameter in Parameter::ALL.iter().cycle().take(3 * Parameter::ALL.len()) {
-        let from = Instant::now();
-        plain.query_row(PLAIN, [parameter.name()], |row| row.get::<_, f64>(0))?;
-        passes.push(from.elapsed().as_secs_f64() * 1e3);
-        let from = Instant::now();
-        let found = figures(archive, parameter.name(), filter, None)?;
+        let key = parameter.name();
+        let sum = |row: &rusqlite::Row| row.get::<_, f64>(0);
+        timed(&mut passes, || plain.query_row(PLAIN, [key], sum))?;
+        let found = timed(&mut spent, || figures(archive, key, filter, None))?;
         parts = found.summary.n;
-        spent.push(from.elapsed().as_secs_f64() * 1e3);
     }
     let plain = Ordered::of(&passes).quantile(0.5);
     let ratio = Ordered::of(&spent).quantile(0.5).zip(plain);
@@ -218,10 +202,10 @@ fn stats(archive: &Archive, db: &Path, name: &str, filter: &Filter) -> anyhow::R
         .with("median_over_plain", ratio.map(|(ours, plain)| ours / plain)))
 }
 
-/// Spreadsheets of two sizes, each by a process of its own: time of the greater, memory of both.
-fn sheets(order: &Order, folder: &Path, db: &Path) -> anyhow::Result<Vec<Figure>> {
-    let (_, little) = exported(order, folder, db, LESSER)?;
-    let (wall, much) = exported(order, folder, db, SHEET)?;
+/// Exports spreadsheets of two sizes, each in a process of its own; returns time of the greater, memory of both.
+fn sheets(order: &Order, db: &Path) -> anyhow::Result<Vec<Figure>> {
+    let (_, little) = exported(order, db, LESSER)?;
+    let (wall, much) = exported(order, db, SHEET)?;
     let n = SHEET.min(order.parts);
     Ok(vec![
         Figure::new("export to a spreadsheet", n, Some(wall), "s").bar(Bar::AtMost(20.0)),
@@ -231,22 +215,15 @@ fn sheets(order: &Order, folder: &Path, db: &Path) -> anyhow::Result<Vec<Figure>
     ])
 }
 
-/// Wall seconds, and peak of resident memory in MB where the system tells it (Linux).
-fn exported(
-    order: &Order,
-    folder: &Path,
-    db: &Path,
-    parts: u64,
-) -> anyhow::Result<(f64, Option<f64>)> {
+/// Exports a spreadsheet; returns wall seconds, and the peak of resident memory in MB on Linux.
+fn exported(order: &Order, db: &Path, parts: u64) -> anyhow::Result<(f64, Option<f64>)> {
     let from = Instant::now();
-    let mut child = Command::new(&order.program)
-        .args(["--log", "warn", "--db"])
-        .arg(db)
-        .args(["history", "export", "--limit", &parts.to_string()])
-        .arg(folder.join("parts.xlsx"))
-        .stdout(Stdio::null())
-        .spawn()
-        .context("starting the export")?;
+    let mut command = order.command(db, "warn");
+    command.args(["history", "export", "--limit", &parts.to_string()]);
+    command
+        .arg(db.with_file_name("parts.xlsx"))
+        .stdout(Stdio::null());
+    let mut child = command.spawn().context("starting the export")?;
     let mut peak = None;
     loop {
         if let Some(status) = child.try_wait()? {
@@ -265,7 +242,7 @@ fn peak_memory_mb(process: u32) -> Option<f64> {
     Some(kilobytes / 1024.0)
 }
 
-/// Milliseconds at the share `p`, with median and greatest beside it.
+/// Returns the quantile `p` of times in milliseconds, with median and 99 % quantile as further columns.
 fn times(name: &str, spent: &[f64], p: f64) -> Figure {
     let ordered = Ordered::of(spent);
     Figure::new(name, spent.len() as u64, ordered.quantile(p), "ms")

@@ -1,12 +1,11 @@
-//! Stories with a journal: a script is played by this very program, and what the outputs did is read back.
+//! Stories with a journal: this program plays a script and writes down when each output of the rig changed.
 
-use super::fleet::Order;
-use anyhow::{Context, bail};
+use super::order::{Order, finished};
+use anyhow::Context;
 use serde::Deserialize;
 use std::path::Path;
-use std::process::{Command, Stdio};
 
-/// An entry of the journal.
+/// An entry of the journal, as `story --journal` writes it.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum Entry {
@@ -19,7 +18,7 @@ pub enum Entry {
         /// Bit n = channel n.
         bits: u16,
     },
-    /// A fault of the script has struck.
+    /// A fault of the script has begun.
     Struck {
         /// Rig time, microseconds.
         t_us: u64,
@@ -30,45 +29,41 @@ pub enum Entry {
     Expired {},
 }
 
-/// A story that was played.
+/// Result of a story.
 #[derive(Debug)]
 pub struct Played {
-    /// Text of the story.
+    /// Standard output of the story.
     pub text: String,
     /// Entries of the journal, in order of time.
     pub entries: Vec<Entry>,
-    /// The script was played to its end.
-    pub whole: bool,
+    /// Whether the story came to the end of its script.
+    pub completed: bool,
 }
 
-/// Plays a script; its files go to `folder`.
+/// Plays a script with `relayrig story`; its files go to `folder`.
 ///
 /// # Errors
-/// A story that could not be played, or a journal that could not be read.
+/// A story that this program refuses, or a journal that it cannot read.
 pub fn play(order: &Order, folder: &Path, script: &str, seed: u64) -> anyhow::Result<Played> {
-    let told = || format!("the story with seed {seed}");
     let (file, journal) = (folder.join("story.txt"), folder.join("journal.jsonl"));
-    std::fs::write(&file, script).with_context(told)?;
-    let mut command = Command::new(&order.program);
-    command.arg("--config").arg(&order.config);
-    command.arg("--db").arg(folder.join("history.db"));
-    command.args(["--log", "off", "story"]).arg(&file);
+    std::fs::write(&file, script)?;
+    let mut command = order.command(&folder.join("history.db"), "off");
+    command
+        .arg("story")
+        .arg(&file)
+        .arg("--journal")
+        .arg(&journal);
     command.args(["--recipe", &order.recipe, "--seed", &seed.to_string()]);
-    command.arg("--journal").arg(&journal);
-    let output = command.stdin(Stdio::null()).output().with_context(told)?;
-    let status = output.status.code();
-    if !matches!(status, Some(0 | 1)) {
-        bail!(
-            "{}: {}",
-            told(),
-            String::from_utf8_lossy(&output.stderr).trim()
-        );
-    }
-    let text = std::fs::read_to_string(&journal).with_context(told)?;
-    let entries = text.lines().map(serde_json::from_str);
+    let output =
+        finished(&mut command, &[0, 1]).with_context(|| format!("the story with seed {seed}"))?;
+    let text = std::fs::read_to_string(&journal)?;
     Ok(Played {
-        entries: entries.collect::<Result<_, _>>().with_context(told)?,
+        entries: text
+            .lines()
+            .map(serde_json::from_str)
+            .collect::<Result<_, _>>()
+            .with_context(|| format!("the journal of the story with seed {seed}"))?,
         text: String::from_utf8_lossy(&output.stdout).into_owned(),
-        whole: status == Some(0),
+        completed: output.status.success(),
     })
 }

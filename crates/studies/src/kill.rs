@@ -1,78 +1,77 @@
-//! `kill -9` of a running lot at random instants: what the history holds afterwards.
+//! `kill -9` of a running lot at random instants, and the rows that the history holds afterwards.
 //!
-//! Every round starts a lot in a process of its own, ends it by SIGKILL after a random time (before the
-//! first part, in the middle of a transaction, between beam and row), opens the same history again and sets
-//! the rows against what the process had told. A part is told when the beam of its bin has confirmed it,
-//! and the gripper opens only over durable rows: so every told part must have its rows, once, with the
-//! same verdict and bin, and its curves when it failed; parts must be numbered without a gap; and the file must
-//! be whole. Of three rounds one counts its time from the start of the process, two from the first told part:
-//! a busy machine shall not kill every lot before it has done anything.
-//! All rounds share one history. Every tenth round a short lot runs to its end in it.
+//! Every round starts a lot in a process of its own, ends it by SIGKILL after a random time (before the first part, in
+//! the middle of a transaction, between beam and row), opens the same history and compares its rows with the parts that
+//! the process printed. The process prints a part when the beam of its bin confirms it, and the gripper opens only over
+//! durable rows. Every printed part must therefore have one row with the same verdict and bin, and curves if it failed;
+//! the numbers of the parts must have no gap; and the file must be undamaged. One round of three counts the time from the
+//! start of the process, the others from the first printed part, so that a busy machine does not kill every lot too early.
+//! All rounds share one history. After every tenth round a short lot runs to its end in it.
 
 use super::chart::Chart;
+use super::dice::Dice;
 use super::figure::Figure;
-use super::fleet::{Folder, Order};
+use super::order::Order;
 use super::output::Report;
 use anyhow::Context;
 use app::progress::{PIECES, progress};
 use history::{Archive, Filter, Part};
-use rand_xoshiro::SplitMix64;
-use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use serde_json::Value;
 use std::fs::File;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
+use tempfile::TempDir;
 
-/// Longest life of a lot, ms; some thirty parts are told by then.
+/// Longest time until the kill, ms; a lot prints about thirty parts in it.
 const LONGEST_MS: u64 = 1_500;
-/// One round of so many counts from the start of the process.
+/// Every third round counts the time from the start of the process.
 const FROM_START: u64 = 3;
-/// A lot that has told nothing for so long is killed all the same.
+/// Longest wait for the first part of a lot; then the kill follows all the same.
 const PATIENCE: Duration = Duration::from_secs(30);
-/// Between two looks at what was told.
+/// Interval at which the study looks for the first part.
 const LOOK: Duration = Duration::from_millis(5);
-/// Parts of a lot: more than it lives for.
+/// Parts of a lot: more than it can test before the kill.
 const ENDLESS: u64 = 1_000_000;
 
-/// Counts over all rounds.
+/// Counts over all rounds, for the figures of [`report`].
 #[derive(Debug, Default)]
 struct Counts {
     early: u64,
-    told: u64,
+    reported: u64,
     rows: u64,
     lost: u64,
     other: u64,
     gaps: u64,
-    bare: u64,
+    without_curve: u64,
     damaged: u64,
     restarts: u64,
     refused: u64,
 }
 
-/// Kills as many lots as the order has and makes the report.
+/// Kills the lots of the order and makes the report.
 ///
 /// # Errors
-/// A process that could not be started or a history that could not be read.
+/// A process that does not start, or a history that cannot be read.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
-    let folder = Folder::new()?;
-    let db = folder.0.join("history.db");
+    let folder = TempDir::new()?;
+    let db = folder.path().join("history.db");
     let mut counts = Counts::default();
     let mut instants = Vec::new();
     let bar = progress(Some(order.lots), PIECES);
-    // A seed of its own, so that each run of the study kills at the same instants.
-    let mut draws = SplitMix64::seed_from_u64(0);
+    // The fixed seed makes each run of the study kill at the same instants.
+    let mut dice = Dice::new(0);
     for round in 0..order.lots {
-        let instant = draws.next_u64() % LONGEST_MS;
-        let told = killed(order, &folder.0, &db, round, instant)?;
+        let instant = dice.below(LONGEST_MS);
+        let reported = run_and_kill(order, &db, round, instant)?;
         instants.push(instant as f64);
-        counts.early += u64::from(told.is_empty());
+        counts.early += u64::from(reported.is_empty());
         if db.exists() {
-            held(&db, &name(round), &told, &mut counts)?;
+            compare_rows(&db, &name(round), &reported, &mut counts)?;
         }
         if round % 10 == 9 {
             counts.restarts += 1;
-            counts.refused += u64::from(!again(order, &db)?);
+            counts.refused += u64::from(!short_lot_completes(order, &db)?);
         }
         bar.inc(1);
     }
@@ -82,14 +81,22 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
 
 fn report(order: &Order, it: &Counts, instants: &[f64]) -> Report {
     let bars = vec![
-        Figure::none("told parts without their row", it.told, it.lost),
-        Figure::none("told parts with another verdict or bin", it.told, it.other),
+        Figure::none("told parts without their row", it.reported, it.lost),
+        Figure::none(
+            "told parts with another verdict or bin",
+            it.reported,
+            it.other,
+        ),
         Figure::none(
             "lots whose numbers have a gap or a double",
             order.lots,
             it.gaps,
         ),
-        Figure::none("told parts that failed and have no curve", it.told, it.bare),
+        Figure::none(
+            "told parts that failed and have no curve",
+            it.reported,
+            it.without_curve,
+        ),
         Figure::none("kills that damaged the file", order.lots, it.damaged),
         Figure::none(
             "lots that could not run afterwards",
@@ -97,47 +104,36 @@ fn report(order: &Order, it: &Counts, instants: &[f64]) -> Report {
             it.refused,
         ),
     ];
-    let about = vec![
+    let information = vec![
         Figure::count("kills before a part was told", order.lots, Some(it.early)),
         Figure::count("rows of parts", order.lots, Some(it.rows)),
     ];
     let spread = quality::Ordered::of(instants);
-    let chart = Chart {
-        title: "instants of the kills after the start of the process, or its first part".into(),
-        unit: "ms",
-        from: 0.0,
-        marks: Vec::new(),
-        bars: [0.0, 0.25, 0.5, 0.75, 1.0]
-            .map(|p| (format!("{p} of the kills up to"), spread.quantile(p)))
-            .to_vec(),
-    };
-    Report {
-        study: "kill",
-        about: format!(
-            "{} lots of {} killed at random instants",
-            order.lots, order.recipe
-        ),
-        groups: vec![bars, about],
-        notes: Vec::new(),
-        chart,
-    }
+    let title = "instants of the kills after the start of the process, or its first part";
+    let quartiles = [0.0, 0.25, 0.5, 0.75, 1.0]
+        .map(|p| (format!("{p} of the kills up to"), spread.quantile(p)));
+    let chart = Chart::new(title, "ms", Vec::new(), quartiles);
+    let about = format!(
+        "{} lots of {} killed at random instants",
+        order.lots, order.recipe
+    );
+    Report::new("kill", about, vec![bars, information], chart)
 }
 
 fn name(round: u64) -> String {
     format!("K{round}")
 }
 
-/// Runs the lot, kills it, and gives the parts it had told.
-fn killed(
+/// Runs the lot, kills it, and returns the parts that it printed.
+fn run_and_kill(
     order: &Order,
-    folder: &Path,
     db: &Path,
     round: u64,
     instant_ms: u64,
 ) -> anyhow::Result<Vec<Value>> {
-    let out = folder.join("told.jsonl");
-    let file = File::create(&out).context("making the file of what is told")?;
-    let mut child = started(order, db, &name(round), ENDLESS, round + 1, file.into())?;
+    let out = db.with_file_name("rows.jsonl");
+    let file = File::create(&out).context("making the file for the rows of the lot")?;
+    let mut child = start_lot(order, db, (&name(round), ENDLESS), round + 1, file.into())?;
     if !round.is_multiple_of(FROM_START) {
         let born = Instant::now();
         while std::fs::metadata(&out)?.len() == 0 && born.elapsed() < PATIENCE {
@@ -150,46 +146,36 @@ fn killed(
     let text = std::fs::read_to_string(&out)?;
     // The last line may be cut off.
     let whole = text.rsplit_once('\n').map_or("", |(whole, _)| whole);
-    let parts = whole.lines().map(serde_json::from_str::<Value>);
-    let parts: Vec<Value> = parts
-        .collect::<Result<_, _>>()
-        .context("what the lot told")?;
-    Ok(parts
-        .into_iter()
-        .filter(|it| it["type"] == "part")
-        .collect())
+    let rows = whole.lines().map(serde_json::from_str::<Value>);
+    let rows: Vec<Value> = rows.collect::<Result<_, _>>().context("rows of the lot")?;
+    Ok(rows.into_iter().filter(|it| it["type"] == "part").collect())
 }
 
-fn started(
+fn start_lot(
     order: &Order,
     db: &Path,
-    lot: &str,
-    count: u64,
+    (lot, parts): (&str, u64),
     seed: u64,
     out: Stdio,
 ) -> anyhow::Result<Child> {
-    Command::new(&order.program)
-        .args(["--log", "error", "--config"])
-        .arg(&order.config)
-        .arg("--db")
-        .arg(db)
-        .args(["run", "--sim", "--pace", "virtual", "--json", "--lot", lot])
-        .args(["--recipe", &order.recipe, "--count", &count.to_string()])
-        .args(["--seed", &seed.to_string()])
-        .stdout(out)
-        .stderr(Stdio::null())
-        .spawn()
-        .context("starting a lot")
+    let mut command = order.lot_command(lot, db, parts, seed);
+    command.stdout(out).stderr(Stdio::null());
+    command.spawn().context("starting a lot")
 }
 
-/// A short lot in the same history, to its end.
-fn again(order: &Order, db: &Path) -> anyhow::Result<bool> {
-    let mut child = started(order, db, "after", 2, 1, Stdio::null())?;
+/// Runs a short lot in the same history and returns whether it completes.
+fn short_lot_completes(order: &Order, db: &Path) -> anyhow::Result<bool> {
+    let mut child = start_lot(order, db, ("after", 2), 1, Stdio::null())?;
     Ok(child.wait()?.success())
 }
 
-/// Sets the rows of the lot against what was told.
-fn held(db: &Path, lot: &str, told: &[Value], counts: &mut Counts) -> anyhow::Result<()> {
+/// Compares the rows of the lot with the printed parts.
+fn compare_rows(
+    db: &Path,
+    lot: &str,
+    reported: &[Value],
+    counts: &mut Counts,
+) -> anyhow::Result<()> {
     let archive = Archive::open(db)?;
     counts.damaged += u64::from(archive.check().is_err());
     let filter = Filter {
@@ -198,17 +184,18 @@ fn held(db: &Path, lot: &str, told: &[Value], counts: &mut Counts) -> anyhow::Re
     };
     let rows = archive.query(&filter)?;
     counts.rows += rows.len() as u64;
-    counts.told += told.len() as u64;
+    counts.reported += reported.len() as u64;
     let mut numbers: Vec<u64> = rows.iter().map(|row| row.seq).collect();
     numbers.sort_unstable();
     let in_order = numbers.iter().copied().eq(1..=numbers.len() as u64);
     counts.gaps += u64::from(!in_order);
-    for part in told {
+    for part in reported {
         let of_part: Vec<&Part> = rows.iter().filter(|row| part["seq"] == row.seq).collect();
         match of_part.as_slice() {
             [row] => {
-                counts.other += u64::from(!same(row, part));
-                counts.bare += u64::from(row.verdict == "fail" && !has_curves(&archive, row)?);
+                counts.other += u64::from(!is_same(row, part));
+                counts.without_curve +=
+                    u64::from(row.verdict == "fail" && !has_curves(&archive, row)?);
             }
             _ => counts.lost += 1,
         }
@@ -221,12 +208,12 @@ fn has_curves(archive: &Archive, row: &Part) -> anyhow::Result<bool> {
     Ok(shown.iter().all(|it| !it.curves.is_empty()))
 }
 
-/// A told part lies in the bin that its row asks for, and where its landing was kept, there too.
-fn same(row: &Part, told: &Value) -> bool {
-    told["verdict"] == row.verdict.as_str()
-        && told["bin"] == row.bin.as_deref().unwrap_or_default()
+/// Returns true when the printed part has the verdict and bin of its row, and its landing, where recorded, the same bin.
+fn is_same(row: &Part, reported: &Value) -> bool {
+    reported["verdict"] == row.verdict.as_str()
+        && reported["bin"] == row.bin.as_deref().unwrap_or_default()
         && row
             .landed_bin
             .as_ref()
-            .is_none_or(|bin| told["bin"] == bin.as_str())
+            .is_none_or(|bin| reported["bin"] == bin.as_str())
 }

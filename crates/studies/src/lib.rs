@@ -1,44 +1,44 @@
 //! Figures that anyone can reprint.
 //!
-//! A study runs lots on the simulated rig in virtual time, each in a process of its own with this very
-//! program, sets what the rows say against what the specimens really were (`--truth`), and prints every
-//! figure beside the bar it has to keep.
+//! A study runs lots on the simulated rig in virtual time, each in a process of this very program, compares the rows
+//! with what the specimens really were (`--truth`), and prints every figure beside the bar that it must keep.
 //!
-//! - Lot `n` of a study runs with seed `n`, so a figure can be traced back to one `relayrig run`.
-//! - A good part is one without a defect; only good parts count for errors and coverage. One that was drawn
-//!   beyond a limit all the same is rejected with reason: it counts as neither good nor defective in the
-//!   figures about bins, and stands in a row of its own.
-//! - A figure that could not be had (nothing measured, nothing reported) has missed its bar.
-//! - Rig time and wall time are never mixed: wall time appears in `pace` and `collision` only.
+//! - Lot `n` of a study runs with seed `n`, so that one `relayrig run` repeats what is behind a figure.
+//! - A good part is one without a defect; only good parts count for errors and coverage. A good part drawn beyond a
+//!   limit is rightly rejected: the figures about bins count it neither as good nor as defective, and a row of its own
+//!   counts these parts.
+//! - A figure without a value (nothing measured, nothing reported) misses its bar.
+//! - No figure mixes rig time and wall time: wall time appears in `collision`, `history`, `pace`, `storm` and
+//!   `transient` only.
 //!
-//! `collision` runs no lot and needs no rig: it sets ways to check a move against the exact truth.
+//! `collision` and `transient` run no lot: the one compares ways to check a move with the exact truth, the other
+//! integrates the relay model of the simulated rig.
 
-mod accuracy;
 mod bins;
-mod chance;
 mod chart;
 mod coil;
 mod collision;
 mod contact;
-mod coverage;
 mod cycle;
 mod decision;
+mod dice;
 mod error;
 mod exception;
 mod figure;
-mod fleet;
 mod gantt;
 mod history;
 mod journal;
 mod kill;
 mod lot;
 mod method;
+mod order;
 mod output;
 mod pace;
 mod parameters;
 mod path;
+mod pool;
+mod risk;
 mod scatter;
-mod sorting;
 mod stop;
 mod storm;
 #[cfg(test)]
@@ -51,16 +51,16 @@ mod verification;
 
 use anyhow::bail;
 use clap::ValueEnum;
+pub use collision::study as collision;
 use config::load_recipe;
-pub use fleet::Order;
+pub use gantt::svg as cycle_gantt;
 use machine::dut::em_relay::Parameter;
+pub use order::Order;
 pub use output::Report;
 use std::path::Path;
+pub use transient::{USUAL_RTOL, study as transient};
 
-/// Tolerance of a step of the relay model unless another one is asked for.
-pub const USUAL_RTOL: f64 = transient::USUAL_RTOL;
-
-/// What can be studied.
+/// The studies, in the order of the list that `relayrig study` prints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Study {
     /// Error of every parameter against the truth, and where parts went
@@ -100,115 +100,63 @@ pub enum Study {
 }
 
 impl Study {
-    /// Lots and parts of a lot when nothing else is asked for; none where no lot is run.
+    /// Default number of lots and of parts of a lot; `None` for a study without lots.
     pub const fn usual(self) -> Option<(u64, u64)> {
-        match self {
-            Self::Accuracy => Some((10, 500)),
-            Self::Coil | Self::Contact | Self::Timing => Some((4, 40)),
-            Self::Collision => None,
-            Self::Coverage => Some((100, 10)),
-            Self::Cycle => Some((1, 100)),
-            Self::Decision => Some((20, 500)),
-            Self::History => Some((1, 1_000_000)),
-            Self::Kill => Some((300, 1)),
-            Self::Pace => Some((3, 300)),
-            Self::Sorting => Some((100, 110)),
-            Self::Storm => Some((200, 4)),
-            Self::Threshold => Some((4, 40)),
-            Self::Stop => Some((16, 25)),
-            Self::Transient => None,
-            Self::Verification => Some((20, 10)),
-        }
+        Some(match self {
+            Self::Accuracy => (10, 500),
+            Self::Coil | Self::Contact | Self::Threshold | Self::Timing => (4, 40),
+            Self::Collision | Self::Transient => return None,
+            Self::Coverage => (100, 10),
+            Self::Cycle => (1, 100),
+            Self::Decision => (20, 500),
+            Self::History => (1, 1_000_000),
+            Self::Kill => (300, 1),
+            Self::Pace => (3, 300),
+            Self::Sorting => (100, 110),
+            Self::Storm => (200, 4),
+            Self::Stop => (16, 25),
+            Self::Verification => (20, 10),
+        })
     }
 
-    /// The name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Accuracy => "accuracy",
-            Self::Coil => "coil",
-            Self::Collision => "collision",
-            Self::Contact => "contact",
-            Self::Coverage => "coverage",
-            Self::Cycle => "cycle",
-            Self::History => "history",
-            Self::Decision => "decision",
-            Self::Threshold => "threshold",
-            Self::Kill => "kill",
-            Self::Pace => "pace",
-            Self::Sorting => "sorting",
-            Self::Storm => "storm",
-            Self::Timing => "timing",
-            Self::Stop => "stop",
-            Self::Transient => "transient",
-            Self::Verification => "verification",
-        }
-    }
-
-    /// Runs the study and draws its report up.
+    /// Runs the study and makes its report.
     ///
     /// # Errors
-    /// A study without lots, files that cannot be read or written, a lot that did not start.
+    /// A study without lots, a file that cannot be read or written, or a lot that did not start.
     pub fn report(self, order: &Order) -> anyhow::Result<Report> {
         match self {
-            Self::Accuracy => accuracy::study(order),
+            Self::Accuracy => parameters::accuracy(order),
             Self::Coil => coil::study(order),
-            Self::Collision => bail!("study collision runs no lot"),
             Self::Contact => contact::study(order),
-            Self::Coverage => coverage::study(order),
+            Self::Coverage => parameters::coverage(order),
             Self::Cycle => cycle::study(order),
-            Self::History => history::study(order),
             Self::Decision => decision::study(order),
-            Self::Threshold => threshold::study(order),
+            Self::History => history::study(order),
             Self::Kill => kill::study(order),
             Self::Pace => pace::study(order),
-            Self::Sorting => sorting::study(order),
-            Self::Storm => storm::study(order),
-            Self::Timing => timing::study(order),
+            Self::Sorting => bins::study(order),
             Self::Stop => stop::study(order),
-            Self::Transient => bail!("study transient runs no lot"),
+            Self::Storm => storm::study(order),
+            Self::Threshold => threshold::study(order),
+            Self::Timing => timing::study(order),
             Self::Verification => verification::study(order),
+            Self::Collision | Self::Transient => {
+                bail!("the studies collision and transient run no lot")
+            }
         }
     }
 }
 
-/// Sets ways to check a move against the exact truth; the report, and the plot as SVG.
+/// Returns the range that the recipe admits for every parameter; a limit that it does not set is infinite.
 ///
 /// # Errors
-/// A world that cannot be made.
-pub fn collision() -> anyhow::Result<(Report, String)> {
-    let (report, plot) = collision::study()?;
-    Ok((report, plot.svg()))
-}
-
-/// One part through all stations, as SVG.
-///
-/// # Errors
-/// A lot that could not be run.
-pub fn cycle_gantt(order: &Order) -> anyhow::Result<String> {
-    gantt::svg(order)
-}
-
-/// Runs the relay model of the simulated rig over the cases of a file (`-`: standard input), a line per case.
-///
-/// # Errors
-/// Cases that cannot be read.
-pub fn transient(cases: &Path, rtol: f64, json: bool) -> anyhow::Result<String> {
-    transient::study(cases, rtol, json)
-}
-
-/// What the recipe admits; a limit that it does not set is infinite.
-///
-/// # Errors
-/// A recipe that is refused.
+/// A recipe that does not load.
 pub fn admitted(config: &Path, recipe: &str) -> anyhow::Result<lot::Admitted> {
     let limits = load_recipe(config, recipe)?.limits;
     let range = |parameter: &Parameter| {
         let limit = limits.of(*parameter);
-        let (low, high) = (limit.low, limit.high);
-        (
-            *parameter,
-            low.unwrap_or(f64::NEG_INFINITY)..=high.unwrap_or(f64::INFINITY),
-        )
+        let low = limit.low.unwrap_or(f64::NEG_INFINITY);
+        (*parameter, low..=limit.high.unwrap_or(f64::INFINITY))
     };
     Ok(Parameter::ALL.iter().map(range).collect())
 }

@@ -1,8 +1,7 @@
-//! What one lot said about its parts, joined with what the parts really were.
+//! The rows of one lot, joined with the truth about its parts.
 //!
-//! Two files of one run are read: the rows of `run --json` and the truth of `--truth`, both one JSON
-//! object per line. They are joined by `seq`. Keys that are not known are passed over, so that either file
-//! may grow.
+//! [`Lot::read`] joins two files of one run by `seq`: the rows of `run --json` and the truth of `--truth`, both one JSON
+//! object per line. It ignores unknown keys, so that either file may grow.
 
 use anyhow::{Context, bail};
 use machine::dut::em_relay::Parameter;
@@ -11,16 +10,16 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
-/// One judged part.
+/// One judged part: its row, and its truth.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 pub struct Part {
     /// Order of entering the nest, from 1.
     pub seq: u64,
     /// `pass`, `fail` or `void`.
     pub verdict: String,
-    /// Where the row says the part went; empty when it never landed.
+    /// Bin that the row names; empty for a part that never landed.
     pub bin: String,
-    /// Why it did not pass.
+    /// Reasons for a verdict other than `pass`.
     #[serde(default)]
     pub reasons: Vec<String>,
     #[serde(default)]
@@ -31,33 +30,31 @@ pub struct Part {
     pub test_s: Option<f64>,
     /// Rig time between successive nest exits.
     pub cycle_s: Option<f64>,
-    /// Where the test time went: what to seconds.
+    /// Pieces of the test time: name of the piece to seconds of rig time.
     #[serde(default)]
     pub spent: BTreeMap<String, f64>,
-    /// Rig time by what it was spent on measuring: name of the stage to seconds.
+    /// Rig time of each stage of the test: name of the stage to seconds.
     #[serde(default)]
     pub stages: BTreeMap<String, f64>,
     /// True when a true value lies beyond a limit of the recipe, defect or not.
     #[serde(skip)]
-    pub is_beyond: bool,
-    /// What the part really was; none when the truth file has no such part.
+    pub is_out_of_limits: bool,
+    /// Truth about the part; `None` when the truth file has no such part.
     #[serde(skip)]
     pub truth: Option<Truth>,
 }
 
-/// What a part really was.
+/// Truth about a part.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 pub struct Truth {
     seq: u64,
-    /// Name of the defect; none for a good part.
-    pub defect: Option<String>,
-    /// The bin where the body came to rest.
-    pub landed_in: Option<String>,
+    defect: Option<String>,
+    landed_in: Option<String>,
     #[serde(flatten)]
     values: BTreeMap<String, Value>,
 }
 
-/// What the recipe admits, by parameter.
+/// Range that the recipe admits, by parameter, in the unit of the parameter.
 pub type Admitted = Vec<(Parameter, RangeInclusive<f64>)>;
 
 impl Truth {
@@ -65,7 +62,7 @@ impl Truth {
         self.values.get(parameter.name())?.as_f64()
     }
 
-    fn is_beyond(&self, admitted: &[(Parameter, RangeInclusive<f64>)]) -> bool {
+    fn is_out_of_limits(&self, admitted: &[(Parameter, RangeInclusive<f64>)]) -> bool {
         let out = |(parameter, range): &(Parameter, RangeInclusive<f64>)| {
             self.value(*parameter)
                 .is_some_and(|value| !range.contains(&value))
@@ -74,31 +71,44 @@ impl Truth {
     }
 }
 
-/// A value beside its truth.
+/// A measured value and its truth, in the unit of the parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
-    /// As measured.
+    /// Measured value.
     pub value: f64,
-    /// Expanded, k = 2.
+    /// Expanded uncertainty, k = 2.
     pub uncertainty: Option<f64>,
-    /// As it was.
+    /// True value.
     pub truth: f64,
 }
 
 impl Part {
-    /// True when the truth knows the part and names no defect.
+    /// Returns the name of the defect; `None` for a part without one, or without a truth.
+    pub fn defect(&self) -> Option<&str> {
+        self.truth.as_ref()?.defect.as_deref()
+    }
+
+    /// Returns the bin where the body came to rest; `None` for a body elsewhere, or without a truth.
+    pub fn landed_in(&self) -> Option<&str> {
+        self.truth.as_ref()?.landed_in.as_deref()
+    }
+
+    /// Returns true when the row names the pass bin or the body lies in it.
+    pub fn has_passed(&self) -> bool {
+        self.bin == "pass" || self.landed_in() == Some("pass")
+    }
+
+    /// Returns true when the truth file has the part and names no defect.
     pub fn is_good(&self) -> bool {
-        self.truth
-            .as_ref()
-            .is_some_and(|truth| truth.defect.is_none())
+        self.truth.is_some() && self.defect().is_none()
     }
 
-    /// True when there is no reason to reject it: no defect, and no true value beyond a limit.
-    pub fn deserves_to_pass(&self) -> bool {
-        self.is_good() && !self.is_beyond
+    /// Returns true for a part without a defect whose true values all lie within the limits.
+    pub fn is_conforming(&self) -> bool {
+        self.is_good() && !self.is_out_of_limits
     }
 
-    /// None when it was not measured, or the part never showed the quantity.
+    /// Returns value and truth of a parameter; `None` when the row has no value or the part has no true one.
     pub fn reading(&self, parameter: Parameter) -> Option<Reading> {
         let key = parameter.name();
         Some(Reading {
@@ -108,13 +118,9 @@ impl Part {
         })
     }
 
-    /// True when the row names the bin where the body came to rest.
-    pub fn is_where_it_says(&self) -> bool {
-        let landed = self
-            .truth
-            .as_ref()
-            .and_then(|truth| truth.landed_in.as_deref());
-        landed == Some(self.bin.as_str())
+    /// Returns true when the row names the bin where the body came to rest.
+    pub fn is_in_named_bin(&self) -> bool {
+        self.landed_in() == Some(self.bin.as_str())
     }
 }
 
@@ -123,12 +129,12 @@ impl Part {
 pub struct Summary {
     /// Alarms raised.
     pub alarms: u64,
-    /// Writes to any EEPROM during the lot; none when nobody counted.
+    /// Writes to any EEPROM during the lot; `None` when the run did not count them.
     pub eeprom_writes: Option<u64>,
     /// Fingerprint of the bytes of each line.
     #[serde(default)]
     pub bytes: BTreeMap<String, String>,
-    /// Wall time by what it was spent on, seconds.
+    /// Wall time by activity, seconds.
     #[serde(default)]
     pub wall_profile: BTreeMap<String, f64>,
 }
@@ -158,23 +164,19 @@ enum Line {
 }
 
 impl Lot {
-    /// From the rows of `run --json` and the text of the truth file.
+    /// Reads a lot from the rows of `run --json` and the text of the truth file.
     ///
     /// # Errors
-    /// A line that is no such object, or a missing summary.
+    /// A line that does not parse, or rows without a summary.
     pub fn read(seed: u64, rows: &str, truth: &str) -> anyhow::Result<Self> {
         let mut known = BTreeMap::new();
-        for (number, line) in truth.lines().enumerate() {
-            let it: Truth = serde_json::from_str(line)
-                .with_context(|| format!("truth, line {}", number + 1))?;
+        for it in lines::<Truth>("truth", truth) {
+            let it = it?;
             known.insert(it.seq, it);
         }
-        let mut parts = Vec::new();
-        let mut summary = None;
-        for (number, line) in rows.lines().enumerate() {
-            match serde_json::from_str(line)
-                .with_context(|| format!("rows, line {}", number + 1))?
-            {
+        let (mut parts, mut summary) = (Vec::new(), None);
+        for line in lines("rows", rows) {
+            match line? {
                 Line::Part(part) => parts.push(*part),
                 Line::Summary(it) => summary = Some(it),
             }
@@ -195,18 +197,27 @@ impl Lot {
         })
     }
 
-    /// Sets the true values against what the recipe admits.
-    pub fn hold_against(&mut self, admitted: &[(Parameter, RangeInclusive<f64>)]) {
+    /// Marks the parts with a true value outside its range.
+    pub fn mark_out_of_limits(&mut self, admitted: &[(Parameter, RangeInclusive<f64>)]) {
         for part in &mut self.parts {
-            part.is_beyond = part
-                .truth
-                .as_ref()
-                .is_some_and(|truth| truth.is_beyond(admitted));
+            let truth = part.truth.as_ref();
+            part.is_out_of_limits = truth.is_some_and(|it| it.is_out_of_limits(admitted));
         }
     }
 
-    /// Parts without a defect.
+    /// Returns the parts without a defect.
     pub fn good(&self) -> impl Iterator<Item = &Part> {
         self.parts.iter().filter(|part| part.is_good())
     }
+}
+
+/// Parses one JSON object per line of `text`; an error names `file` and the number of the line.
+fn lines<'a, T: Deserialize<'a>>(
+    file: &str,
+    text: &'a str,
+) -> impl Iterator<Item = anyhow::Result<T>> {
+    let line = move |(number, line): (u64, &'a str)| {
+        serde_json::from_str(line).with_context(|| format!("{file}, line {number}"))
+    };
+    (1..).zip(text.lines()).map(line)
 }

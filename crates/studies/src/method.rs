@@ -1,54 +1,60 @@
-//! Ways to measure side by side: one row of error and one of seconds for each, and their plot.
+//! Comparison of measuring methods: a row of error and a row of seconds for each, and their plot.
 //!
-//! Seconds are rig time, the mean over good parts of the stages that the method pays for. Error is the median
-//! over lots of the rms against the truth; bias the median over lots of the mean error; max that of any part.
+//! Seconds are rig time: the mean over good parts of the stages of the method. Error is the median over lots of the rms
+//! against the truth, bias the median over lots of the mean error, max the greatest error of any part.
 
 use super::chart::Chart;
 use super::error::{Pooled, unit};
 use super::figure::{Bar, Figure};
-use super::fleet::Order;
 use super::lot::{Lot, Part};
+use super::order::Order;
 use super::output::Report;
 use super::variant::Variant;
 use machine::dut::em_relay::Parameter;
 use quality::Spread;
 
-/// Baud rates that are compared; bars are those of the first.
+/// Baud rates of the comparison; the bars apply to the first.
 pub const BAUDS: [u32; 2] = [115_200, 9600];
 
-/// What is paid for and what for it is had.
+/// A parameter and the stages of the test that measure it.
 #[derive(Debug, Clone, Copy)]
-pub struct Paid {
-    /// Whose error is told.
+pub struct TimedParameter {
+    /// Parameter whose error the rows show.
     pub parameter: Parameter,
-    /// Stages whose time is booked on it.
+    /// Stages whose time counts for the parameter.
     pub stages: &'static [&'static str],
-    /// Seconds besides, that no stage of this test tells.
+    /// Time besides that no stage of the test contains, seconds.
     pub more_s: f64,
 }
 
-impl Paid {
-    /// Stages of which a part has at least one, in seconds.
-    pub fn seconds(&self, lots: &[Lot]) -> Spread {
-        let of = |name: &&str, part: &Part| part.stages.get(*name).copied();
-        let times: Vec<f64> = lots
-            .iter()
-            .flat_map(Lot::good)
-            .filter_map(|part| {
-                let told: Vec<f64> = self.stages.iter().filter_map(|it| of(it, part)).collect();
-                (!told.is_empty()).then(|| told.iter().sum::<f64>() + self.more_s)
-            })
-            .collect();
-        Spread::of(&times)
+impl TimedParameter {
+    /// A parameter whose time is that of `stages` alone.
+    pub const fn of(parameter: Parameter, stages: &'static [&'static str]) -> Self {
+        Self {
+            parameter,
+            stages,
+            more_s: 0.0,
+        }
     }
 
-    /// A row of error with its seconds beside it.
+    /// Returns the seconds of the stages over good parts that have at least one of them.
+    pub fn seconds(&self, lots: &[Lot]) -> Spread {
+        let time = |part: &Part| {
+            let stages = self.stages.iter().filter_map(|it| part.stages.get(*it));
+            let sum = stages.copied().reduce(|sum, it| sum + it);
+            sum.map(|sum| sum + self.more_s)
+        };
+        let good = lots.iter().flat_map(Lot::good);
+        Spread::of(&good.filter_map(time).collect::<Vec<f64>>())
+    }
+
+    /// Returns a row of error, with seconds as a further column.
     pub fn row(&self, name: impl Into<String>, lots: &[Lot]) -> Figure {
         let errors = Pooled::of(self.parameter, lots);
         self.row_of(name, lots, &errors)
     }
 
-    /// The same for errors that are not those of the parameter's own value.
+    /// Returns the same row for errors other than those of the parameter's own value.
     pub fn row_of(&self, name: impl Into<String>, lots: &[Lot], errors: &Pooled) -> Figure {
         Figure::new(name, errors.n(), errors.median_rms(), unit(self.parameter))
             .with("bias", errors.median_bias())
@@ -56,7 +62,7 @@ impl Paid {
             .with("seconds", self.seconds(lots).mean())
     }
 
-    /// A row of seconds.
+    /// Returns a row of seconds with a bar.
     pub fn time(&self, name: &str, lots: &[Lot], at_most_s: f64) -> Figure {
         let seconds = self.seconds(lots);
         Figure::new(format!("{name} time"), seconds.n(), seconds.mean(), "s")
@@ -68,12 +74,12 @@ impl Paid {
 /// Runs the lots of a variant.
 ///
 /// # Errors
-/// A configuration that could not be changed, or a lot that could not be run.
+/// A configuration that cannot be changed, or a lot that did not run.
 pub fn lots(variant: &Variant, order: &Order) -> anyhow::Result<Vec<Lot>> {
     variant.of(order)?.order.run_all()
 }
 
-/// The report of a study that compares methods; its plot has a bar for every row of the first `drawn` groups.
+/// Makes the report of a study that compares methods; its plot has a bar for every row of the first `drawn` groups.
 pub fn report(
     study: &'static str,
     order: &Order,
@@ -81,21 +87,11 @@ pub fn report(
     drawn: usize,
     marks: Vec<f64>,
 ) -> Report {
-    let rows = || groups.iter().take(drawn).flatten();
-    Report {
-        study,
-        about: format!(
-            "{}, instruments without errors unless a row says so",
-            order.about()
-        ),
-        notes: Vec::new(),
-        chart: Chart {
-            title: format!("rms error of a method: {}", order.about()),
-            unit: rows().next().map_or("", |row| row.unit),
-            from: 0.0,
-            marks,
-            bars: rows().map(|row| (row.name.clone(), row.value)).collect(),
-        },
-        groups,
-    }
+    let rows: Vec<&Figure> = groups.iter().take(drawn).flatten().collect();
+    let about = order.about();
+    let title = format!("rms error of a method: {about}");
+    let unit = rows.first().map_or("", |row| row.unit);
+    let chart = Chart::of(title, unit, marks, rows);
+    let about = format!("{about}, instruments without errors unless a row says so");
+    Report::new(study, about, groups, chart)
 }

@@ -1,4 +1,4 @@
-//! A report: as a table for a person, as JSON lines and as CSV for programs.
+//! A report: a table for people, JSON lines and CSV for programs.
 
 use super::chart::Chart;
 use super::figure::{Bar, Figure, shown};
@@ -11,18 +11,39 @@ use std::fmt::Write;
 pub struct Report {
     /// Name of the study.
     pub study: &'static str,
-    /// What was run.
+    /// Description of the lots, for the head of the report.
     pub about: String,
-    /// Figures in groups; a group is a table of its own.
+    /// Figures in groups; the text shows a table per group.
     pub groups: Vec<Vec<Figure>>,
-    /// Parts worth looking at, each with the seed that shows it again.
+    /// Lines below the tables: parts worth a look, each with the seed that reproduces it.
     pub notes: Vec<String>,
-    /// The plot.
+    /// Plot of the main figures.
     pub chart: Chart,
 }
 
 impl Report {
-    /// True when no figure has missed its bar.
+    /// A report without notes.
+    pub fn new(
+        study: &'static str,
+        about: impl Into<String>,
+        groups: Vec<Vec<Figure>>,
+        chart: Chart,
+    ) -> Self {
+        Self {
+            study,
+            about: about.into(),
+            groups,
+            notes: Vec::new(),
+            chart,
+        }
+    }
+
+    /// The same report with these notes.
+    pub fn noted(self, notes: Vec<String>) -> Self {
+        Self { notes, ..self }
+    }
+
+    /// Returns true when no figure misses its bar.
     pub fn all_met(&self) -> bool {
         self.figures().all(|figure| figure.met() != Some(false))
     }
@@ -36,7 +57,7 @@ impl Report {
         missed.map(|figure| figure.name.as_str()).collect()
     }
 
-    /// Aligned tables, then one line that says whether all bars are kept.
+    /// Returns aligned tables, the notes, and a last line that names the missed bars.
     pub fn text(&self) -> String {
         let mut text = format!("{}: {}\n", self.study, self.about);
         for group in self.groups.iter().filter(|group| !group.is_empty()) {
@@ -60,7 +81,7 @@ impl Report {
         text
     }
 
-    /// One object per figure, then a summary.
+    /// Returns JSON lines: one object per figure, then a summary.
     pub fn json(&self) -> String {
         let mut text = String::new();
         for figure in self.figures() {
@@ -74,7 +95,7 @@ impl Report {
         text
     }
 
-    /// All figures under one header; numbers in full.
+    /// Returns all figures as CSV under one header, numbers in full.
     pub fn csv(&self) -> String {
         let all: Vec<Figure> = self.figures().cloned().collect();
         let mut bytes = Vec::new();
@@ -85,7 +106,7 @@ impl Report {
     }
 }
 
-/// Header and rows; the further columns in order of first appearance.
+/// Returns header and rows; further columns follow in the order of their first appearance.
 fn cells(figures: &[Figure], number: impl Fn(f64) -> String) -> Vec<Vec<String>> {
     let mut keys: Vec<&str> = Vec::new();
     for (key, _) in figures.iter().flat_map(|figure| &figure.more) {
@@ -127,7 +148,7 @@ fn cells(figures: &[Figure], number: impl Fn(f64) -> String) -> Vec<Vec<String>>
     table
 }
 
-/// The first column and units to the left, numbers to the right.
+/// Appends the table with the first column, units, bars and results to the left and numbers to the right.
 fn aligned(text: &mut String, table: &[Vec<String>]) {
     let columns = table.first().map_or(0, Vec::len);
     let width = |column: usize| {

@@ -1,18 +1,19 @@
 //! Parts per second of wall time, and whether the same seed gives the same bytes.
 //!
-//! The same lot is run at least twice, one process at a time. The wall time is that of the whole
-//! process: start, calibration, golden parts and history included.
+//! The study runs the same lot at least twice, one process at a time. The wall time is that of the whole process, with
+//! start, calibration, reference parts and history.
 
 use super::bins;
 use super::chart::Chart;
-use super::figure::{Bar, Figure};
-use super::fleet::Order;
+use super::figure::{Bar, Figure, mean, share_pct};
 use super::lot::Lot;
+use super::order::Order;
 use super::output::Report;
 use quality::Spread;
 use quality::spread::median;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// Parts per second of wall time.
+/// Least parts per second of wall time.
 const PARTS_PER_SECOND: f64 = 50.0;
 /// Seed of every run.
 const SEED: u64 = 1;
@@ -20,7 +21,7 @@ const SEED: u64 = 1;
 /// Runs the lot several times and makes the report.
 ///
 /// # Errors
-/// A run that could not be made.
+/// A lot that did not run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let order = &Order {
         lots: order.lots.max(2),
@@ -29,32 +30,17 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     let runs: Vec<u64> = (0..order.lots).map(|_| SEED).collect();
     let lots = order.run(&runs, 1)?;
     let rates = rates(&lots);
-    let chart = Chart {
-        title: format!(
-            "parts per second of wall time, run by run: {}",
-            order.about()
-        ),
-        unit: "/s",
-        from: 0.0,
-        marks: vec![PARTS_PER_SECOND],
-        bars: rates
-            .iter()
-            .zip(1..)
-            .map(|(rate, run)| (format!("run {run}"), Some(*rate)))
-            .collect(),
-    };
+    let about = order.about();
+    let title = format!("parts per second of wall time, run by run: {about}");
+    let run = |(run, rate): (u64, &f64)| (format!("run {run}"), Some(*rate));
+    let bars = (1..).zip(&rates).map(run);
+    let chart = Chart::new(title, "/s", vec![PARTS_PER_SECOND], bars);
     let groups = vec![
         vec![rate(&rates), same_bytes(&lots)],
         profile(&lots),
         bins::machine(&lots),
     ];
-    Ok(Report {
-        study: "pace",
-        about: order.about(),
-        groups,
-        notes: Vec::new(),
-        chart,
-    })
+    Ok(Report::new("pace", about, groups, chart))
 }
 
 fn rates(lots: &[Lot]) -> Vec<f64> {
@@ -76,15 +62,16 @@ fn rate(rates: &[f64]) -> Figure {
     .bar(Bar::AtLeast(PARTS_PER_SECOND))
 }
 
-/// Runs whose bytes differ from those of the run before; none when a run told no bytes, or was alone.
+/// Counts runs whose bytes differ from those of the run before; without a value when a run reports no bytes, or when
+/// there is only one run.
 pub fn same_bytes(lots: &[Lot]) -> Figure {
-    let told = lots.iter().all(|lot| !lot.summary.bytes.is_empty());
+    let have_bytes = lots.iter().all(|lot| !lot.summary.bytes.is_empty());
     let differ = lots
         .iter()
         .zip(lots.iter().skip(1))
         .filter(|(a, b)| a.summary.bytes != b.summary.bytes)
         .count();
-    let count = (told && lots.len() > 1).then_some(differ as u64);
+    let count = (have_bytes && lots.len() > 1).then_some(differ as u64);
     Figure::count(
         "repeats of a seed with other bytes",
         lots.len() as u64,
@@ -93,27 +80,15 @@ pub fn same_bytes(lots: &[Lot]) -> Figure {
     .bar(Bar::AtMost(0.0))
 }
 
-/// Mean wall seconds of every entry of the profiles, greatest first; empty without profiles.
+/// Returns the mean wall seconds of every entry of the profiles, greatest first; empty without profiles.
 pub fn profile(lots: &[Lot]) -> Vec<Figure> {
-    let mut names: Vec<&String> = lots
-        .iter()
-        .flat_map(|lot| lot.summary.wall_profile.keys())
-        .collect();
-    names.sort();
-    names.dedup();
-    let of = |name: &String| -> Vec<f64> {
-        lots.iter()
-            .map(|lot| lot.summary.wall_profile.get(name).copied().unwrap_or(0.0))
-            .collect()
-    };
-    let wall = Spread::of(&lots.iter().map(|lot| lot.wall_s).collect::<Vec<f64>>()).mean();
+    let profiles = || lots.iter().map(|lot| &lot.summary.wall_profile);
+    let names: BTreeSet<&String> = profiles().flat_map(BTreeMap::keys).collect();
+    let wall = mean(lots.iter().map(|lot| lot.wall_s));
     let row = |name: &String| {
-        let mean = Spread::of(&of(name)).mean();
-        let share = mean
-            .zip(wall)
-            .filter(|(_, all)| *all > 0.0)
-            .map(|(some, all)| 100.0 * some / all);
-        Figure::new(format!("wall: {name}"), lots.len() as u64, mean, "s").with("share_pct", share)
+        let seconds = mean(profiles().map(|it| it.get(name).copied().unwrap_or(0.0)));
+        Figure::new(format!("wall: {name}"), lots.len() as u64, seconds, "s")
+            .with("share_pct", share_pct(seconds, wall))
     };
     let mut rows: Vec<Figure> = names.into_iter().map(row).collect();
     rows.sort_by(|a, b| b.value.unwrap_or(0.0).total_cmp(&a.value.unwrap_or(0.0)));

@@ -1,41 +1,88 @@
-//! A study with one figure per parameter: below the figures stands where the parts went, what the machine
-//! did, and which parts are worth a look.
+//! The studies with one figure per parameter: accuracy and coverage. Below the figures of the parameters the report
+//! shows where the parts went, alarms, errors and EEPROM writes, and the parts worth a look.
+//!
+//! - Accuracy: the bar holds for the median over lots of the rms error over good parts; beside it the worst lot, the
+//!   median over lots of the mean error, the greatest error of any part and the pooled coverage.
+//! - Coverage: how often the stated uncertainty (k = 2) covers the truth, pooled over good parts of many lots. Every
+//!   lot has a rig of its own, which samples the errors that stay the same within a lot. Too high is as wrong as too
+//!   low: an uncertainty that always covers the truth is stated too large.
 
 use super::bins;
 use super::chart::Chart;
+use super::error::{Pooled, unit};
 use super::exception;
-use super::figure::Figure;
-use super::fleet::Order;
+use super::figure::{Bar, Figure};
 use super::lot::Lot;
+use super::order::Order;
 use super::output::Report;
 use machine::dut::em_relay::Parameter;
 
-/// Runs the lots and draws the report up; `drawn` is the length of a parameter's bar in `chart`.
+/// Range of the coverage, percent of values.
+const COVERAGE_PCT: (f64, f64) = (93.0, 98.0);
+/// Left end of the chart of coverage, percent.
+const CHART_FROM_PCT: f64 = 80.0;
+
+/// Compares the error of every parameter with the error that it may have.
 ///
 /// # Errors
-/// A lot that could not be run.
-pub fn study(
+/// A lot that did not run.
+pub fn accuracy(order: &Order) -> anyhow::Result<Report> {
+    let allowed = |parameter: Parameter| parameter.facts().allowed_rms;
+    let row = |parameter: Parameter, errors: &Pooled| {
+        let (n, rms) = (errors.n(), errors.median_rms());
+        Figure::new(parameter.name(), n, rms, unit(parameter))
+            .with("worst_lot", errors.worst_rms())
+            .with("bias", errors.median_bias())
+            .with("max", errors.worst())
+            .with("coverage_pct", errors.coverage_pct())
+            .bar(Bar::AtMost(allowed(parameter)))
+    };
+    let share = |parameter, rms| 100.0 * rms / allowed(parameter);
+    let title = "rms error as a share of what is allowed";
+    let chart = Chart::new(title, "%", vec![100.0], []);
+    study("accuracy", order, row, share, chart)
+}
+
+/// Counts how often the stated uncertainty of every parameter covers the truth.
+///
+/// # Errors
+/// A lot that did not run.
+pub fn coverage(order: &Order) -> anyhow::Result<Report> {
+    let (low, high) = COVERAGE_PCT;
+    let row = |parameter: Parameter, errors: &Pooled| {
+        Figure::new(parameter.name(), errors.n(), errors.coverage_pct(), "%")
+            .with("worst_lot", errors.worst_coverage_pct())
+            .bar(Bar::Within(low, high))
+    };
+    let title = "coverage of the stated uncertainty";
+    let chart = Chart {
+        from: CHART_FROM_PCT,
+        ..Chart::new(title, "%", vec![low, high], [])
+    };
+    study("coverage", order, row, |_, percent| percent, chart)
+}
+
+/// Runs the lots and makes the report; `length` turns the figure of a parameter into the length of its bar in `chart`.
+fn study(
     study: &'static str,
     order: &Order,
-    row: impl Fn(Parameter, &[Lot]) -> Figure,
-    drawn: impl Fn(Parameter, f64) -> f64,
-    chart: Chart,
+    row: impl Fn(Parameter, &Pooled) -> Figure,
+    length: impl Fn(Parameter, f64) -> f64,
+    mut chart: Chart,
 ) -> anyhow::Result<Report> {
-    let lots = order.run_all()?;
-    let rows: Vec<Figure> = Parameter::ALL.iter().map(|it| row(*it, &lots)).collect();
-    let bar = |(parameter, figure): (&Parameter, &Figure)| {
-        let length = figure.value.map(|value| drawn(*parameter, value));
-        (figure.name.clone(), length)
-    };
-    Ok(Report {
-        study,
-        about: order.about(),
-        notes: exception::outcome(&lots),
-        chart: Chart {
-            title: format!("{}: {}", chart.title, order.about()),
-            bars: Parameter::ALL.iter().zip(&rows).map(bar).collect(),
-            ..chart
-        },
-        groups: vec![rows, bins::outcome(&lots), bins::machine(&lots)],
-    })
+    let lots: Vec<Lot> = order.run_all()?;
+    let figure = |parameter: &Parameter| row(*parameter, &Pooled::of(*parameter, &lots));
+    let rows: Vec<Figure> = Parameter::ALL.iter().map(figure).collect();
+    chart.title = format!("{}: {}", chart.title, order.about());
+    let bars = Parameter::ALL.iter().zip(&rows);
+    chart.bars = bars
+        .map(|(it, figure)| {
+            (
+                figure.name.clone(),
+                figure.value.map(|value| length(*it, value)),
+            )
+        })
+        .collect();
+    let groups = vec![rows, bins::outcome(&lots), bins::machine(&lots)];
+    Ok(Report::new(study, order.about(), groups, chart).noted(exception::outcome(&lots)))
 }

@@ -1,23 +1,22 @@
 //! The critical path of a cycle, and how near the line comes to it.
 //!
-//! From nest exit to nest exit the nest is never free: the next part is pushed in, clamped while the pusher goes back,
-//! probed, tested, taken by the fingers while the probes go down, let go by the jaws and lifted. Each of these waits for the
-//! one before; everything else (escapement, the way to the bin and back, z down) happens beside them. The sum of their mean
-//! travel times and of the mean test is what no overlap can shorten.
+//! The nest is never free from nest exit to nest exit: the pusher pushes the next part in, the jaws clamp it while the
+//! pusher returns, the probes rise, the test runs, the fingers grip while the probes go down, the jaws open and z lifts
+//! the part. Each of these strokes waits for the one before; all others (escapement, the way to the bin and back, z down)
+//! overlap with them. No overlap can shorten the sum of the mean travel times of the path and the mean test.
 
-use super::figure::{Bar, Figure};
-use super::fleet::Order;
+use super::figure::{self, Bar, Figure};
 use super::lot::{Lot, Part};
-use quality::Spread;
+use super::order::Order;
 use rigsim::config::read_world;
 use rigsim::world::table::MechanismTable;
 
-/// Parts an hour at the default recipe.
+/// Least parts an hour at the default recipe.
 const PARTS_PER_HOUR: f64 = 1850.0;
-/// Share of the bound.
+/// Least share of the bound, as parts an hour.
 const SHARE: f64 = 0.95;
 
-/// Strokes of the path with their mean times, ms; of two that happen at once the longer one counts.
+/// Returns the strokes of the path with their mean times, ms; of two simultaneous strokes the longer one.
 fn strokes(mechanism: &MechanismTable) -> [(&'static str, f64); 6] {
     [
         ("path: pusher to the nest", mechanism.pusher_ms),
@@ -35,7 +34,7 @@ fn strokes(mechanism: &MechanismTable) -> [(&'static str, f64); 6] {
     ]
 }
 
-/// The path stroke by stroke, its sum, and parts an hour beside it.
+/// Returns the path stroke by stroke, its sum, and parts an hour.
 ///
 /// # Errors
 /// A world that cannot be read.
@@ -43,17 +42,14 @@ pub fn path(order: &Order, lots: &[Lot]) -> anyhow::Result<Vec<Figure>> {
     let strokes = strokes(&read_world(&order.config, order.world.as_deref())?.mechanism);
     let parts: Vec<&Part> = lots.iter().flat_map(|lot| &lot.parts).collect();
     let mean = |of: fn(&Part) -> Option<f64>| {
-        let times: Vec<f64> = parts
-            .iter()
-            .filter(|part| part.cycle_s.is_some())
-            .filter_map(|part| of(part))
-            .collect();
-        Spread::of(&times).mean()
+        let whole = parts.iter().filter(|part| part.cycle_s.is_some());
+        figure::mean(whole.filter_map(|part| of(part)))
     };
     let (test, cycle) = (mean(|part| part.test_s), mean(|part| part.cycle_s));
     let travel: f64 = strokes.iter().map(|(_, ms)| ms / 1e3).sum();
     let bound = test.map(|test| travel + test);
     let per_hour = |cycle: Option<f64>| cycle.map(|seconds| 3600.0 / seconds);
+    let share = bound.zip(cycle).map(|(bound, cycle)| bound / cycle);
     let n = parts.len() as u64;
     let stroke = |(name, ms): &(&str, f64)| Figure::new(*name, 1, Some(ms / 1e3), "s");
     let mut rows: Vec<Figure> = strokes.iter().map(stroke).collect();
@@ -62,13 +58,7 @@ pub fn path(order: &Order, lots: &[Lot]) -> anyhow::Result<Vec<Figure>> {
         Figure::new("bound: the whole path", n, bound, "s"),
         Figure::new("parts an hour of the bound", n, per_hour(bound), ""),
         Figure::new("parts an hour", n, per_hour(cycle), "").bar(Bar::AtLeast(PARTS_PER_HOUR)),
-        Figure::new(
-            "parts an hour against the bound",
-            n,
-            bound.zip(cycle).map(|(bound, cycle)| bound / cycle),
-            "",
-        )
-        .bar(Bar::AtLeast(SHARE)),
+        Figure::new("parts an hour against the bound", n, share, "").bar(Bar::AtLeast(SHARE)),
     ]);
     Ok(rows)
 }

@@ -1,35 +1,35 @@
 //! Speed against error as SVG: a point per method, both axes logarithmic.
 //!
-//! Lengths in px. A point whose error is zero, or below the lowest line, stands on the bottom line, which
-//! says so; a method with wrong verdicts is drawn hollow and says how many.
+//! Lengths are px. A point whose error is zero or below the lowest line lies on the bottom line, labelled `less`. The
+//! point of a method with wrong verdicts is hollow, and its label counts them.
 
 use history::report::svg::Svg;
 
-/// A method.
+/// The point of a method.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
-    /// Beside the point.
+    /// Label beside the point.
     pub name: String,
-    /// To the right, > 0.
+    /// Value along the x axis, above 0.
     pub x: f64,
-    /// Upwards, >= 0.
+    /// Value along the y axis, 0 or more.
     pub y: f64,
-    /// Wrong verdicts: the reader must not take a wrong answer for a fast one.
+    /// Number of wrong verdicts; above 0 the point is hollow, so that speed does not hide wrong answers.
     pub wrong: u64,
-    /// Number of the series: its colour; points of one series are joined.
+    /// Number of the series, which chooses the colour; a line joins the points of one series.
     pub series: usize,
 }
 
-/// What to draw.
+/// Content of the plot.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Scatter {
-    /// Above the plot.
+    /// Title above the plot.
     pub title: String,
-    /// Below the axes.
+    /// Title of the x axis.
     pub x_title: String,
-    /// At the left.
+    /// Title of the y axis.
     pub y_title: String,
-    /// Methods.
+    /// Points; neighbours of one series are joined.
     pub points: Vec<Point>,
 }
 
@@ -39,14 +39,14 @@ const WIDE: f64 = 700.0;
 const HIGH: f64 = 380.0;
 const RIGHT: f64 = 30.0;
 const BELOW: f64 = 64.0;
-/// Errors below this are drawn at the bottom, mm.
+/// Errors below this lie on the bottom line, mm.
 const LEAST: f64 = 1e-10;
 const COLOURS: [&str; 5] = ["#4a7ba6", "#c05621", "#2f855a", "#6b46c1", "#718096"];
 /// Least distance of two labels, px.
 const LINE: f64 = 15.0;
 
 impl Scatter {
-    /// The file.
+    /// Returns the plot as an SVG file.
     pub fn svg(&self) -> String {
         let mut svg = Svg::new([LEFT + WIDE + RIGHT, TOP + HIGH + BELOW]);
         let (xs, ys) = (self.x_axis(), self.y_axis());
@@ -136,7 +136,7 @@ impl Scatter {
     }
 }
 
-/// Whole decades between two places.
+/// A logarithmic axis of whole decades between two coordinates.
 struct Axis {
     low: i32,
     high: i32,
@@ -176,7 +176,7 @@ fn colour(point: &Point) -> &'static str {
     COLOURS[point.series % COLOURS.len()]
 }
 
-/// `0.01`, `10`, and beyond that `1e-7`.
+/// Returns the label of a decade: `0.01`, `10`, and `1e-7` below 0.001 or above 100000.
 fn power(decade: i32) -> String {
     match decade {
         -3..=0 => format!("{:.*}", decade.unsigned_abs() as usize, 10f64.powi(decade)),

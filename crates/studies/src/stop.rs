@@ -1,18 +1,18 @@
-//! The emergency stop pressed at every instant of a cycle and of homing, and how long outputs that move something stay on.
+//! Reaction time of motion outputs to the emergency stop, pressed at every instant of a cycle and of homing.
 //!
-//! Every lot is a story (`relayrig story`) in which the stop is pressed again and again, each time a little later after
-//! a part has left the nest, or after the reset of a line that was stopped in the middle of a test; released, cleared,
-//! reset and started anew. The journal of the simulated rig tells at its terminals when the contact opened and when the
-//! last output that moves something went off. The bound is derived from `rig.toml` and holds whatever one transaction
-//! meets; so every second lot runs with replies that come at the last moment.
+//! Every lot is a story (`relayrig story`) that presses the stop again and again, each time a little later after a part
+//! leaves the nest, or after the reset of a line that was stopped in the middle of a test; then it releases the stop,
+//! clears, resets and starts anew. The journal of the simulated rig gives the instants at which the contact opens and the
+//! last motion output goes off. The bound follows from `rig.toml` and holds for any delay or loss of one transaction;
+//! every second lot therefore runs with replies at the end of their timeout.
 
 mod reaction;
 mod sweep;
 
 use super::chart::Chart;
 use super::figure::{Bar, Figure};
-use super::fleet::{Folder, Order};
 use super::journal;
+use super::order::Order;
 use super::output::Report;
 use app::progress::{PIECES, progress};
 use config::Plant;
@@ -23,22 +23,23 @@ use reaction::reactions;
 use std::collections::BTreeMap;
 use std::path::Path;
 use sweep::Sweep;
+use tempfile::TempDir;
 
-/// Replies of every second lot come so much later, ms: what the allowance of `rig.toml` leaves, but for 3 ms.
+/// Delay of the replies in every second lot, ms: 3 ms less than `rig.toml` allows.
 const LATE_MS: f64 = 25.0;
-/// Classes of the chart.
+/// Number of bars of the chart.
 const CLASSES: usize = 20;
 
-/// One stop.
+/// One press of the emergency stop.
 #[derive(Debug, Clone, Copy)]
 struct Stop {
-    /// Seconds after the begin of what is swept.
+    /// Time since the begin of the swept interval, seconds.
     instant_s: f64,
-    /// Milliseconds from the contact to the last output off; none when nothing was on.
+    /// Time from the opening of the contact until the last motion output is off, milliseconds; `None` when none was on.
     reaction_ms: Option<f64>,
 }
 
-/// What the lots of one sweep result, with modules as they are or with late replies.
+/// Result of the lots of one sweep, with usual or with late replies.
 #[derive(Debug)]
 struct SweepResult {
     sweep: Sweep,
@@ -49,7 +50,7 @@ struct SweepResult {
 }
 
 impl SweepResult {
-    fn nothing(sweep: Sweep, slow: bool) -> Self {
+    fn empty(sweep: Sweep, slow: bool) -> Self {
         Self {
             sweep,
             slow,
@@ -71,88 +72,63 @@ impl SweepResult {
 /// Plays the lots and makes the report.
 ///
 /// # Errors
-/// A configuration that does not load, or a story that could not be played.
+/// A configuration that does not load, or a story that does not run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let plant = Plant::load(&order.config)?;
     let bound_ms = plant.wiring.longest_reaction().as_seconds() * 1e3;
-    let folder = Folder::new()?;
-    let of = |sweep| [false, true].map(|slow| SweepResult::nothing(sweep, slow));
+    let folder = TempDir::new()?;
+    let of = |sweep| [false, true].map(|slow| SweepResult::empty(sweep, slow));
     let mut all: Vec<SweepResult> = Sweep::ALL.into_iter().flat_map(of).collect();
-    let bar = progress(Some(order.lots * all.len() as u64 / 2), PIECES);
+    let lots = order.lots * Sweep::ALL.len() as u64;
+    let bar = progress(Some(lots), PIECES);
     for result in &mut all {
         for lot in (u64::from(result.slow)..order.lots).step_by(2) {
-            played(order, &folder.0, &plant.wiring, lot, result)?;
+            play_lot(order, folder.path(), &plant.wiring, lot, result)?;
             bar.inc(1);
         }
     }
     bar.finish_and_clear();
     let sum = |of: fn(&SweepResult) -> u64| all.iter().map(of).sum::<u64>();
-    let lots = order.lots * Sweep::ALL.len() as u64;
-    let mut reactions: Vec<Figure> = all
-        .iter()
-        .map(|result| reaction(result, bound_ms))
-        .collect();
-    reactions.push(Figure::new("bound of rig.toml", 1, Some(bound_ms), "ms"));
-    Ok(Report {
-        study: "stop",
-        about: format!(
-            "{} stops over a cycle and as many over homing after a stop",
-            order.lots * order.parts
-        ),
-        groups: vec![
-            reactions,
-            vec![
-                Figure::none("bodies that touched", lots, sum(|it| it.touched)),
-                Figure::none("lots that did not go on", lots, sum(|it| it.unfinished)),
-            ],
+    let reactions = all.iter().map(|result| reaction(result, bound_ms));
+    let bound = Figure::new("bound of rig.toml", 1, Some(bound_ms), "ms");
+    let groups = vec![
+        reactions.chain([bound]).collect(),
+        vec![
+            Figure::none("bodies that touched", lots, sum(|it| it.touched)),
+            Figure::none("lots that did not go on", lots, sum(|it| it.unfinished)),
         ],
-        notes: Vec::new(),
-        chart: chart(&all[0], bound_ms),
-    })
+    ];
+    let stops = order.lots * order.parts;
+    let about = format!("{stops} stops over a cycle and as many over homing after a stop");
+    Ok(Report::new("stop", about, groups, chart(&all[0], bound_ms)))
 }
 
 fn reaction(result: &SweepResult, bound_ms: f64) -> Figure {
-    let times: Vec<f64> = result
-        .stops
-        .iter()
-        .filter_map(|stop| stop.reaction_ms)
-        .collect();
-    let ordered = Ordered::of(&times);
-    Figure::new(
-        result.name(),
-        result.stops.len() as u64,
-        ordered.quantile(1.0),
-        "ms",
-    )
-    .with("median", ordered.quantile(0.5))
-    .with("p99", ordered.quantile(0.99))
-    .with("outputs_were_on", Some(times.len() as f64))
-    .bar(Bar::AtMost(bound_ms))
+    let stops = result.stops.iter();
+    let times: Vec<f64> = stops.filter_map(|stop| stop.reaction_ms).collect();
+    let (ordered, n) = (Ordered::of(&times), result.stops.len() as u64);
+    Figure::new(result.name(), n, ordered.quantile(1.0), "ms")
+        .with("median", ordered.quantile(0.5))
+        .with("p99", ordered.quantile(0.99))
+        .with("outputs_were_on", Some(times.len() as f64))
+        .bar(Bar::AtMost(bound_ms))
 }
 
-/// Worst reaction by the instant in the cycle.
+/// Draws the longest reaction over the instant in the cycle.
 fn chart(result: &SweepResult, bound_ms: f64) -> Chart {
     let width = result.sweep.span_s() / CLASSES as f64;
     let worst = |class: usize| {
-        let inside = result
-            .stops
-            .iter()
-            .filter(|stop| (stop.instant_s / width) as usize == class);
+        let stops = result.stops.iter();
+        let inside = stops.filter(|stop| (stop.instant_s / width) as usize == class);
         inside.filter_map(|stop| stop.reaction_ms).reduce(f64::max)
     };
-    Chart {
-        title: "worst reaction to the emergency stop by the instant after a part has left the nest"
-            .into(),
-        unit: "ms",
-        from: 0.0,
-        marks: vec![bound_ms],
-        bars: (0..CLASSES)
-            .map(|class| (format!("{:.1} s", class as f64 * width), worst(class)))
-            .collect(),
-    }
+    let title =
+        "worst reaction to the emergency stop by the instant after a part has left the nest";
+    let bars = (0..CLASSES).map(|class| (format!("{:.1} s", class as f64 * width), worst(class)));
+    Chart::new(title, "ms", vec![bound_ms], bars)
 }
 
-fn played(
+fn play_lot(
     order: &Order,
     folder: &Path,
     wiring: &Wiring,
@@ -167,19 +143,19 @@ fn played(
     let last = reactions
         .chunks_exact(sweep.presses())
         .map(|all| all[all.len() - 1]);
-    let stops = instants.iter().zip(last);
+    let stops = instants.into_iter().zip(last);
     result
         .stops
         .extend(stops.map(|(instant_s, reaction_ms)| Stop {
-            instant_s: *instant_s,
+            instant_s,
             reaction_ms,
         }));
     result.touched += played.text.matches("BODIES TOUCHED").count() as u64;
-    result.unfinished += u64::from(!played.whole);
+    result.unfinished += u64::from(!played.completed);
     Ok(())
 }
 
-/// Bits that move something, by module.
+/// Returns the bits of motion outputs by name of the module.
 fn moving(wiring: &Wiring) -> BTreeMap<String, u16> {
     let mut bits = BTreeMap::new();
     for point in DigitalOut::ALL.iter().filter(|point| point.moves()) {

@@ -1,4 +1,4 @@
-//! The arithmetic of the studies, on rows written by hand.
+//! The arithmetic of the studies, on hand-written rows.
 #![allow(clippy::unwrap_used)]
 
 mod errors;
@@ -38,7 +38,7 @@ fn near(found: Option<f64>, expected: f64) {
     );
 }
 
-/// Errors of +3 and -9 and +6 mV against 8 V on good parts, and a defective part far off.
+/// Returns a lot with errors of +3, -9 and +6 mV against 8 V on good parts, and a defective part far off.
 fn three_good_one_bad() -> Lot {
     let off = [0.003, -0.009, 0.006];
     let mut rows: Vec<Value> = (1..)

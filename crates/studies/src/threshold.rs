@@ -1,32 +1,27 @@
-//! Seconds against error of the thresholds, for every strategy and baud rate, on the whole line: real acts, real
-//! transactions.
+//! Seconds against error of the thresholds, for every strategy and baud rate, with the acts and transactions of the whole
+//! line.
 //!
-//! Run in a world whose instruments, certificates, temperature and operations err by nothing, so that what is left
-//! is the strategy's own error. 25 ms of settling at the pre-bias are added to operate, since the coil resistance
-//! that pays for them otherwise might not be asked for. A pulse has no value, only a bit.
+//! The world has no errors of instruments, certificates, temperature and operations, which leaves the error of the
+//! strategy. Operate includes 25 ms of settling at the pre-bias, because a recipe without coil resistance spends them
+//! there. A pulse gives a bit and no value.
 
-use super::figure::{Bar, Figure};
-use super::fleet::Order;
-use super::method::{self, BAUDS, Paid};
+use super::figure::Bar;
+use super::method::{self, BAUDS, TimedParameter};
+use super::order::Order;
 use super::output::Report;
 use super::variant::Variant;
 use machine::dut::em_relay::{Parameter, Strategy};
 
-/// Operate with the time of flux and armature at the pre-bias, and release.
-const THRESHOLDS: [Paid; 2] = [
-    Paid {
-        parameter: Parameter::OperateVoltage,
-        stages: &["operate"],
+/// Operate, with the settling of flux and armature at the pre-bias, and release.
+const THRESHOLDS: [TimedParameter; 2] = [
+    TimedParameter {
         more_s: 0.025,
+        ..TimedParameter::of(Parameter::OperateVoltage, &["operate"])
     },
-    Paid {
-        parameter: Parameter::ReleaseVoltage,
-        stages: &["release"],
-        more_s: 0.0,
-    },
+    TimedParameter::of(Parameter::ReleaseVoltage, &["release"]),
 ];
 
-/// Rms in millivolts and seconds that a strategy has to keep at 115200 baud.
+/// Returns the bars of a strategy at 115200 baud: rms in millivolts, and seconds.
 fn bars(parameter: Parameter, strategy: Strategy) -> Option<(f64, f64)> {
     match (parameter, strategy) {
         (Parameter::OperateVoltage, Strategy::CoarseFine) => Some((1.0, 0.20)),
@@ -39,7 +34,7 @@ fn bars(parameter: Parameter, strategy: Strategy) -> Option<(f64, f64)> {
 /// Runs the lots and makes the report.
 ///
 /// # Errors
-/// A lot that could not be run.
+/// A lot that did not run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let mut groups = vec![Vec::new(), Vec::new(), Vec::new()];
     for baud in BAUDS {
@@ -50,28 +45,19 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
                 named("test.strategy.release_voltage_v"),
             ];
             let lots = method::lots(&Variant::exact(baud, recipe), order)?;
-            for (place, paid) in THRESHOLDS.iter().enumerate() {
-                let what = paid.stages.join(" ");
+            for (place, timed) in THRESHOLDS.iter().enumerate() {
+                let what = timed.stages.join(" ");
                 let name = format!("{what} {} {baud}", strategy.name());
-                let row = paid.row(name.clone(), &lots);
-                let bars = bars(paid.parameter, strategy).filter(|_| baud == BAUDS[0]);
-                groups[2].extend(bars.map(|(_, s)| paid.time(&name, &lots, s)));
-                groups[place].push(barred(row, bars.map(|(mv, _)| mv)));
+                let row = timed.row(name.clone(), &lots);
+                let bars = bars(timed.parameter, strategy).filter(|_| baud == BAUDS[0]);
+                groups[2].extend(bars.map(|(_, s)| timed.time(&name, &lots, s)));
+                groups[place].push(match bars {
+                    Some((mv, _)) => row.bar(Bar::AtMost(mv)),
+                    None => row,
+                });
             }
         }
     }
-    Ok(method::report(
-        "threshold",
-        order,
-        groups,
-        2,
-        vec![1.0, 12.0],
-    ))
-}
-
-fn barred(row: Figure, at_most: Option<f64>) -> Figure {
-    match at_most {
-        Some(at_most) => row.bar(Bar::AtMost(at_most)),
-        None => row,
-    }
+    let marks = vec![1.0, 12.0];
+    Ok(method::report("threshold", order, groups, 2, marks))
 }

@@ -1,50 +1,43 @@
-//! Error of times and bounce: what the latch is for, and what clock, gate delay and bus add.
+//! Error of times and bounce: the gain by the latch, and the errors of clock, gate delay and bus.
 //!
-//! Gate 0 ends at the first make, gate 1 is open whenever the contact is: alone it would be the time, bounce
-//! included. So the row of the raw gate is the sum of two values of the same test. A count is the floor of a
-//! length with a random phase: 8.2 us rms at 50 kHz, whatever the baud rate. A bounce is the difference of two counts.
-//! The truth of a time is that of the last operation: a mean over several would be held against one of them.
+//! Gate 0 ends at the first make; gate 1 counts while the contact is open, and alone would measure the time with its
+//! bounce. The row of the raw gate is therefore the sum of two values of the same test. A count is the floor of a length
+//! with a random phase: 8.2 us rms at 50 kHz for any baud rate. A bounce is the difference of two counts. The truth of a
+//! time is that of the last operation, so the study measures one operation and no mean over several.
 
 use super::error::Pooled;
 use super::figure::{Bar, Figure};
-use super::fleet::Order;
 use super::lot::{Lot, Part};
-use super::method::{self, BAUDS, Paid};
+use super::method::{self, BAUDS, TimedParameter};
+use super::order::Order;
 use super::output::Report;
 use super::variant::{Change, Variant};
 use machine::dut::em_relay::Parameter;
 
-const fn paid(parameter: Parameter, stages: &'static [&'static str]) -> Paid {
-    Paid {
-        parameter,
-        stages,
-        more_s: 0.0,
-    }
-}
-
 const OPERATE: &[&str] = &["timed_operate"];
 const RELEASE: &[&str] = &["timed_release"];
-/// Name, time and bounce of either direction.
-const DIRECTIONS: [(&str, Paid, Paid); 2] = [
+/// Name, time and bounce of each direction.
+const DIRECTIONS: [(&str, TimedParameter, TimedParameter); 2] = [
     (
         "operate",
-        paid(Parameter::OperateTime, OPERATE),
-        paid(Parameter::OperateBounce, OPERATE),
+        TimedParameter::of(Parameter::OperateTime, OPERATE),
+        TimedParameter::of(Parameter::OperateBounce, OPERATE),
     ),
     (
         "release",
-        paid(Parameter::ReleaseTime, RELEASE),
-        paid(Parameter::ReleaseBounce, RELEASE),
+        TimedParameter::of(Parameter::ReleaseTime, RELEASE),
+        TimedParameter::of(Parameter::ReleaseBounce, RELEASE),
     ),
 ];
-/// Total rms that production may have, ms.
+/// Greatest rms of a time in production, ms.
 const TIME_MS: f64 = 0.02;
+/// Greatest rms of a bounce in production, ms.
 const BOUNCE_MS: f64 = 0.05;
 
 /// Runs the lots and makes the report.
 ///
 /// # Errors
-/// A lot that could not be run.
+/// A lot that did not run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let mut gates = Vec::new();
     for baud in BAUDS {
@@ -52,18 +45,13 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
         gates.extend(rows(&baud.to_string(), &lots));
     }
     let groups = vec![gates, errors(order)?];
-    Ok(method::report(
-        "timing",
-        order,
-        groups,
-        2,
-        vec![TIME_MS, BOUNCE_MS],
-    ))
+    let marks = vec![TIME_MS, BOUNCE_MS];
+    Ok(method::report("timing", order, groups, 2, marks))
 }
 
-/// Latched and raw gate and the bounce between them, of both directions.
+/// Returns latched gate, raw gate and bounce of both directions.
 fn rows(name: &str, lots: &[Lot]) -> Vec<Figure> {
-    let of = |(direction, time, bounce): &(&str, Paid, Paid)| {
+    let of = |(direction, time, bounce): &(&str, TimedParameter, TimedParameter)| {
         let raw = Pooled::by(lots, |part| raw(part, time.parameter, bounce.parameter));
         [
             time.row(format!("{direction}, latched gate, {name}"), lots),
@@ -74,13 +62,13 @@ fn rows(name: &str, lots: &[Lot]) -> Vec<Figure> {
     DIRECTIONS.iter().flat_map(of).collect()
 }
 
-/// Error of a time that the contact itself would have ended, ms.
+/// Returns the error of the raw gate: time plus bounce against the true time, ms.
 fn raw(part: &Part, time: Parameter, bounce: Parameter) -> Option<f64> {
     let (time, bounce) = (part.reading(time)?, part.reading(bounce)?);
     Some(time.value + bounce.value - time.truth)
 }
 
-/// One operation in worlds with one error each, and with all of them.
+/// Measures in worlds with one error each, and with all of them.
 fn errors(order: &Order) -> anyhow::Result<Vec<Figure>> {
     let worlds: [(&str, Vec<Change>); 2] = [
         (
@@ -94,26 +82,16 @@ fn errors(order: &Order) -> anyhow::Result<Vec<Figure>> {
     ];
     let mut figures = Vec::new();
     for (name, world) in worlds {
-        let variant = Variant {
-            world,
-            ..Variant::exact(BAUDS[0], Vec::new())
-        };
+        let variant = Variant::exact(BAUDS[0], Vec::new()).in_world(world);
         let lots = method::lots(&variant, order)?;
-        figures.extend(
-            rows(name, &lots)
-                .into_iter()
-                .filter(|row| !row.name.contains("raw")),
-        );
+        let rows = rows(name, &lots).into_iter();
+        figures.extend(rows.filter(|row| !row.name.contains("raw")));
     }
-    let all = Variant {
-        exact: false,
-        ..Variant::exact(BAUDS[0], Vec::new())
-    };
-    let lots = method::lots(&all, order)?;
+    let lots = method::lots(&Variant::erring(BAUDS[0], Vec::new()), order)?;
     for (direction, time, bounce) in DIRECTIONS {
-        let of = |paid: Paid, what: &str, bar: f64| {
+        let of = |timed: TimedParameter, what: &str, bar: f64| {
             let name = format!("{direction}{what}, every error of the world");
-            paid.row(name, &lots).bar(Bar::AtMost(bar))
+            timed.row(name, &lots).bar(Bar::AtMost(bar))
         };
         figures.extend([of(time, "", TIME_MS), of(bounce, " bounce", BOUNCE_MS)]);
     }

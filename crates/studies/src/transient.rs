@@ -1,9 +1,9 @@
 //! `relayrig study transient`: the relay model of the simulated rig over cases from a file.
 //!
-//! Every case is read and integrated before the first answer is printed. Wall time is the median of
-//! a few integrations of the same case in this process; everything else is the same on any machine.
+//! The study integrates every case before it prints the first answer. Wall time is the median of [`REPEATS`] integrations
+//! of the same case; all other figures are the same on any machine.
 //!
-//! Exit status: 0 all cases integrated, 2 bad input or a case whose state runs away.
+//! Exit status: 0 after all cases, 2 for bad input or a case whose state diverges.
 
 mod cases;
 mod field;
@@ -19,10 +19,9 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;
 
-/// Share of the state that a step may get wrong when nothing else is asked for: 1e-10 s on first
-/// events, 1e-8 s on last bounces.
+/// Default relative tolerance of a step; it gives an error of 1e-10 s on first events and 1e-8 s on last bounces.
 pub const USUAL_RTOL: f64 = 1e-8;
-/// Integrations of a case for its wall time.
+/// Number of integrations of a case for its wall time.
 const REPEATS: usize = 5;
 
 /// An integrated case.
@@ -32,10 +31,10 @@ struct Answer {
     wall_us: f64,
 }
 
-/// Integrates the cases of a file (`-` for standard input); the text to print.
+/// Integrates the cases of a file (`-` for standard input) and returns the text to print: a JSON line or a table per case.
 ///
 /// # Errors
-/// The file cannot be read or a field of it is wrong; a case cannot be integrated.
+/// A file that cannot be read, a wrong field, or a case whose state diverges.
 pub fn study(file: &Path, rtol: f64, as_json: bool) -> anyhow::Result<String> {
     let text = match file == Path::new("-") {
         true => std::io::read_to_string(std::io::stdin()).context("reading standard input")?,
@@ -48,13 +47,11 @@ pub fn study(file: &Path, rtol: f64, as_json: bool) -> anyhow::Result<String> {
         .iter()
         .map(|case| integrate(case, rtol).with_context(|| format!("case `{}`", case.name)))
         .collect::<anyhow::Result<_>>()?;
-    Ok(match as_json {
-        true => answers
-            .iter()
-            .map(|answer| format!("{}\n", answer.json()))
-            .collect(),
-        false => answers.iter().map(Answer::text).collect(),
-    })
+    let text = |answer: &Answer| match as_json {
+        true => format!("{}\n", answer.json()),
+        false => answer.text(),
+    };
+    Ok(answers.iter().map(text).collect())
 }
 
 fn integrate(case: &Case, rtol: f64) -> anyhow::Result<Answer> {
@@ -108,7 +105,7 @@ impl Answer {
     }
 }
 
-/// The figures under the keys of the cases file; null where it did not happen.
+/// Returns the results under the keys of the cases file; null for an event that did not happen.
 fn results(outcome: &Outcome) -> Map<String, Value> {
     let rows = [
         ("NC_first_open", json!(outcome.nc_first_open)),

@@ -1,19 +1,20 @@
-//! The same rig a little different: a copy of the configuration with other values of a recipe, another baud
-//! rate, or a world whose instruments err by nothing.
+//! A variant of the configuration: a copy with other values of a recipe, another baud rate, or a world whose instruments
+//! have no errors.
 //!
-//! Both programs read the copy, so the line, the modules and the sequence are those of any lot; only what
-//! the variant names is changed. The copy is gone with its owner.
+//! Controller and simulated rig both read the copy, so that line, modules and sequence are those of any lot; only the
+//! keys of the variant differ. The copy is deleted with [`ChangedConfig`].
 
-use super::fleet::{Folder, Order};
+use super::order::Order;
 use anyhow::{Context, anyhow};
 use std::path::{Path, PathBuf};
+use tempfile::TempDir;
 use toml::{Table, Value};
 
-/// A key by its path, and what it becomes.
+/// A key by its dotted path, and its new value.
 pub type Change = (&'static str, Value);
 
-/// Instruments, temperature and operations that err by nothing: what is left is the strategy's own error. Noise
-/// and resolution of the converters stay. Defects have no place in it.
+/// Keys of a world without errors of instruments, temperature and operations, which leaves the error of the strategy.
+/// Noise and resolution of the converters stay; there are no defects.
 const EXACT: [(&str, f64); 13] = [
     ("devices.ai_gain_pct", 0.0),
     ("devices.ai_offset_pct_of_range", 0.0),
@@ -29,7 +30,7 @@ const EXACT: [(&str, f64); 13] = [
     ("lot.thermal_emf_sd_uv", 0.0),
     ("defects.rate_pct", 0.0),
 ];
-/// Standard uncertainty of every certificate where instruments err by nothing: the files want one above zero.
+/// Standard uncertainty of every certificate in a world without errors: the format demands one above zero.
 const CERTIFIED_U: f64 = 1e-6;
 /// Asking every module at the start takes a slower line than this longer than the usual watchdog waits, baud.
 const SLOW_BAUD: u32 = 19_200;
@@ -37,27 +38,27 @@ const SLOW_BAUD: u32 = 19_200;
 /// What is different.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Variant {
-    /// Keys of the recipe.
+    /// Changed keys of the recipe.
     pub recipe: Vec<Change>,
-    /// Of the measuring line, bits per second.
+    /// Baud rate of the measuring line, bits per second.
     pub baud: u32,
-    /// Instruments that err by nothing.
+    /// Whether instruments have no errors.
     pub exact: bool,
-    /// Keys of the world, after that.
+    /// Changed keys of the world; they take precedence over `exact`.
     pub world: Vec<Change>,
-    /// Faults asked of the simulated rig.
+    /// Faults of the simulated rig, in the form of `--fault`.
     pub faults: Vec<String>,
 }
 
-/// A configuration that has been changed.
-pub struct Changed {
-    /// What to run.
+/// A changed configuration in a temporary directory.
+pub struct ChangedConfig {
+    /// Lots that run with the changed configuration.
     pub order: Order,
-    _folder: Folder,
+    _folder: TempDir,
 }
 
 impl Variant {
-    /// Instruments that err by nothing on a line of so many baud.
+    /// A variant without errors of the instruments, at a baud rate of the measuring line in bits per second.
     pub fn exact(baud: u32, recipe: Vec<Change>) -> Self {
         Self {
             recipe,
@@ -68,13 +69,26 @@ impl Variant {
         }
     }
 
-    /// The configuration of `order` with this variant's changes.
+    /// The same variant with the errors of the instruments.
+    pub fn erring(baud: u32, recipe: Vec<Change>) -> Self {
+        Self {
+            exact: false,
+            ..Self::exact(baud, recipe)
+        }
+    }
+
+    /// The same variant with these keys of the world.
+    pub fn in_world(self, world: Vec<Change>) -> Self {
+        Self { world, ..self }
+    }
+
+    /// Copies the configuration of `order` and makes the changes in the copy.
     ///
     /// # Errors
-    /// A file that cannot be read or written, or is no TOML.
-    pub fn of(&self, order: &Order) -> anyhow::Result<Changed> {
-        let folder = Folder::new()?;
-        let to = folder.0.join("config");
+    /// A file that cannot be read or written, or that is not TOML.
+    pub fn of(&self, order: &Order) -> anyhow::Result<ChangedConfig> {
+        let folder = TempDir::new()?;
+        let to = folder.path().join("config");
         copy(&order.config, &to)?;
         let recipe = to.join("recipes").join(format!("{}.toml", order.recipe));
         edit(&recipe, |table| set_all(table, &self.recipe))?;
@@ -82,7 +96,7 @@ impl Variant {
         if self.exact {
             edit(&to.join("golden.toml"), certify)?;
         }
-        let world = folder.0.join("world.toml");
+        let world = folder.path().join("world.toml");
         let base = order
             .world
             .as_ref()
@@ -94,7 +108,7 @@ impl Variant {
             faults: self.faults.clone(),
             ..order.clone()
         };
-        Ok(Changed {
+        Ok(ChangedConfig {
             order,
             _folder: folder,
         })
@@ -118,7 +132,7 @@ impl Variant {
     }
 }
 
-/// Certificates that are true.
+/// Sets the uncertainty of every certificate to [`CERTIFIED_U`].
 fn certify(golden: &mut Table) -> anyhow::Result<()> {
     let parts = golden.get_mut("golden").and_then(Value::as_array_mut);
     for part in parts.into_iter().flatten().filter_map(Value::as_table_mut) {
@@ -138,7 +152,7 @@ fn set_all(table: &mut Table, changes: &[Change]) -> anyhow::Result<()> {
         .try_for_each(|(key, value)| set(table, key, value.clone()))
 }
 
-/// Sets a key by its path; tables on the way are made.
+/// Sets a key by its dotted path and adds missing tables; fails when a key on the path is not a table.
 fn set(table: &mut Table, path: &str, value: Value) -> anyhow::Result<()> {
     match path.split_once('.') {
         None => {
@@ -157,15 +171,15 @@ fn set(table: &mut Table, path: &str, value: Value) -> anyhow::Result<()> {
 }
 
 fn table(path: &Path) -> anyhow::Result<Table> {
-    let told = || path.display().to_string();
-    let text = std::fs::read_to_string(path).with_context(told)?;
-    text.parse().with_context(told)
+    let named = || path.display().to_string();
+    let text = std::fs::read_to_string(path).with_context(named)?;
+    text.parse().with_context(named)
 }
 
 fn write(path: &Path, table: &Table) -> anyhow::Result<()> {
-    let told = || path.display().to_string();
-    let text = toml::to_string(table).with_context(told)?;
-    std::fs::write(path, text).with_context(told)
+    let named = || path.display().to_string();
+    let text = toml::to_string(table).with_context(named)?;
+    std::fs::write(path, text).with_context(named)
 }
 
 fn edit(path: &Path, change: impl Fn(&mut Table) -> anyhow::Result<()>) -> anyhow::Result<()> {
@@ -175,15 +189,15 @@ fn edit(path: &Path, change: impl Fn(&mut Table) -> anyhow::Result<()>) -> anyho
 }
 
 fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
-    let told = || format!("copying {}", from.display());
-    std::fs::create_dir(to).with_context(told)?;
-    for entry in std::fs::read_dir(from).with_context(told)? {
-        let entry = entry.with_context(told)?;
+    let named = || format!("copying {}", from.display());
+    std::fs::create_dir(to).with_context(named)?;
+    for entry in std::fs::read_dir(from).with_context(named)? {
+        let entry = entry.with_context(named)?;
         let (path, target): (PathBuf, PathBuf) = (entry.path(), to.join(entry.file_name()));
         if path.is_dir() {
             copy(&path, &target)?;
         } else {
-            std::fs::copy(&path, &target).with_context(told)?;
+            std::fs::copy(&path, &target).with_context(named)?;
         }
     }
     Ok(())
@@ -194,7 +208,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_key_is_set_by_its_path_and_its_neighbours_stay() {
+    fn a_key_is_set_by_its_path() {
         let mut table: Table = "a = 1\n[b]\nc = 2\nd = 3\n".parse().expect("a table");
         set(&mut table, "b.c", 7.into()).expect("a key of a table");
         set(&mut table, "x.y", "new".into()).expect("a new table");
@@ -204,11 +218,9 @@ mod tests {
     }
 
     #[test]
-    fn what_a_variant_says_of_the_world_comes_after_what_is_exact() {
-        let variant = Variant {
-            world: vec![("devices.clock_ppm", 50.0.into())],
-            ..Variant::exact(115_200, Vec::new())
-        };
+    fn keys_of_the_world_override_exact() {
+        let variant =
+            Variant::exact(115_200, Vec::new()).in_world(vec![("devices.clock_ppm", 50.0.into())]);
         let own = "[devices]\nclock_ppm = 9.0\nao_gain_pct = 9.0\nlatency_ms_mean = 5.0\n";
         let world = variant
             .world_on(own.parse().expect("a table"))
@@ -220,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn certificates_become_true() {
+    fn certified_uncertainties_become_small() {
         let text = "[[golden]]\nserial = \"G\"\noperate_voltage_v = { value = 7.4, u = 0.001 }\n";
         let mut golden: Table = text.parse().expect("a table");
         certify(&mut golden).expect("certificates");

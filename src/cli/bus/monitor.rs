@@ -43,7 +43,7 @@ pub struct MonitorArgs {
     /// How much is said
     #[arg(long, value_enum, default_value = "meaning")]
     level: Level,
-    /// Ends after so many seconds
+    /// Ends after this many seconds
     #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(1..=86_400))]
     seconds: Option<u64>,
 }

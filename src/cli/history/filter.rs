@@ -41,10 +41,10 @@ pub(super) struct PartArgs {
     /// Only parts between a good golden check and one that failed
     #[arg(long)]
     pub suspect: bool,
-    /// At most so many parts, the first ones in order of judgement
+    /// Most parts to show, the first ones in order of judgement
     #[arg(long, value_name = "N")]
     pub limit: Option<u64>,
-    /// Pass over so many parts first: the next page
+    /// Number of parts to skip first: the next page
     #[arg(long, value_name = "N")]
     pub offset: Option<u64>,
 }

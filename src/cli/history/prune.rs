@@ -10,7 +10,7 @@ use std::path::Path;
 
 #[derive(Debug, Args)]
 pub(super) struct PruneArgs {
-    /// Runs that ended at least so many days ago
+    /// Age of the runs: days since they ended, at least
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=36_500))]
     older_than_days: u32,
     /// Delete them; without it they are only listed

@@ -62,7 +62,7 @@ impl Cycle {
         }
     }
 
-    /// Answers whoever asked, and tells the audit.
+    /// Sends the answer to the sender of the order and records it in the audit.
     fn say(&self, asked: OrderRequest, answer: Result<(), Refused>, now: RigTime) {
         let said = answer.map_err(|why| why.message());
         let answered = AnsweredOrder {

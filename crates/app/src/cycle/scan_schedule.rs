@@ -8,7 +8,7 @@
 
 use dcon::Command;
 
-/// One turn in so many, those of the contact left out, asks a module whether it has restarted.
+/// Turns per restart check of a module; turns that read a contact do not count.
 const RESET_EVERY: usize = 16;
 
 /// The scan of one line.

@@ -1,15 +1,16 @@
 //! `relayrig study collision`: speed against error of every way to check a move.
 //!
-//! One scene of 1,000 bodies and moves of five kinds (`world`), with the exact truth about each. Asked are
+//! The study asks every method about moves of five kinds in a scene of 1,000 bodies (`world`), with the exact truth about
+//! each move:
 //! - the method of the paper, rebuilt (`paper`), at steps of 10, 1, 0.1 and 0.01 mm;
-//! - swept boxes: the extrusion of the bounding boxes, by the swept query of our own core over boxes
-//!   instead of shapes, so that the difference is the shapes and nothing else;
-//! - swept exact: our own core as the guard uses it;
-//! - parry3d in f32 and f64 (`peer`), when the program was built with the feature `study`.
+//! - swept boxes: the swept query of the collision core over bounding boxes in place of the shapes, so that the shapes are
+//!   the only difference;
+//! - swept exact: the collision core as the guard uses it;
+//! - parry3d in f32 and f64 (`peer`).
 //!
-//! Every move is timed alone, reading the clock is taken off, of three passes the fastest counts; the
-//! ratios are within this run. An answer of stepping is its last clear pose. Then a small world is
-//! gone through completely (`small_world`).
+//! The study times every move alone, subtracts the time of reading the clock and takes the fastest of three passes;
+//! ratios compare times of the same run. Stepping answers with its last clear pose. Finally the study checks every move of
+//! a small world (`small_world`).
 
 mod outline;
 mod paper;
@@ -22,60 +23,54 @@ mod tests;
 mod world;
 
 use super::output::Report;
-use super::scatter::Scatter;
 use anyhow::Context;
 use lpm::{Answer, Model, Mover};
 use paper::Stepping;
 use report::{
-    Scored, bars, errors, missed_by_kind, notes, refined, speed_against_error, speeds,
+    Scored, bars, bodies_near, errors, missed_by_kind, notes, speed_against_error, speeds,
     wrong_verdicts,
 };
-use score::{Ask, Method, outcomes};
+use score::{Method, Query, outcomes};
 use world::{KINDS, UNIT_MM, World};
 
-/// Steps of the paper's method, mm.
+/// Step lengths of the paper's method, mm.
 const STEPS_MM: [f64; 4] = [10.0, 1.0, 0.1, 0.01];
-/// Moves of each kind.
+/// Number of moves of each kind.
 const EACH: usize = 200;
-/// The scene and its moves follow from it.
+/// Seed of the scene and of its moves.
 const SEED: u64 = 1;
-/// Greatest corner of the small world.
+/// Greatest coordinate of a corner in the small world.
 const SMALL_WORLD: i64 = 3;
-/// The name the bars and ratios refer to.
+/// Name of the method to which bars and ratios refer.
 const OURS: &str = "swept exact";
-/// The truth is rounded to a few units in the last place: later than this is late, mm.
+/// Error of rounding in the truth, mm: a stop is late only when it is later than this.
 const ROUNDING_MM: f64 = 1e-12;
 
-/// Runs everything and draws the report up, with the plot of speed against error.
+/// Compares ways to check a move with the exact truth; returns the report, and the plot of speed against error as SVG.
 ///
 /// # Errors
-/// The scene could not be built (it always can).
-pub fn study() -> anyhow::Result<(Report, Scatter)> {
-    let world = World::drawn(SEED, EACH);
+/// A body that the collision core refuses.
+pub fn study() -> anyhow::Result<(Report, String)> {
+    let world = World::random(SEED, EACH);
     let scored = scored(&world)?;
-    let small = small_world::judged(SMALL_WORLD);
+    let small = small_world::check_all(SMALL_WORLD)?;
     let about = format!(
         "{} bodies, a mover of {} parts, {} moves ({} each of {}), seed {SEED}",
         world.elements.len(),
         world.parts.len(),
-        world.ways.len(),
+        world.moves.len(),
         EACH,
         KINDS.join(", ")
     );
-    let report = Report {
-        study: "collision",
-        groups: vec![
-            speeds(&scored),
-            errors(&scored),
-            missed_by_kind(&scored),
-            refined(&world.ways),
-            bars(&scored, &small),
-        ],
-        notes: notes(),
-        chart: wrong_verdicts(&scored),
-        about,
-    };
-    Ok((report, speed_against_error(&scored)))
+    let groups = vec![
+        speeds(&scored),
+        errors(&scored),
+        missed_by_kind(&scored),
+        bodies_near(&world.moves),
+        bars(&scored, &small),
+    ];
+    let report = Report::new("collision", about, groups, wrong_verdicts(&scored)).noted(notes());
+    Ok((report, speed_against_error(&scored).svg()))
 }
 
 fn scored(world: &World) -> anyhow::Result<Vec<Scored>> {
@@ -84,58 +79,56 @@ fn scored(world: &World) -> anyhow::Result<Vec<Scored>> {
     Ok(methods
         .into_iter()
         .map(|mut method| Scored {
-            outcomes: outcomes(&mut method, &world.ways, clock_us),
+            outcomes: outcomes(&mut method, &world.moves, clock_us),
             name: method.name,
         })
         .collect())
 }
 
 fn methods(world: &World) -> anyhow::Result<Vec<Method>> {
-    let mut methods = Vec::new();
-    for step_mm in STEPS_MM {
+    let method = |name: &str, query: Query| Method {
+        name: name.to_owned(),
+        query,
+    };
+    let stepping = |step_mm: f64| {
         let mut stepping = Stepping::new(&world.elements, &world.parts);
-        methods.push(Method {
-            name: format!("paper, step {step_mm} mm"),
-            ask: Box::new(move |way| stepping.first_contact(way, step_mm)),
-        });
-    }
+        let query =
+            Box::new(move |test_move: &world::TestMove| stepping.first_contact(test_move, step_mm));
+        method(&format!("paper, step {step_mm} mm"), query)
+    };
     let boxes = |bodies: &[lpm::exact::Body]| bodies.iter().map(world::boxed).collect::<Vec<_>>();
-    methods.push(Method {
-        name: "swept boxes".to_owned(),
-        ask: swept(&boxes(&world.elements), &boxes(&world.parts))?,
-    });
-    methods.push(Method {
-        name: OURS.to_owned(),
-        ask: swept(&world.elements, &world.parts)?,
-    });
     let double = peer::double::Peer::new(&world.elements, &world.parts);
     let single = peer::single::Peer::new(&world.elements, &world.parts);
-    methods.push(Method {
-        name: "parry3d f64".to_owned(),
-        ask: Box::new(move |way| double.first_contact(way)),
-    });
-    methods.push(Method {
-        name: "parry3d f32".to_owned(),
-        ask: Box::new(move |way| single.first_contact(way)),
-    });
+    let mut methods: Vec<Method> = STEPS_MM.map(stepping).into();
+    methods.extend([
+        method(
+            "swept boxes",
+            swept(&boxes(&world.elements), &boxes(&world.parts))?,
+        ),
+        method(OURS, swept(&world.elements, &world.parts)?),
+        method(
+            "parry3d f64",
+            Box::new(move |test_move| double.first_contact(test_move)),
+        ),
+        method(
+            "parry3d f32",
+            Box::new(move |test_move| single.first_contact(test_move)),
+        ),
+    ]);
     Ok(methods)
 }
 
-/// Our own core over these bodies.
-fn swept(elements: &[lpm::exact::Body], parts: &[lpm::exact::Body]) -> anyhow::Result<Ask> {
+/// Returns the query of the collision core over these bodies.
+fn swept(elements: &[lpm::exact::Body], parts: &[lpm::exact::Body]) -> anyhow::Result<Query> {
     let mut model = Model::new();
     for (number, body) in elements.iter().enumerate() {
-        model
-            .insert(
-                &number.to_string(),
-                &body.shape(UNIT_MM),
-                &body.pose(UNIT_MM),
-            )
-            .context("building the scene of the study")?;
+        let (name, shape, pose) = (number.to_string(), body.shape(UNIT_MM), body.pose(UNIT_MM));
+        let inserted = model.insert(&name, &shape, &pose);
+        inserted.context("building the scene of the study")?;
     }
     let mover = Mover::new(&world::compound(parts)).context("building the mover of the study")?;
-    Ok(Box::new(move |way| {
-        match model.first_contact(&mover, &way.order()) {
+    Ok(Box::new(move |test_move| {
+        match model.first_contact(&mover, &test_move.order()) {
             Answer::Clear => None,
             Answer::Blocked(contact) => Some(contact.t_stop),
         }

@@ -1,15 +1,15 @@
-//! Convex polygons on the baseplate, and whether two of them meet: separating axes.
+//! Convex polygons on the baseplate, and the test by separating axes whether two of them meet.
 
-/// Corners in order, mm, and the outward normals of the edges.
+/// A convex polygon, mm.
 #[derive(Debug, Clone)]
 pub struct Outline {
     corners: Vec<[f64; 2]>,
-    /// Normal of each edge and how far the polygon reaches along it.
+    /// Outward normal of each edge, and the reach of the polygon along it.
     edges: Vec<([f64; 2], f64)>,
 }
 
 impl Outline {
-    /// Of corners that go round counter-clockwise.
+    /// A polygon of corners in counter-clockwise order, mm.
     pub fn of(corners: Vec<[f64; 2]>) -> Outline {
         let next = corners.iter().cycle().skip(1);
         let edges = corners.iter().zip(next).map(|(a, b)| {
@@ -46,7 +46,7 @@ impl Outline {
         Outline::of((0..corners).map(corner).collect())
     }
 
-    /// Lowest and highest coordinates.
+    /// Returns lowest and highest coordinates, mm.
     pub fn bounds(&self) -> ([f64; 2], [f64; 2]) {
         let start = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         self.corners.iter().fold(start, |(low, high), corner| {
@@ -57,7 +57,7 @@ impl Outline {
         })
     }
 
-    /// Whether this polygon meets `other` after `other` was displaced by `shift`; touching counts.
+    /// Returns whether this polygon meets `other` displaced by `shift` (mm); touching counts.
     pub fn meets(&self, other: &Outline, shift: [f64; 2]) -> bool {
         let back = [-shift[0], -shift[1]];
         !self.separates(other, shift) && !other.separates(self, back)

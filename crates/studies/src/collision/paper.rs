@@ -1,23 +1,21 @@
-//! The method of the paper, rebuilt: poses are checked one after the other, nothing between them.
+//! The method of the paper, rebuilt from the published part: it checks poses one after the other, and nothing between them.
 //!
-//! Our own reading of what is known of it. Layers between the bottoms and tops of the elements hold
-//! a square grid of element numbers each; a pose goes through them in the paper's order: layers,
-//! silhouettes on x and y, oriented boxes, polygons. The box of a cylinder is a box. The polygons
-//! are the outlines as a display draws them: a cylinder has [`CORNERS`] corners on its mantle, the first one
-//! anywhere. Every
-//! body stands upright here, so an outline and a height say everything and the polygon test has no
-//! error of its own. What the authors laid out differently is not known.
+//! Each layer between neighbouring bottoms and tops of the elements holds a square grid of element numbers. A pose passes
+//! the tests in the paper's order: layers, silhouettes on x and y, oriented boxes, polygons. The polygons are the outlines
+//! as a display draws them: a cylinder has [`CORNERS`] corners on its mantle, at any rotation. Every body is upright, so
+//! that an outline and a height describe it and the polygon test adds no error. Details may differ from the authors' own
+//! program.
 
 use super::outline::Outline;
-use super::world::{UNIT_MM, Way};
+use super::world::{TestMove, UNIT_MM};
 use lpm::exact::{Body, Form};
 
-/// Corners of a drawn cylinder.
+/// Corners of the polygon of a cylinder.
 const CORNERS: usize = 32;
 /// Pitch of the grid of a layer, mm.
 const PITCH_MM: f64 = 64.0;
 
-/// A body with everything that was worked out beforehand, mm.
+/// A body with its precomputed bounds and outlines, mm.
 #[derive(Debug)]
 struct Prepared {
     low: [f64; 3],
@@ -26,7 +24,7 @@ struct Prepared {
     polygon: Outline,
 }
 
-/// A layer: height and grid of element numbers.
+/// A layer: range of heights, mm, and grid of element numbers.
 #[derive(Debug)]
 struct Layer {
     from: f64,
@@ -41,16 +39,16 @@ pub struct Stepping {
     layers: Vec<Layer>,
     columns: usize,
     parts: Vec<Prepared>,
-    /// Question at which each element was looked at last: it may stand in several layers and cells.
+    /// Number of the last question that tested each element: an element may lie in several layers and cells.
     asked: Vec<u64>,
-    /// Parts times poses so far.
+    /// Number of questions so far; each is one part at one pose.
     questions: u64,
 }
 
 impl Stepping {
-    /// Works the scene out.
+    /// Prepares scene and mover.
     pub fn new(elements: &[Body], parts: &[Body]) -> Stepping {
-        let elements: Vec<Prepared> = numbered(elements);
+        let elements: Vec<Prepared> = prepared_bodies(elements);
         let extent = elements
             .iter()
             .fold(0.0_f64, |most, it| most.max(it.high[0]).max(it.high[1]));
@@ -58,18 +56,18 @@ impl Stepping {
         Stepping {
             layers: layers(&elements, columns),
             columns,
-            parts: numbered(parts),
+            parts: prepared_bodies(parts),
             asked: vec![0; elements.len()],
             questions: 0,
             elements,
         }
     }
 
-    /// Last clear pose before the first pose that collides, as a fraction of the move.
-    pub fn first_contact(&mut self, way: &Way, step_mm: f64) -> Option<f64> {
-        let poses = (way.length_mm() / step_mm).ceil().max(1.0);
-        let from = way.from.map(|it| it as f64 * UNIT_MM);
-        let run = way.run.map(|it| it as f64 * UNIT_MM);
+    /// Returns the last clear pose before the first one that collides, as a fraction of the move; `None` when none collides.
+    pub fn first_contact(&mut self, test_move: &TestMove, step_mm: f64) -> Option<f64> {
+        let poses = (test_move.length_mm() / step_mm).ceil().max(1.0);
+        let from = test_move.from.map(|it| it as f64 * UNIT_MM);
+        let run = test_move.run.map(|it| it as f64 * UNIT_MM);
         for pose in 0..=poses as u64 {
             let t = pose as f64 / poses;
             if self.collides([0, 1, 2].map(|axis| from[axis] + t * run[axis])) {
@@ -97,7 +95,7 @@ impl Stepping {
         found
     }
 
-    /// Elements of the layers and cells that the box reaches; some more than once.
+    /// Returns the elements of the layers and cells that the box reaches, some more than once.
     fn numbers(&self, low: [f64; 3], high: [f64; 3]) -> impl Iterator<Item = usize> + '_ {
         let cell = |place: f64| ((place / PITCH_MM).max(0.0) as usize).min(self.columns - 1);
         let (xs, ys) = (cell(low[0])..=cell(high[0]), cell(low[1])..=cell(high[1]));
@@ -127,8 +125,8 @@ impl Prepared {
     }
 }
 
-fn numbered(bodies: &[Body]) -> Vec<Prepared> {
-    // Golden angle: the first corners lie anywhere, no direction is preferred.
+fn prepared_bodies(bodies: &[Body]) -> Vec<Prepared> {
+    // Rotations by the golden angle prefer no direction of the first corner.
     let angle = |number: usize| 2.399_963 * number as f64;
     let each = bodies.iter().enumerate();
     each.map(|(number, body)| prepared(body, angle(number)))
@@ -169,7 +167,7 @@ fn prepared(body: &Body, first_corner: f64) -> Prepared {
     }
 }
 
-/// Layers between any two neighbouring bottoms or tops.
+/// Builds the layers between neighbouring bottoms or tops.
 fn layers(elements: &[Prepared], columns: usize) -> Vec<Layer> {
     let mut heights: Vec<f64> = elements
         .iter()

@@ -1,13 +1,13 @@
-//! parry3d in both precisions, by the call that its interface offers for a whole move.
+//! parry3d in both precisions, by its shape cast for a whole move.
 //!
-//! Scene and mover are one compound each. A move of no length is an intersection test, because the
-//! cast answers "nothing" to those. Cylinders lie on y there and are turned up.
+//! Scene and mover are one compound each. A move of length zero is an intersection test, because the cast reports no
+//! contact for it. The axis of a parry3d cylinder is y: the peer rotates it to z.
 
-/// One precision of the library.
+/// Defines the peer for one precision of the library.
 macro_rules! peer {
     ($name:ident, $library:ident, $real:ty) => {
         pub mod $name {
-            use super::super::world::{UNIT_MM, Way};
+            use super::super::world::{TestMove, UNIT_MM};
             use lpm::exact::{Body, Form};
             use $library::math::{Pose, Rot3, Vector};
             use $library::query::{ShapeCastOptions, cast_shapes, intersection_test};
@@ -20,7 +20,7 @@ macro_rules! peer {
             }
 
             impl Peer {
-                /// Builds both trees.
+                /// Builds the compounds of scene and mover.
                 pub fn new(elements: &[Body], parts: &[Body]) -> Peer {
                     let compound =
                         |bodies: &[Body]| Compound::new(bodies.iter().map(placed).collect());
@@ -30,10 +30,10 @@ macro_rules! peer {
                     }
                 }
 
-                /// Time of impact as a fraction of the move.
-                pub fn first_contact(&self, way: &Way) -> Option<f64> {
-                    let from = Pose::from_parts(vector(way.from), Rot3::IDENTITY);
-                    let (here, still, run) = (Pose::IDENTITY, Vector::ZERO, vector(way.run));
+                /// Returns the time of impact as a fraction of the move; `None` for a clear move.
+                pub fn first_contact(&self, test_move: &TestMove) -> Option<f64> {
+                    let from = Pose::from_parts(vector(test_move.from), Rot3::IDENTITY);
+                    let (here, still, run) = (Pose::IDENTITY, Vector::ZERO, vector(test_move.run));
                     if run == still {
                         let met = intersection_test(&here, &self.scene, &from, &self.mover);
                         return met.is_ok_and(|it| it.intersecting).then_some(0.0);

@@ -1,14 +1,14 @@
-//! The report: what became of every move, as figures and plots.
+//! The report: results of all moves as figures and plots.
 
 use super::score::{Outcome, quantile};
-use super::small_world::Judged;
-use super::world::{KINDS, Way};
+use super::small_world::SmallWorldCounts;
+use super::world::{KINDS, TestMove};
 use super::{OURS, ROUNDING_MM};
 use crate::chart::Chart;
 use crate::figure::{Bar, Figure};
 use crate::scatter::{Point, Scatter};
 
-/// A method with what became of every move.
+/// A method with its results.
 pub(super) struct Scored {
     pub(super) name: String,
     pub(super) outcomes: Vec<Outcome>,
@@ -16,10 +16,8 @@ pub(super) struct Scored {
 
 impl Scored {
     fn times(&self, share: f64) -> Option<f64> {
-        quantile(
-            &mut self.outcomes.iter().map(|it| it.us).collect::<Vec<_>>(),
-            share,
-        )
+        let mut times: Vec<f64> = self.outcomes.iter().map(|it| it.us).collect();
+        quantile(&mut times, share)
     }
 
     fn mean_us(&self) -> Option<f64> {
@@ -27,27 +25,31 @@ impl Scored {
         (!self.outcomes.is_empty()).then(|| sum / self.outcomes.len() as f64)
     }
 
-    fn missed(&self) -> u64 {
-        self.outcomes.iter().filter(|it| it.missed).count() as u64
+    fn count(&self, is: impl Fn(&Outcome) -> bool) -> u64 {
+        self.outcomes.iter().filter(|it| is(it)).count() as u64
     }
 
-    /// Missed contacts that are more than a touch.
-    fn missed_deep(&self) -> u64 {
-        self.outcomes
-            .iter()
-            .filter(|it| it.missed && it.deep)
-            .count() as u64
+    fn missed(&self) -> u64 {
+        self.count(|it| it.missed)
     }
 
     fn false_blocks(&self) -> u64 {
-        self.outcomes.iter().filter(|it| it.false_block).count() as u64
+        self.count(|it| it.false_block)
+    }
+
+    fn wrong(&self) -> u64 {
+        self.missed() + self.false_blocks()
+    }
+
+    fn moves(&self) -> u64 {
+        self.outcomes.len() as u64
     }
 
     fn late_mm(&self) -> impl Iterator<Item = f64> + '_ {
         self.outcomes.iter().filter_map(|it| it.late_mm)
     }
 
-    /// The error, either way, that 99 of 100 contacts stay below, mm.
+    /// Returns the absolute error that 99 of 100 contacts stay below, mm.
     fn error_mm(&self) -> Option<f64> {
         quantile(&mut self.late_mm().map(f64::abs).collect::<Vec<_>>(), 0.99)
     }
@@ -65,21 +67,16 @@ fn ours(scored: &[Scored]) -> Option<&Scored> {
     scored.iter().find(|it| it.name == OURS)
 }
 
-/// Wall time of one move, and how many of ours fit into it.
+/// Returns the wall time of one move, and its ratio to the time of [`OURS`].
 pub(super) fn speeds(scored: &[Scored]) -> Vec<Figure> {
     let row = |it: &Scored| {
         let ratio = |of: &dyn Fn(&Scored) -> Option<f64>| Some(of(it)? / of(ours(scored)?)?);
-        Figure::new(
-            it.name.clone(),
-            it.outcomes.len() as u64,
-            it.times(0.5),
-            "us",
-        )
-        .with("p99_us", it.times(0.99))
-        .with("mean_us", it.mean_us())
-        .with("ratio_median", ratio(&|of| of.times(0.5)))
-        .with("ratio_p99", ratio(&|of| of.times(0.99)))
-        .with("ratio_mean", ratio(&Scored::mean_us))
+        Figure::new(&it.name, it.moves(), it.times(0.5), "us")
+            .with("p99_us", it.times(0.99))
+            .with("mean_us", it.mean_us())
+            .with("ratio_median", ratio(&|of| of.times(0.5)))
+            .with("ratio_p99", ratio(&|of| of.times(0.99)))
+            .with("ratio_mean", ratio(&Scored::mean_us))
     };
     scored.iter().map(row).collect()
 }
@@ -87,68 +84,54 @@ pub(super) fn speeds(scored: &[Scored]) -> Vec<Figure> {
 pub(super) fn errors(scored: &[Scored]) -> Vec<Figure> {
     let row = |it: &Scored| {
         let um = |mm: f64| Some(1e3 * mm);
-        let wrong = it.missed() + it.false_blocks();
-        Figure::count(
-            format!("wrong verdicts: {}", it.name),
-            it.outcomes.len() as u64,
-            Some(wrong),
-        )
-        .with("missed", Some(it.missed() as f64))
-        .with("missed_over_1um", Some(it.missed_deep() as f64))
-        .with("false_blocks", Some(it.false_blocks() as f64))
-        .with("stop_error_p99_um", it.error_mm().and_then(um))
-        .with("latest_um", um(it.latest_mm()))
-        .with("earliest_um", um(it.earliest_mm()))
+        // A contact deeper than one unit is more than a touch.
+        let deep = it.count(|it| it.missed && it.deep);
+        let name = format!("wrong verdicts: {}", it.name);
+        Figure::count(name, it.moves(), Some(it.wrong()))
+            .with("missed", Some(it.missed() as f64))
+            .with("missed_over_1um", Some(deep as f64))
+            .with("false_blocks", Some(it.false_blocks() as f64))
+            .with("stop_error_p99_um", it.error_mm().and_then(um))
+            .with("latest_um", um(it.latest_mm()))
+            .with("earliest_um", um(it.earliest_mm()))
     };
     scored.iter().map(row).collect()
 }
 
 pub(super) fn missed_by_kind(scored: &[Scored]) -> Vec<Figure> {
     let row = |it: &Scored| {
-        let counted = Figure::count(
-            format!("missed by kind: {}", it.name),
-            it.outcomes.len() as u64,
-            Some(it.missed()),
-        );
+        let name = format!("missed by kind: {}", it.name);
+        let counted = Figure::count(name, it.moves(), Some(it.missed()));
         (0..KINDS.len()).fold(counted, |figure, kind| {
-            let missed = it
-                .outcomes
-                .iter()
-                .filter(|one| one.kind == kind && one.missed)
-                .count();
+            let missed = it.count(|one| one.kind == kind && one.missed);
             figure.with(KINDS[kind], Some(missed as f64))
         })
     };
     scored.iter().map(row).collect()
 }
 
-/// What the scene did not need to have looked at.
-pub(super) fn refined(ways: &[Way]) -> Vec<Figure> {
+/// Returns the number of bodies near a move by kind: only these need an exact test.
+pub(super) fn bodies_near(moves: &[TestMove]) -> Vec<Figure> {
     let row = |kind: usize| {
-        let mut near: Vec<f64> = ways
-            .iter()
-            .filter(|it| it.kind == kind)
-            .map(|it| it.near as f64)
-            .collect();
+        let of_kind = moves.iter().filter(|it| it.kind == kind);
+        let mut near: Vec<f64> = of_kind.map(|it| it.near as f64).collect();
         let mean = near.iter().sum::<f64>() / near.len() as f64;
-        Figure::new(
-            format!("bodies near a move: {}", KINDS[kind]),
-            near.len() as u64,
-            Some(mean),
-            "",
-        )
-        .with("median", quantile(&mut near, 0.5))
-        .with("most", quantile(&mut near, 1.0))
+        let name = format!("bodies near a move: {}", KINDS[kind]);
+        Figure::new(name, near.len() as u64, Some(mean), "")
+            .with("median", quantile(&mut near, 0.5))
+            .with("most", quantile(&mut near, 1.0))
     };
     (0..KINDS.len()).map(row).collect()
 }
 
-pub(super) fn bars(scored: &[Scored], small: &Judged) -> Vec<Figure> {
+pub(super) fn bars(scored: &[Scored], small: &SmallWorldCounts) -> Vec<Figure> {
     let ours = ours(scored);
-    let moves = ours.map_or(0, |it| it.outcomes.len() as u64);
+    let moves = ours.map_or(0, Scored::moves);
     let zero = |name: &str, n: u64, count: Option<u64>| {
         Figure::count(name, n, count).bar(Bar::AtMost(0.0))
     };
+    let counted =
+        |name: &str, count| zero(&format!("small world: {name}"), small.moves, Some(count));
     let latest = ours.map(Scored::latest_mm);
     vec![
         zero(
@@ -162,29 +145,17 @@ pub(super) fn bars(scored: &[Scored], small: &Judged) -> Vec<Figure> {
             ours.map(Scored::false_blocks),
         ),
         Figure::new("swept exact: latest stop", moves, latest, "mm").bar(Bar::AtMost(ROUNDING_MM)),
-        zero(
-            "small world: missed contacts",
-            small.moves,
-            Some(small.missed),
-        ),
-        zero(
-            "small world: false blocks",
-            small.moves,
-            Some(small.false_blocks),
-        ),
-        zero(
-            "small world: wrong times",
-            small.moves,
-            Some(small.wrong_times),
-        ),
+        counted("missed contacts", small.missed),
+        counted("false blocks", small.false_blocks),
+        counted("wrong times", small.wrong_times),
     ]
 }
 
 pub(super) fn notes() -> Vec<String> {
-    let notes = vec![
+    vec![
         "Modelled: every body of the scene in its true shape; the mover as five rigid parts. Left out, because no \
          move needs it: bodies whose box the swept boxes of the mover do not meet (counted above: of 1,000 only \
-         those are refined), tilts, meshes, margins."
+         those are bodies_near), tilts, meshes, margins."
             .to_owned(),
         "paper: our own rebuilding of a method whose later chapters are not at hand; a cylinder is drawn with 32 \
          corners on its mantle. Its stop is the last clear pose."
@@ -192,28 +163,17 @@ pub(super) fn notes() -> Vec<String> {
         "missed_over_1um: of the missed contacts those that remain when every part of the mover is thinner by 1/1024 mm."
             .to_owned(),
         "ratio: how many moves swept exact judges in the same time.".to_owned(),
-    ];
-    notes
+    ]
 }
 
 pub(super) fn wrong_verdicts(scored: &[Scored]) -> Chart {
-    let bar = |it: &Scored| {
-        (
-            it.name.clone(),
-            Some((it.missed() + it.false_blocks()) as f64),
-        )
-    };
-    Chart {
-        title: format!("Wrong verdicts of {} moves", moves(scored)),
-        unit: "",
-        from: 0.0,
-        marks: Vec::new(),
-        bars: scored.iter().map(bar).collect(),
-    }
+    let bar = |it: &Scored| (it.name.clone(), Some(it.wrong() as f64));
+    let title = format!("Wrong verdicts of {} moves", moves(scored));
+    Chart::new(title, "", Vec::new(), scored.iter().map(bar))
 }
 
-fn moves(scored: &[Scored]) -> usize {
-    scored.first().map_or(0, |it| it.outcomes.len())
+fn moves(scored: &[Scored]) -> u64 {
+    scored.first().map_or(0, Scored::moves)
 }
 
 pub(super) fn speed_against_error(scored: &[Scored]) -> Scatter {
@@ -223,7 +183,7 @@ pub(super) fn speed_against_error(scored: &[Scored]) -> Scatter {
             name: it.name.clone(),
             x: it.mean_us().unwrap_or(0.0),
             y: it.error_mm().unwrap_or(0.0),
-            wrong: it.missed() + it.false_blocks(),
+            wrong: it.wrong(),
             series: family
                 .iter()
                 .position(|name| it.name.starts_with(name))

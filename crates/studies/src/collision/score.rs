@@ -1,79 +1,82 @@
-//! What a method answers, set against the truth, and how long it takes.
+//! Answers of a method compared with the truth, and their wall time.
 
-use super::world::Way;
+use super::world::TestMove;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Passes over the moves; of each move the fastest one counts, so that a neighbour on the machine does not.
+/// Passes over the moves; the fastest one of each move counts, without disturbance by other processes.
 const PASSES: usize = 3;
-/// A method slower than this on a move is asked once, seconds.
+/// A move that takes longer than this runs in the first pass only, seconds.
 const SLOW_S: f64 = 1e-4;
 
-/// A question: first contact of a move as a fraction of it, or none.
-pub type Ask = Box<dyn FnMut(&Way) -> Option<f64>>;
+/// Returns the first contact of a move as a fraction of it; `None` for a clear move.
+pub type Query = Box<dyn FnMut(&TestMove) -> Option<f64>>;
 
 /// One way to check a move.
 pub struct Method {
-    /// As the report calls it.
+    /// Name in the report.
     pub name: String,
-    /// Asked with each move.
-    pub ask: Ask,
+    /// Query for one move.
+    pub query: Query,
 }
 
-/// What became of one move.
+/// Result of one move.
 #[derive(Debug, Clone, Copy)]
 pub struct Outcome {
-    /// Kind of the move.
+    /// Kind of the move, an index of `KINDS`.
     pub kind: usize,
     /// Wall time, us.
     pub us: f64,
-    /// Truth says contact, the method says clear.
+    /// Whether the truth is a contact and the answer clear.
     pub missed: bool,
-    /// The contact is deeper than one unit.
+    /// Whether the contact is deeper than one unit.
     pub deep: bool,
-    /// Truth says clear, the method says contact.
+    /// Whether the truth is clear and the answer a contact.
     pub false_block: bool,
-    /// Answer minus truth where both say contact, mm of the way; positive is late.
+    /// Answer minus truth where both are contacts, mm along the move; positive is late.
     pub late_mm: Option<f64>,
 }
 
-/// Asks every move, each timed alone.
-pub fn outcomes(method: &mut Method, ways: &[Way], clock_us: f64) -> Vec<Outcome> {
-    let first: Vec<(f64, Option<f64>)> = ways.iter().map(|way| timed(method, way)).collect();
+/// Runs every move and times each alone; subtracts `clock_us`.
+pub fn outcomes(method: &mut Method, moves: &[TestMove], clock_us: f64) -> Vec<Outcome> {
+    let first: Vec<(f64, Option<f64>)> = moves
+        .iter()
+        .map(|test_move| timed(method, test_move))
+        .collect();
     let mut least: Vec<f64> = first.iter().map(|(s, _)| *s).collect();
     for _ in 1..PASSES {
-        for (way, s) in ways.iter().zip(&mut least).filter(|(_, s)| **s < SLOW_S) {
-            *s = s.min(timed(method, way).0);
+        for (test_move, s) in moves.iter().zip(&mut least).filter(|(_, s)| **s < SLOW_S) {
+            *s = s.min(timed(method, test_move).0);
         }
     }
     let answers = first.into_iter().map(|(_, answer)| answer);
-    let outcome = |((way, s), found): ((&Way, f64), Option<f64>)| Outcome {
-        kind: way.kind,
+    let outcome = |((test_move, s), found): ((&TestMove, f64), Option<f64>)| Outcome {
+        kind: test_move.kind,
         us: (1e6 * s - clock_us).max(0.0),
-        missed: way.truth.is_some() && found.is_none(),
-        deep: way.deep,
-        false_block: way.truth.is_none() && found.is_some(),
-        late_mm: way
+        missed: test_move.truth.is_some() && found.is_none(),
+        deep: test_move.deep,
+        false_block: test_move.truth.is_none() && found.is_some(),
+        late_mm: test_move
             .truth
             .zip(found)
-            .map(|(truth, found)| (found - truth) * way.length_mm()),
+            .map(|(truth, found)| (found - truth) * test_move.length_mm()),
     };
-    ways.iter().zip(least).zip(answers).map(outcome).collect()
+    moves.iter().zip(least).zip(answers).map(outcome).collect()
 }
 
-fn timed(method: &mut Method, way: &Way) -> (f64, Option<f64>) {
+fn timed(method: &mut Method, test_move: &TestMove) -> (f64, Option<f64>) {
     let begun = Instant::now();
-    let answer = black_box((method.ask)(black_box(way)));
+    let answer = black_box((method.query)(black_box(test_move)));
     (begun.elapsed().as_secs_f64(), answer)
 }
 
-/// What reading the clock twice costs, us.
+/// Returns the least time of reading the clock twice, us.
 pub fn clock_us() -> f64 {
     let one = || Instant::now().elapsed().as_secs_f64();
     1e6 * (0..1_000).map(|_| one()).fold(f64::INFINITY, f64::min)
 }
 
-/// The value below which the share `share` of them lies; `None` of nothing.
+/// Returns the value at the rank nearest to `share` (0 to 1); `None` without values.
 pub fn quantile(values: &mut [f64], share: f64) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let last = values.len().checked_sub(1)?;

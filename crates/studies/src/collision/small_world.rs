@@ -1,17 +1,18 @@
-//! A small world gone through completely: every block with whole corners from 0 to 3 in each axis,
-//! moved past every other one by every whole move of -3 to 3: 16,003,008 moves, each held against the
-//! exact truth in verdict and time.
+//! All moves of a small world: every block with whole corners from 0 to 3 in each axis moves past every other one by every
+//! whole displacement from -3 to 3. These are 16,003,008 moves; the study compares verdict and time of each with the exact
+//! truth.
 
+use crate::pool;
 use lpm::exact::{Body, first_contact};
 use lpm::{Answer, Model, Move, Mover, Pose};
 
-/// Earlier than the truth by more than this fraction of the move counts as wrong; later always does.
+/// Fraction of the move by which a contact may be earlier than the truth; a later contact is always wrong.
 const EARLY: f64 = 1e-9;
 
-/// How the small world was judged.
+/// Counts of moves and of wrong answers.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Judged {
-    /// Moves.
+pub struct SmallWorldCounts {
+    /// All moves.
     pub moves: u64,
     /// Contacts called clear.
     pub missed: u64,
@@ -21,9 +22,9 @@ pub struct Judged {
     pub wrong_times: u64,
 }
 
-impl Judged {
-    fn and(self, other: Judged) -> Judged {
-        Judged {
+impl SmallWorldCounts {
+    fn and(self, other: SmallWorldCounts) -> SmallWorldCounts {
+        SmallWorldCounts {
             moves: self.moves + other.moves,
             missed: self.missed + other.missed,
             false_blocks: self.false_blocks + other.false_blocks,
@@ -32,28 +33,21 @@ impl Judged {
     }
 }
 
-/// Goes through the world with corners 0 to `most`, on all cores.
-pub fn judged(most: i64) -> Judged {
+/// Checks every move of the world with corners from 0 to `most`, on all cores.
+///
+/// # Errors
+/// A block that the core refuses.
+pub fn check_all(most: i64) -> anyhow::Result<SmallWorldCounts> {
     let blocks = every_block(most);
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let share = blocks.len().div_ceil(cores).max(1);
-    std::thread::scope(|scope| {
-        let started: Vec<_> = blocks
-            .chunks(share)
-            .map(|some| {
-                scope.spawn(|| {
-                    some.iter()
-                        .map(|it| against(it, &blocks, most))
-                        .fold(Judged::default(), Judged::and)
-                })
-            })
-            .collect();
-        let ended = started.into_iter().filter_map(|it| it.join().ok());
-        ended.fold(Judged::default(), Judged::and)
-    })
+    let counts = pool::map(&blocks, pool::cores(), |it| {
+        check_element(it, &blocks, most)
+    })?;
+    Ok(counts
+        .into_iter()
+        .fold(SmallWorldCounts::default(), SmallWorldCounts::and))
 }
 
-/// Centres and half extents doubled, so that they are whole.
+/// Returns every block, with centres and half extents doubled so that they are whole.
 fn every_block(most: i64) -> Vec<Body> {
     let spans = || {
         (0..most).flat_map(move |low| (low + 1..=most).map(move |high| [low + high, high - low]))
@@ -67,24 +61,14 @@ fn every_block(most: i64) -> Vec<Body> {
     blocks
 }
 
-fn against(element: &Body, movers: &[Body], most: i64) -> Judged {
+fn check_element(element: &Body, movers: &[Body], most: i64) -> anyhow::Result<SmallWorldCounts> {
     let mut model = Model::new();
-    let mut counted = Judged::default();
-    if model
-        .insert(
-            "element",
-            &element.shape(0.5),
-            &Pose::at(element.pose(0.5).position),
-        )
-        .is_err()
-    {
-        return counted;
-    }
+    let mut counted = SmallWorldCounts::default();
+    let pose = Pose::at(element.pose(0.5).position);
+    model.insert("element", &element.shape(0.5), &pose)?;
     let steps = || (-most..=most).map(|it| 2 * it);
     for mover in movers {
-        let Ok(body) = Mover::new(&mover.shape(0.5)) else {
-            continue;
-        };
+        let body = Mover::new(&mover.shape(0.5))?;
         let runs = steps().flat_map(|x| steps().flat_map(move |y| steps().map(move |z| [x, y, z])));
         for run in runs {
             let order = Move {
@@ -97,15 +81,15 @@ fn against(element: &Body, movers: &[Body], most: i64) -> Judged {
                 Answer::Clear => None,
                 Answer::Blocked(contact) => Some(contact.t_stop),
             };
-            counted = counted.and(compared(first_contact(element, mover, run), found));
+            counted = counted.and(count_answer(first_contact(element, mover, run), found));
         }
     }
-    counted
+    Ok(counted)
 }
 
-fn compared(truth: Option<f64>, found: Option<f64>) -> Judged {
+fn count_answer(truth: Option<f64>, found: Option<f64>) -> SmallWorldCounts {
     let wrong_time = |(truth, found): (f64, f64)| found > truth || truth - found > EARLY;
-    Judged {
+    SmallWorldCounts {
         moves: 1,
         missed: u64::from(truth.is_some() && found.is_none()),
         false_blocks: u64::from(truth.is_none() && found.is_some()),

@@ -1,18 +1,18 @@
-//! The paper's method, the polygons and the small world, on things that can be seen without a program.
+//! The paper's method, the polygons and the small world, on examples that a reader can check by hand.
 #![allow(clippy::unwrap_used)]
 use super::outline::Outline;
 use super::paper::Stepping;
 use super::score::quantile;
-use super::small_world::{Judged, judged};
-use super::world::{Way, World, thinner};
+use super::small_world::{SmallWorldCounts, check_all};
+use super::world::{TestMove, World, thinned};
 use super::*;
-use crate::scatter::Point;
+use crate::scatter::{Point, Scatter};
 use lpm::exact::{Body, first_contact};
 
 const MM: i64 = 1024;
 
-fn way(from: [i64; 3], run: [i64; 3]) -> Way {
-    Way {
+fn test_move(from: [i64; 3], run: [i64; 3]) -> TestMove {
+    TestMove {
         kind: 0,
         from,
         run,
@@ -23,14 +23,14 @@ fn way(from: [i64; 3], run: [i64; 3]) -> Way {
 }
 
 #[test]
-fn stepping_stops_at_the_last_clear_pose_and_passes_a_foil_between_two_poses() {
+fn stepping_stops_at_the_last_clear_pose() {
     let foil = [Body::block(
         [50 * MM, 20 * MM, 0],
         [MM / 8, 20 * MM, 20 * MM],
     )];
     let pin = [Body::block([0; 3], [MM, MM, MM])];
     let mut stepping = Stepping::new(&foil, &pin);
-    let across = way([0, 20 * MM, 0], [101 * MM, 0, 0]);
+    let across = test_move([0, 20 * MM, 0], [101 * MM, 0, 0]);
     let stop = stepping.first_contact(&across, 1.0).unwrap() * 101.0;
     assert!((stop - 48.0).abs() < 1e-9, "{stop}");
     assert_eq!(
@@ -41,10 +41,10 @@ fn stepping_stops_at_the_last_clear_pose_and_passes_a_foil_between_two_poses() {
 }
 
 #[test]
-fn boxes_take_the_corner_beside_a_cylinder_for_the_cylinder() {
+fn boxes_block_the_corner_beside_a_cylinder() {
     let post = [Body::cylinder([50 * MM, 50 * MM, 0], 10 * MM, 20 * MM)];
     let pin = [Body::block([0; 3], [MM, MM, MM])];
-    let beside = way([41 * MM, 42 * MM, 0], [0, 0, 5 * MM]);
+    let beside = test_move([41 * MM, 42 * MM, 0], [0, 0, 5 * MM]);
     assert_eq!(
         first_contact(&post[0], &pin[0].moved(beside.from), beside.run),
         None
@@ -56,7 +56,7 @@ fn boxes_take_the_corner_beside_a_cylinder_for_the_cylinder() {
 }
 
 #[test]
-fn outlines_meet_when_no_edge_of_either_has_the_other_outside() {
+fn outlines_meet_unless_an_edge_separates_them() {
     let square = Outline::rectangle([0.0, 0.0], [1.0, 1.0], 0.0);
     let turned = Outline::rectangle([0.0, 0.0], [1.0, 1.0], std::f64::consts::FRAC_PI_4);
     assert!(square.meets(&square, [2.0, 0.0]) && !square.meets(&square, [2.001, 0.0]));
@@ -65,40 +65,40 @@ fn outlines_meet_when_no_edge_of_either_has_the_other_outside() {
 }
 
 #[test]
-fn the_drawn_moves_hold_contacts_and_free_ways_of_every_kind() {
-    let world = World::drawn(7, 12);
+fn drawn_moves_have_contacts_and_clear_moves() {
+    let world = World::random(7, 12);
     for (kind, name) in KINDS.iter().enumerate() {
-        let ways: Vec<&Way> = world.ways.iter().filter(|it| it.kind == kind).collect();
-        let hits = ways.iter().filter(|it| it.truth.is_some()).count();
-        assert_eq!(ways.len(), 12);
+        let moves: Vec<&TestMove> = world.moves.iter().filter(|it| it.kind == kind).collect();
+        let hits = moves.iter().filter(|it| it.truth.is_some()).count();
+        assert_eq!(moves.len(), 12);
         assert!(hits > 0, "{name}: no contact");
-        assert!(kind == 1 || hits < 12, "{name}: no free way");
-        assert!(ways.iter().all(|it| it.truth.is_none() || it.near > 0));
+        assert!(kind == 1 || hits < 12, "{name}: no free move");
+        assert!(moves.iter().all(|it| it.truth.is_none() || it.near > 0));
     }
 }
 
 #[test]
 fn our_core_and_the_truth_agree_on_drawn_moves() {
-    let world = World::drawn(3, 12);
-    let mut ask = swept(&world.elements, &world.parts).unwrap();
-    for way in &world.ways {
-        let found = ask(way);
-        assert_eq!(found.is_some(), way.truth.is_some(), "{way:?}");
-        let late = way
+    let world = World::random(3, 12);
+    let mut query = swept(&world.elements, &world.parts).unwrap();
+    for test_move in &world.moves {
+        let found = query(test_move);
+        assert_eq!(found.is_some(), test_move.truth.is_some(), "{test_move:?}");
+        let late = test_move
             .truth
             .zip(found)
             .map_or(0.0, |(truth, found)| found - truth);
-        assert!(late <= ROUNDING_MM, "{way:?}");
+        assert!(late <= ROUNDING_MM, "{test_move:?}");
     }
 }
 
 #[test]
 fn the_smallest_world_is_judged_without_a_wrong_answer() {
-    let expected = Judged {
+    let expected = SmallWorldCounts {
         moves: 27 * 27 * 125,
-        ..Judged::default()
+        ..SmallWorldCounts::default()
     };
-    assert_eq!(judged(2), expected);
+    assert_eq!(check_all(2).unwrap(), expected);
 }
 
 #[test]
@@ -109,7 +109,7 @@ fn a_quantile_is_one_of_the_values() {
 }
 
 #[test]
-fn a_plot_of_speed_and_error_marks_who_was_wrong_and_keeps_zero_on_the_bottom_line() {
+fn a_plot_marks_wrong_methods_and_draws_zero_error() {
     let point = |name: &str, x: f64, y: f64, wrong: u64| Point {
         name: name.to_owned(),
         x,
@@ -128,9 +128,9 @@ fn a_plot_of_speed_and_error_marks_who_was_wrong_and_keeps_zero_on_the_bottom_li
     assert!(!svg.contains("NaN") && !svg.contains("inf"));
 }
 
-/// Single pairs on a coarse grid, where touching is common, asked of the peer and of the truth.
+/// Compares peer and truth on single pairs on a coarse grid, where touching is common.
 #[test]
-fn the_peer_disagrees_about_touches_alone_and_the_exact_truth_decides_them_for_us() {
+fn the_peer_disagrees_about_touches_alone() {
     let mut disagreements = 0;
     for code in 0..1_200_i64 {
         let digit = |place: u32, base: i64| code * 7_919 / 13_i64.pow(place) % base;
@@ -145,7 +145,7 @@ fn the_peer_disagrees_about_touches_alone_and_the_exact_truth_decides_them_for_u
         };
         let from = [digit(1, 13) - 6, digit(0, 13) - 6, digit(2, 9) - 4].map(|it| it * MM);
         let run = [digit(2, 25) - 12, digit(1, 25) - 12, digit(0, 5) - 2].map(|it| it * MM);
-        let asked = way(from, run);
+        let asked = test_move(from, run);
         let truth = first_contact(&element, &mover.moved(from), run);
         let ours = swept(&[element], &[mover]).unwrap()(&asked);
         assert_eq!(
@@ -158,8 +158,8 @@ fn the_peer_disagrees_about_touches_alone_and_the_exact_truth_decides_them_for_u
         for peer in [double, single] {
             if peer.is_some() != ours.is_some() {
                 disagreements += 1;
-                // A mover thinner by 1 um passes freely: they only touch, and the peer sees nothing.
-                let thin = first_contact(&element, &thinner(&mover.moved(from)), run);
+                // A mover thinner by 1 um passes freely: the bodies only touch, and the peer reports no contact.
+                let thin = first_contact(&element, &thinned(&mover.moved(from)), run);
                 assert_eq!(
                     (peer, thin),
                     (None, None),

@@ -1,25 +1,24 @@
 //! The scene and the moves of the study, in whole units, so that the truth about them is exact.
 //!
-//! A plate with stacks of one to five bodies at a pitch of 60 mm, heights in steps of 5 mm: of twenty
-//! bodies eight are cylinders, one a turned block, two sheets of 0.1 to 0.5 mm, one a wire of 0.5 to 2 mm, the
-//! others upright blocks. The mover is a gripper: two fingers, a palm, a round spindle, and a probe
-//! needle of half a millimetre that reaches beyond the fingers. Moves: jogs of 5 mm, descents, 300 mm beside each other, ways across the
-//! whole plate, and passes that graze one body by 0 to 1 mm. Everything follows from one seed.
+//! The scene is a plate with stacks of one to five bodies at a pitch of 60 mm, heights in steps of 5 mm. Of twenty bodies
+//! eight are cylinders, one is a rotated block, two are sheets of 0.1 to 0.5 mm, one is a wire of 0.5 to 2 mm, the others
+//! are upright blocks. The mover is a gripper: two fingers, a palm, a round spindle, and a probe needle of half a
+//! millimetre that reaches beyond the fingers. Moves are jogs of 5 mm, descents, horizontal moves of 300 mm, traverses of
+//! the whole plate, and moves that pass one body with a gap or an overlap of 0 to 1 mm. One seed determines everything.
 
+use crate::dice::Dice;
 use lpm::exact::{Body, Form, UPRIGHT, first_contact};
 use lpm::{Move, Pose, Shape};
-use rand_xoshiro::SplitMix64;
-use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
-/// Millimetres of a unit: a power of two, so that every number is exact in `f32` and `f64`.
+/// Length of a unit, mm: a power of two, so that every number is exact in `f32` and `f64`.
 pub const UNIT_MM: f64 = 1.0 / 1024.0;
-/// Units of a millimetre.
+/// Units per millimetre.
 const MM: i64 = 1024;
-/// Elements of the scene.
+/// Number of bodies of the scene.
 const ELEMENTS: usize = 1_000;
-/// Distance between neighbouring stacks.
+/// Distance between neighbouring stacks, units.
 const PITCH: i64 = 60 * MM;
-/// Quaternions of the turned blocks: 37, 53, 67 and 90 degrees less a little, exact in fractions.
+/// Quaternions of the rotated blocks: about 37, 53, 67 and 77 degrees, with sine and cosine exact as fractions.
 const TURNS: [[i64; 4]; 4] = [[3, 0, 0, 1], [2, 0, 0, 1], [3, 0, 0, 2], [5, 0, 0, 4]];
 
 /// Kinds of moves, in the order of the report.
@@ -27,22 +26,22 @@ pub const KINDS: [&str; 5] = ["jog", "descend", "local", "traverse", "graze"];
 
 /// A move and the truth about it.
 #[derive(Debug, Clone)]
-pub struct Way {
+pub struct TestMove {
     /// One of [`KINDS`].
     pub kind: usize,
-    /// Where the mover stands, units.
+    /// Start of the mover, units.
     pub from: [i64; 3],
-    /// How far it goes, units.
+    /// Displacement, units.
     pub run: [i64; 3],
-    /// Exact first contact as a fraction of the move.
+    /// Exact first contact as a fraction of the move; `None` for a clear move.
     pub truth: Option<f64>,
-    /// A contact that a mover thinner by one unit has too.
+    /// Whether a mover thinner by one unit has a contact too.
     pub deep: bool,
-    /// Elements whose box the swept box of a part of the mover meets.
+    /// Number of elements whose box the swept box of a part of the mover meets.
     pub near: usize,
 }
 
-impl Way {
+impl TestMove {
     /// Length, mm.
     pub fn length_mm(&self) -> f64 {
         self.run
@@ -53,7 +52,7 @@ impl Way {
             * UNIT_MM
     }
 
-    /// As the core is asked.
+    /// Returns the move as a query of the collision core.
     pub fn order(&self) -> Move<'static> {
         let mm = |place: [i64; 3]| Pose::at(place.map(|it| it as f64 * UNIT_MM));
         Move {
@@ -68,36 +67,42 @@ impl Way {
 /// The scene, the mover and its moves.
 #[derive(Debug, Clone)]
 pub struct World {
-    /// Standing bodies.
+    /// Bodies of the scene.
     pub elements: Vec<Body>,
     /// Parts of the mover around its origin, the tip between the fingers.
     pub parts: Vec<Body>,
     /// Moves of every kind.
-    pub ways: Vec<Way>,
+    pub moves: Vec<TestMove>,
 }
 
 impl World {
-    /// Draws everything; `each` moves of every kind.
-    pub fn drawn(seed: u64, each: usize) -> World {
-        let mut dice = Dice(SplitMix64::seed_from_u64(seed));
+    /// Draws the scene and `each` moves of every kind.
+    pub fn random(seed: u64, each: usize) -> World {
+        let mut dice = Dice::new(seed);
         let (elements, edge, top) = stacks(&mut dice);
         let parts = gripper();
         let mut world = World {
             elements,
             parts,
-            ways: Vec::new(),
+            moves: Vec::new(),
         };
         for kind in 0..KINDS.len() {
             for _ in 0..each {
-                let (from, run) = world.drawn_way(&mut dice, kind, edge, top);
-                let way = world.judged(kind, from, run);
-                world.ways.push(way);
+                let (from, run) = world.random_move(&mut dice, kind, edge, top);
+                let test_move = world.with_truth(kind, from, run);
+                world.moves.push(test_move);
             }
         }
         world
     }
 
-    fn drawn_way(&self, dice: &mut Dice, kind: usize, edge: i64, top: i64) -> ([i64; 3], [i64; 3]) {
+    fn random_move(
+        &self,
+        dice: &mut Dice,
+        kind: usize,
+        edge: i64,
+        top: i64,
+    ) -> ([i64; 3], [i64; 3]) {
         let mut place = |low: i64, high: i64| {
             [
                 dice.within(0, edge),
@@ -117,7 +122,7 @@ impl World {
             }
             "local" => {
                 let from = place(top / 2, top);
-                let (x, y) = dice.direction();
+                let (x, y) = direction(dice);
                 (from, [300 * x * MM / 13, 300 * y * MM / 13, 0])
             }
             "traverse" => {
@@ -127,34 +132,27 @@ impl World {
                     [edge, to[1] - from[1], to[2] - from[2]],
                 )
             }
-            _ => self.grazing(dice),
+            _ => self.grazing_move(dice),
         }
     }
 
-    /// Past one element on a tangent, with a gap or an overlap of up to a millimetre.
-    fn grazing(&self, dice: &mut Dice) -> ([i64; 3], [i64; 3]) {
-        let element = &self.elements[dice.within(0, self.elements.len() as i64 - 1) as usize];
-        let part = &self.parts[dice.within(0, self.parts.len() as i64 - 1) as usize];
-        let deltas = [0, 1, 4, 16, 64, 256, MM];
-        let delta =
-            deltas[dice.within(0, 6) as usize] * if dice.within(0, 1) == 0 { 1 } else { -1 };
+    /// Draws a move past one element, with a gap or an overlap of up to a millimetre.
+    fn grazing_move(&self, dice: &mut Dice) -> ([i64; 3], [i64; 3]) {
+        let (element, part) = (dice.one(&self.elements), dice.one(&self.parts));
+        let delta = dice.one(&[0, 1, 4, 16, 64, 256, MM]) * dice.one(&[1, -1]);
         let (a, b) = (reach(element), reach(part));
-        let (across, along) = if dice.within(0, 1) == 0 {
-            (0, 1)
-        } else {
-            (1, 0)
-        };
+        let (across, along) = *dice.one(&[(0, 1), (1, 0)]);
         let mut from = [0, 1, 2].map(|axis| element.centre[axis] - part.centre[axis]);
         from[across] += a[across] + b[across] + delta;
         from[along] -= 25 * MM;
-        // High enough to pass over what stands lower.
+        // High enough to pass over lower elements.
         from[2] += a[2] + b[2] - 2 * MM;
         let mut run = [0; 3];
         run[along] = 50 * MM;
         (from, run)
     }
 
-    fn judged(&self, kind: usize, from: [i64; 3], run: [i64; 3]) -> Way {
+    fn with_truth(&self, kind: usize, from: [i64; 3], run: [i64; 3]) -> TestMove {
         let (mut truth, mut deep, mut near): (Option<f64>, bool, usize) = (None, false, 0);
         for element in &self.elements {
             let placed = self.parts.iter().map(|part| part.moved(from));
@@ -165,10 +163,10 @@ impl World {
             for part in &close {
                 let t = first_contact(element, part, run);
                 truth = [truth, t].into_iter().flatten().min_by(f64::total_cmp);
-                deep |= t.is_some() && first_contact(element, &thinner(part), run).is_some();
+                deep |= t.is_some() && first_contact(element, &thinned(part), run).is_some();
             }
         }
-        Way {
+        TestMove {
             kind,
             from,
             run,
@@ -179,8 +177,8 @@ impl World {
     }
 }
 
-/// Less by one unit in radius or half extents.
-pub fn thinner(body: &Body) -> Body {
+/// Returns the body with radius or half extents smaller by one unit.
+pub fn thinned(body: &Body) -> Body {
     let form = match body.form {
         Form::Block { half, rotation } => Form::Block {
             half: half.map(|it| it - 1),
@@ -195,7 +193,7 @@ pub fn thinner(body: &Body) -> Body {
     Body { form, ..*body }
 }
 
-/// The body with a box around every cylinder: what the extrusion of boxes takes for the shape.
+/// Returns the body with a bounding box in place of a cylinder.
 pub fn boxed(body: &Body) -> Body {
     let form = match body.form {
         Form::Cylinder { radius, half } => Form::Block {
@@ -207,13 +205,13 @@ pub fn boxed(body: &Body) -> Body {
     Body { form, ..*body }
 }
 
-/// The parts as one body of the core.
+/// Returns the parts as one compound shape of the collision core.
 pub fn compound(parts: &[Body]) -> Shape {
     let placed = |part: &Body| (part.pose(UNIT_MM), part.shape(UNIT_MM));
     Shape::Compound(parts.iter().map(placed).collect())
 }
 
-/// Half extents of an upright box around the body, rounded outward.
+/// Returns the half extents of an upright box around the body, units, rounded outward.
 pub fn reach(body: &Body) -> [i64; 3] {
     match body.form {
         Form::Block { half, rotation } if rotation == UPRIGHT => half,
@@ -227,23 +225,19 @@ pub fn reach(body: &Body) -> [i64; 3] {
     }
 }
 
-/// Whether the boxes of both meet during the run.
+/// Returns whether the boxes of both meet during the run.
 fn boxes_meet(element: &Body, part: &Body, run: [i64; 3]) -> bool {
-    let upright = |body: &Body| Body::block(body.centre, reach(body));
-    first_contact_of_boxes(&upright(element), &upright(part), run)
-}
-
-fn first_contact_of_boxes(element: &Body, part: &Body, run: [i64; 3]) -> bool {
-    // A quick no before the slabs: most of the scene is far away.
+    let (a, b) = (reach(element), reach(part));
+    // Most of the scene is far away: a comparison per axis spares the exact test of the boxes.
     let far = (0..3).any(|axis| {
-        let apart = part.centre[axis] - element.centre[axis];
-        let sum = reach(element)[axis] + reach(part)[axis];
+        let (apart, sum) = (part.centre[axis] - element.centre[axis], a[axis] + b[axis]);
         apart + run[axis].min(0) > sum || apart + run[axis].max(0) < -sum
     });
-    !far && first_contact(element, part, run).is_some()
+    let (a, b) = (Body::block(element.centre, a), Body::block(part.centre, b));
+    !far && first_contact(&a, &b, run).is_some()
 }
 
-/// Elements, length of an edge of the plate, height of the highest stack.
+/// Draws the elements; returns them with the edge of the plate and the height of the highest stack, units.
 fn stacks(dice: &mut Dice) -> (Vec<Body>, i64, i64) {
     let side = ((ELEMENTS as f64 / 3.0).sqrt().ceil()) as i64;
     let mut elements = vec![Body::block(
@@ -282,7 +276,7 @@ fn standing(dice: &mut Dice, centre: [i64; 3], half_height: i64) -> Body {
             centre,
             form: Form::Block {
                 half: [x, y, half_height],
-                rotation: TURNS[dice.within(0, 3) as usize],
+                rotation: *dice.one(&TURNS),
             },
         },
         9 => Body::block(centre, [dice.within(MM / 20, MM / 4), y, half_height]),
@@ -292,7 +286,7 @@ fn standing(dice: &mut Dice, centre: [i64; 3], half_height: i64) -> Body {
     }
 }
 
-/// Fingers, palm, spindle, needle.
+/// Returns the parts of the mover: fingers, palm, spindle, needle.
 fn gripper() -> Vec<Body> {
     vec![
         Body::block([-14 * MM, 0, 15 * MM], [3 * MM, 6 * MM, 15 * MM]),
@@ -303,22 +297,12 @@ fn gripper() -> Vec<Body> {
     ]
 }
 
-/// A small generator, so that the study is the same on every machine.
-struct Dice(SplitMix64);
-
-impl Dice {
-    /// A whole number, both ends included.
-    fn within(&mut self, low: i64, high: i64) -> i64 {
-        low + (self.0.next_u64() % (high - low + 1) as u64) as i64
-    }
-
-    /// A direction whose length is 13 exactly.
-    fn direction(&mut self) -> (i64, i64) {
-        let (x, y) = [(13, 0), (0, 13), (5, 12), (12, 5)][self.within(0, 3) as usize];
-        let signs = self.within(0, 3);
-        (
-            if signs & 1 == 0 { x } else { -x },
-            if signs & 2 == 0 { y } else { -y },
-        )
-    }
+/// Draws a direction whose length is 13 exactly.
+fn direction(dice: &mut Dice) -> (i64, i64) {
+    let (x, y) = *dice.one(&[(13, 0), (0, 13), (5, 12), (12, 5)]);
+    let signs = dice.within(0, 3);
+    (
+        if signs & 1 == 0 { x } else { -x },
+        if signs & 2 == 0 { y } else { -y },
+    )
 }

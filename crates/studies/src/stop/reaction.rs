@@ -1,12 +1,12 @@
-//! How long outputs that move something stay on after the emergency stop, from the journal of the simulated rig.
+//! Time that motion outputs stay on after the emergency stop, from the journal of the simulated rig.
 
 use crate::journal::Entry;
 use std::collections::BTreeMap;
 
-/// After a stop nothing is driven for so long, microseconds: the person takes longer to answer.
+/// Interval after a stop in which the script gives no order, microseconds; an output still on counts as this long.
 const QUIET_US: u64 = 2_000_000;
 
-/// For every stop the time until the last output that moves something was off, milliseconds; none when none was on.
+/// Returns for every stop the time until the last motion output is off, milliseconds; `None` when none was on.
 pub fn reactions(entries: &[Entry], moving: &BTreeMap<String, u16>) -> Vec<Option<f64>> {
     let mut on: BTreeMap<&str, u16> = BTreeMap::new();
     let mut reactions: Vec<Option<f64>> = Vec::new();
@@ -16,7 +16,7 @@ pub fn reactions(entries: &[Entry], moving: &BTreeMap<String, u16>) -> Vec<Optio
             Entry::Struck { t_us, fault } if fault == "estop" => {
                 pressed_us = Some(*t_us);
                 let any = on.values().any(|bits| *bits != 0);
-                // What is never switched off counts as long as anybody waits.
+                // An output that never goes off counts as the whole quiet interval.
                 reactions.push(any.then_some(QUIET_US as f64 / 1e3));
             }
             Entry::Output { t_us, module, bits } => {
@@ -48,7 +48,7 @@ pub fn reactions(entries: &[Entry], moving: &BTreeMap<String, u16>) -> Vec<Optio
 mod tests {
     use super::*;
 
-    fn told(entries: &[Entry]) -> Vec<Option<f64>> {
+    fn reactions_of(entries: &[Entry]) -> Vec<Option<f64>> {
         reactions(
             entries,
             &BTreeMap::from([("valves".to_owned(), 0x00FF), ("axis".to_owned(), 0x000F)]),
@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reaction_ends_with_the_last_output_that_moves_something() {
+    fn a_reaction_ends_with_the_last_motion_output() {
         let entries = [
             output(0, "valves", 0x0102),
             output(0, "axis", 0x0008),
@@ -81,14 +81,17 @@ mod tests {
             output(1_040_000, "valves", 0x0100),
             output(5_000_000, "valves", 0x0002),
         ];
-        assert_eq!(told(&entries), [Some(40.0)]);
+        assert_eq!(reactions_of(&entries), [Some(40.0)]);
     }
 
     #[test]
-    fn nothing_on_is_no_reaction_and_what_stays_on_is_the_longest() {
-        assert_eq!(told(&[output(0, "valves", 0x0100), estop(10)]), [None]);
+    fn an_output_that_stays_on_is_the_longest_reaction() {
         assert_eq!(
-            told(&[output(0, "valves", 0x0001), estop(10)]),
+            reactions_of(&[output(0, "valves", 0x0100), estop(10)]),
+            [None]
+        );
+        assert_eq!(
+            reactions_of(&[output(0, "valves", 0x0001), estop(10)]),
             [Some(2000.0)]
         );
         let again = [
@@ -97,6 +100,6 @@ mod tests {
             output(1_010, "valves", 0),
             output(2_010, "valves", 2),
         ];
-        assert_eq!(told(&again), [Some(2000.0)]);
+        assert_eq!(reactions_of(&again), [Some(2000.0)]);
     }
 }

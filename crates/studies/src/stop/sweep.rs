@@ -1,31 +1,31 @@
-//! Where the stops of a lot fall, and the script that presses them.
+//! Instants of the stops of a lot, and the script that presses them.
 
 use super::LATE_MS;
-use crate::fleet::Order;
+use crate::order::Order;
 
-/// Parts from one stop to the next: two go to retest, and the line is in step again.
+/// Parts from one stop to the next: two go to retest, then the line runs evenly again.
 const PARTS_BETWEEN: u64 = 5;
-/// In the middle of a test: jaws closed, probes up, z down, the next part in the pocket. What is to be homed is far
-/// from home.
+/// Time after nest exit in the middle of a test, seconds: jaws closed, probes up, z down, the next part in the pocket, so
+/// that homing has long strokes.
 const MID_TEST_S: f64 = 1.0;
-/// A person clears, resets and starts anew.
+/// Orders of the operator after a stop: clear and reset; [`START`] follows.
 const CLEAR: &str = "after state Aborted +4 order clear\nafter state Stopped order reset\n";
 const START: &str = "after state Idle order start\n";
 
-/// What the stops are spread over.
+/// Interval over which the stops are spread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sweep {
-    /// A cycle, from one part that leaves the nest to the next.
+    /// A cycle, from nest exit to nest exit.
     Cycle,
     /// Homing and the discharge of the parts inside, after a stop in the middle of a test.
     Homing,
 }
 
 impl Sweep {
-    /// Both.
+    /// Both sweeps, in the order of the report.
     pub const ALL: [Self; 2] = [Self::Cycle, Self::Homing];
 
-    /// Length of what is swept, seconds, and a little more.
+    /// Length of the swept interval with a margin, seconds.
     pub const fn span_s(self) -> f64 {
         match self {
             Self::Cycle => 2.0,
@@ -33,7 +33,7 @@ impl Sweep {
         }
     }
 
-    /// In a report.
+    /// Name in the report.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Cycle => "in a cycle",
@@ -41,7 +41,7 @@ impl Sweep {
         }
     }
 
-    /// Stops that are pressed for one instant; the last of them is the one that counts.
+    /// Number of stops that the script presses per instant; only the last one counts.
     pub const fn presses(self) -> usize {
         match self {
             Self::Cycle => 1,
@@ -49,14 +49,14 @@ impl Sweep {
         }
     }
 
-    /// When the stops of a lot are pressed, seconds from the begin; lots lie between each other.
+    /// Returns the instants of the stops of a lot, seconds since the begin of the interval; the lots interleave.
     pub fn instants(self, order: &Order, lot: u64) -> Vec<f64> {
         let all = (order.lots * order.parts) as f64;
         let instant = |stop: u64| self.span_s() * (stop * order.lots + lot) as f64 / all;
         (0..order.parts).map(instant).collect()
     }
 
-    /// The story of a lot; `slow`: its replies come late.
+    /// Returns the script of a lot; with `slow` its replies come [`LATE_MS`] late.
     pub fn script(self, instants: &[f64], slow: bool) -> String {
         let parts = (instants.len() as u64 + 1) * PARTS_BETWEEN;
         let mut text = format!("# Emergency stops\nparts {parts}\n");

@@ -1,8 +1,9 @@
-//! One life of the controller on a rig that lived before it and lives on after it: the program as `run` has it, in
-//! virtual time, in this process. A kill drops everything that the program is in the middle of a turn.
+//! One life of the controller: the program as `run` starts it, in virtual time, in this process, on a rig that keeps its
+//! state from life to life. A kill drops the program with all its tasks in the middle of a turn.
 
-use super::operator::{Operator, Said};
-use super::weather::Life;
+use super::operator::{Answered, Operator};
+use super::scenario::Life;
+use crate::dice::Dice;
 use anyhow::Context;
 use app::controls::Controls;
 use app::exit::Exit;
@@ -23,50 +24,50 @@ use units::RigTime;
 
 /// Wall clock at rig time zero, microseconds since 1970 UTC: 2027-01-15. The same for every seed.
 pub const EPOCH_US: i64 = 1_800_000_000_000_000;
-/// A life of a few parts is over by then, patience of the operator and of the station included, microseconds.
+/// Longest life of a few parts, with all waits of operator and station, microseconds.
 const LONGEST_US: u64 = 300_000_000;
 
-/// How a life ended.
+/// End of a life.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum End {
-    /// By force.
+    /// The study killed the program.
     Killed,
-    /// By itself.
+    /// The program ended with this status.
     Exit(Exit),
-    /// It could not go on.
+    /// The program failed with this error.
     Failed(String),
-    /// It never ended by itself.
+    /// The program did not end within [`LONGEST_US`].
     Hung,
 }
 
-/// A life that is over.
+/// Record of a life that has ended.
 #[derive(Debug, Clone)]
-pub struct Lived {
-    /// Its lot.
+pub struct EndedLife {
+    /// Name of its lot.
     pub lot: String,
     /// Rig time at its begin, microseconds.
     pub began_us: u64,
-    /// And at its end.
+    /// Rig time at its end, microseconds.
     pub ended_us: u64,
-    /// Why it ended.
+    /// Reason of the end.
     pub end: End,
-    /// What the operator said.
-    pub said: Vec<Said>,
+    /// Orders of the operator with their answers.
+    pub answers: Vec<Answered>,
 }
 
-/// Inputs that all lives share.
-pub struct Shop<'a> {
+/// Runs lives on one rig; holds the inputs that they share.
+pub struct Runner<'a> {
     /// Configuration.
     pub plant: &'a Plant,
     /// Recipe of every lot.
     pub recipe: &'a Arc<Recipe>,
-    /// The history that all lives write.
+    /// File of the history that all lives write.
     pub db: &'a Path,
-    /// The rig.
+    /// Simulated rig, which keeps its state between lives.
     pub rig: &'a SharedRig,
 }
 
-impl Shop<'_> {
+impl Runner<'_> {
     fn source(&self, calibration: Option<Calibration>) -> RigSource {
         let began_us = i64::try_from(self.rig.now_us()).unwrap_or(i64::MAX);
         RigSource::Simulated(Simulated {
@@ -79,10 +80,10 @@ impl Shop<'_> {
         })
     }
 
-    /// References and golden parts of a rig, and what they give.
+    /// Calibrates the rig with references and reference parts.
     ///
     /// # Errors
-    /// A rig without troubles that cannot be calibrated.
+    /// A rig without faults whose calibration fails.
     pub fn calibrated(&self) -> anyhow::Result<Calibration> {
         let life = Life {
             count: 0,
@@ -98,32 +99,32 @@ impl Shop<'_> {
             .with_context(|| format!("a calm rig was not calibrated: {end:?}"))
     }
 
-    /// Lives once. `whims` moves the operator of an attended life.
+    /// Runs one life; `operator_dice` draws the orders of an attended one.
     ///
     /// # Errors
-    /// A runtime that could not be made.
-    pub fn live(
+    /// A runtime that cannot be built.
+    pub fn run_life(
         &self,
         lot: &str,
         life: &Life,
         calibration: Option<Calibration>,
-        whims: super::dice::Dice,
-    ) -> anyhow::Result<Lived> {
+        operator_dice: Dice,
+    ) -> anyhow::Result<EndedLife> {
         self.rig.advance(self.rig.now_us() + life.pause_us);
         let began_us = self.rig.now_us();
-        let (end, ended_us, said) = {
+        let (end, ended_us, answers) = {
             let run = (lot, Purpose::Lot, self.source(calibration));
-            let whims = life.attended.then_some(whims);
-            let (end, after, said) = self.play(run, life, whims, &mut ())?;
-            (end, began_us + after.0, said)
+            let operator_dice = life.attended.then_some(operator_dice);
+            let (end, after, answers) = self.play(run, life, operator_dice, &mut ())?;
+            (end, began_us + after.0, answers)
         };
         self.rig.advance(ended_us);
-        Ok(Lived {
+        Ok(EndedLife {
             lot: lot.to_owned(),
             began_us,
             ended_us: ended_us.max(self.rig.now_us()),
             end,
-            said,
+            answers,
         })
     }
 
@@ -131,9 +132,9 @@ impl Shop<'_> {
         &self,
         (lot, purpose, source): (&str, Purpose, RigSource),
         life: &Life,
-        whims: Option<super::dice::Dice>,
+        operator_dice: Option<Dice>,
         outer: &mut dyn Subscriber,
-    ) -> anyhow::Result<(End, RigTime, Vec<Said>)> {
+    ) -> anyhow::Result<(End, RigTime, Vec<Answered>)> {
         let mut builder = tokio::runtime::Builder::new_current_thread();
         let runtime = builder.enable_time().start_paused(true).build()?;
         let order = LotOrder {
@@ -148,21 +149,21 @@ impl Shop<'_> {
             context: LotContext::new(self.plant, (&order, self.recipe), &source, purpose),
             controls: &controls,
         };
-        let (said, mut heard) = mpsc::unbounded_channel();
+        let (answers, mut heard) = mpsc::unbounded_channel();
         let (end, after) = runtime.block_on(async {
             let pace = Pace::virtual_time();
             let (orders, asked) = mpsc::channel(1);
-            let operator = whims.map(|dice| Operator {
+            let operator = operator_dice.map(|dice| Operator {
                 view: controls.view.subscribe(),
                 orders,
                 pace,
                 stop: Arc::clone(&controls.stop),
                 abort: Arc::clone(&controls.abort),
                 dice,
-                said,
+                answers,
             });
             if let Some(operator) = operator {
-                tokio::spawn(operator.rage());
+                tokio::spawn(operator.operate());
             }
             let run = runner.run(OrderQueue::from(asked), outer);
             let until = RigTime(life.killed_after_us.unwrap_or(LONGEST_US));
@@ -179,7 +180,7 @@ impl Shop<'_> {
             };
             (end, pace.now())
         });
-        // Nothing runs on: what the program was in the middle of is gone with it.
+        // The runtime drops all tasks, as a kill would.
         runtime.shutdown_background();
         let mut all = Vec::new();
         while let Ok(one) = heard.try_recv() {

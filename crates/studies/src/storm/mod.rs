@@ -1,60 +1,60 @@
-//! The storm: short lots under random faults of world and line, random orders of a restless operator, and kills of
-//! the controller, in virtual time, in this process.
+//! The storm: short lots under random faults of world and line, random orders of an operator, and kills of the
+//! controller, in virtual time, in this process.
 //!
-//! A seed is one rig that lives through several lives of the controller: `weather` draws what strikes and when,
-//! `life` runs the program as `run` does and kills it, `operator` presses buttons. When the storm has passed
-//! the controller is started again, up to [`CALM`] times, and has to complete a lot. Then `judge` sets the rig's truth
-//! against the history.
+//! A seed is one rig under several lives of the controller; a life lasts from start to end of the program. `scenario`
+//! draws the faults and their instants, `life` runs the program as `run` does and kills it, `operator` gives orders. When
+//! all faults are over, the controller starts again, up to [`CALM`] times, and must complete a lot. Then `judge` compares
+//! the truth of the rig with the history.
 //!
-//! A seed that breaks a rule is printed with what was broken, the last lines of its trace, and the command that
-//! shows it again: the same seed gives the same trace, bit for bit.
+//! The report shows each seed that breaks a rule with the broken rules, the last lines of its trace and the command that
+//! reproduces it: the same seed gives the same trace, bit for bit.
 
-mod dice;
 mod judge;
 mod life;
 mod operator;
+mod scenario;
 mod trace;
-mod weather;
 
 use super::chart::Chart;
 use super::figure::{Bar, Figure};
-use super::fleet::{Folder, Order};
+use super::order::Order;
 use super::output::Report;
+use super::pool;
 use anyhow::Context;
 use app::exit::Exit;
-use app::progress::{PIECES, progress};
 use config::{Plant, load_recipe};
 use history::{Archive, Filter};
 use judge::Case;
-use life::{End, Shop};
+use life::{End, Runner};
 use machine::dut::Calibration;
 use machine::dut::Recipe;
 use rigsim::{Options, SharedRig};
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use scenario::{CEASES_US, Life, RIGS, Scenario};
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
+use tempfile::TempDir;
+use tracing::subscriber::{NoSubscriber, with_default};
 use units::Span;
-use weather::{CEASES_US, Life, RIGS, Weather};
 
-/// Starts after the storm, one of which must complete its lot: the first may have to clear up.
+/// Starts after the faults, of which one must complete its lot; the first may have to discharge parts.
 const CALM: u64 = 3;
-/// Parts of a calm lot.
+/// Parts of a lot without faults.
 const CALM_PARTS: u64 = 2;
-/// Seeds that are shown; the figures count them all.
+/// Most seeds that the report shows; the figures count all of them.
 const SHOWN: usize = 10;
 
-/// What one seed came to: a case is heavy, so it keeps counts, and a trace only where a rule was broken.
+/// Result of one seed: counts, and the trace only of a seed that breaks a rule, since a case is large.
 struct Outcome {
     seed: u64,
     counts: Counts,
-    broken: Vec<String>,
+    violations: Vec<String>,
     faults: Vec<String>,
     trace: Vec<String>,
     digest: u64,
 }
 
-/// What there was to judge.
+/// Size of a case.
 #[derive(Debug, Clone, Copy, Default)]
 struct Counts {
     lives: u64,
@@ -78,42 +78,42 @@ impl Counts {
             bodies: case.bodies.len() as u64,
             rows: case.rows.len() as u64,
             alarms: case.alarms.len() as u64,
-            orders: case.lives.iter().map(|it| it.said.len() as u64).sum(),
+            orders: case.lives.iter().map(|it| it.answers.len() as u64).sum(),
             motions: case.driven.len() as u64,
             rig_us: case.lives.last().map_or(0, |life| life.ended_us),
         }
     }
 }
 
-/// What all seeds share.
-struct Sea<'a> {
+/// Inputs of all seeds.
+struct Storm<'a> {
     order: &'a Order,
     plant: Plant,
     recipe: Arc<Recipe>,
-    folder: Folder,
+    folder: TempDir,
     calibrations: [OnceLock<Calibration>; RIGS as usize],
 }
 
-/// Runs the seeds (or the one that is asked for) and makes the report.
+/// Runs the seeds of the order and makes the report.
 ///
 /// # Errors
-/// Files that cannot be read or written, or a rig that cannot be built.
+/// A file that cannot be read or written, or a rig that cannot be built.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let began = Instant::now();
-    let sea = Sea::new(order)?;
+    let storm = Storm::new(order)?;
     let seeds: Vec<u64> = match order.seed {
         Some(seed) => vec![seed],
         None => (order.from..).take(order.lots as usize).collect(),
     };
-    let outcomes = sea.all(&seeds)?;
+    let outcomes = storm.all(&seeds)?;
     let minutes = began.elapsed().as_secs_f64() / 60.0;
     Ok(report(order, &outcomes, minutes))
 }
 
-impl<'a> Sea<'a> {
+impl<'a> Storm<'a> {
     fn new(order: &'a Order) -> anyhow::Result<Self> {
-        let folder = Folder::new()?;
-        std::fs::write(folder.0.join("world.toml"), weather::WORLD)?;
+        let folder = TempDir::new()?;
+        std::fs::write(folder.path().join("world.toml"), scenario::WORLD)?;
         Ok(Self {
             order,
             plant: Plant::load(&order.config)?,
@@ -123,72 +123,50 @@ impl<'a> Sea<'a> {
         })
     }
 
-    /// Every seed, on as many threads as the machine has.
+    /// Runs every seed, on all cores.
     fn all(&self, seeds: &[u64]) -> anyhow::Result<Vec<Outcome>> {
-        let next = AtomicU64::new(0);
-        let done: Mutex<Vec<anyhow::Result<Outcome>>> = Mutex::new(Vec::new());
-        let bar = progress(Some(seeds.len() as u64), PIECES);
-        let worker = || {
-            // Alarms are what a storm is made of; nobody wants to read them as they come.
-            tracing::subscriber::with_default(tracing::subscriber::NoSubscriber::new(), || {
-                while let Some(seed) = usize::try_from(next.fetch_add(1, Ordering::Relaxed))
-                    .ok()
-                    .and_then(|place| seeds.get(place))
-                {
-                    let outcome = self.one(*seed).with_context(|| format!("seed {seed}"));
-                    bar.inc(1);
-                    let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
-                    done.push(outcome);
-                }
-            });
-        };
-        std::thread::scope(|scope| {
-            for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
-                scope.spawn(worker);
-            }
-        });
-        bar.finish_and_clear();
-        let done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let mut outcomes = done.into_iter().collect::<anyhow::Result<Vec<_>>>()?;
-        outcomes.sort_by_key(|one| one.seed);
-        Ok(outcomes)
+        // The report counts the alarms of a storm: a log line for each would bury it.
+        let quiet = |seed| with_default(NoSubscriber::new(), || self.one(seed));
+        pool::map(seeds, pool::cores(), |seed| {
+            quiet(*seed).with_context(|| format!("seed {seed}"))
+        })
     }
 
     fn one(&self, seed: u64) -> anyhow::Result<Outcome> {
-        let folder = self.folder.0.join(seed.to_string());
+        let folder = self.folder.path().join(seed.to_string());
         std::fs::create_dir(&folder)?;
         let case = self.case(seed, &folder.join("history.db"))?;
         std::fs::remove_dir_all(&folder)?;
-        let (broken, trace) = (case.broken(), trace::lines(&case));
-        let digest = trace::digest(trace.iter());
-        let is_shown = !broken.is_empty() || self.order.seed.is_some();
+        let (violations, trace) = (case.violations(), trace::lines(&case));
+        let digest = trace::digest(&trace);
+        let is_shown = !violations.is_empty() || self.order.seed.is_some();
         Ok(Outcome {
             seed,
             counts: Counts::of(&case),
             faults: case.faults,
             trace: if is_shown { trace } else { Vec::new() },
-            broken,
+            violations,
             digest,
         })
     }
 
-    /// Lives through a seed.
+    /// Runs all lives of a seed.
     fn case(&self, seed: u64, db: &Path) -> anyhow::Result<Case> {
-        let weather = Weather::of(seed, self.order.parts, &self.plant.wiring);
-        let rig = self.rig(weather.rig, weather.uncalibrated, &weather.faults)?;
-        let shop = self.shop(&rig, db);
-        let mut calibration = match weather.uncalibrated {
+        let scenario = Scenario::of(seed, self.order.parts, &self.plant.wiring);
+        let rig = self.rig(scenario.rig, scenario.uncalibrated, &scenario.faults)?;
+        let runner = self.runner(&rig, db);
+        let mut calibration = match scenario.uncalibrated {
             true => None,
-            false => Some(self.calibration(weather.rig, db)?),
+            false => Some(self.calibration(scenario.rig, db)?),
         };
-        let mut whims = weather.whims.clone();
+        let mut operator_dice = scenario.operator_dice.clone();
         let mut lives = Vec::new();
-        for life in &weather.lives {
+        for life in &scenario.lives {
             let lot = format!("life-{}", lives.len() + 1);
-            lives.push(shop.live(&lot, life, calibration.clone(), whims.apart())?);
+            lives.push(runner.run_life(&lot, life, calibration.clone(), operator_dice.apart())?);
         }
         if calibration.is_none() {
-            calibration = Some(self.calibration(weather.rig, db)?);
+            calibration = Some(self.calibration(scenario.rig, db)?);
         }
         rig.cancel_faults();
         for n in 1..=CALM {
@@ -199,27 +177,21 @@ impl<'a> Sea<'a> {
                 killed_after_us: None,
                 pause_us,
             };
-            lives.push(shop.live(
-                &format!("calm-{n}"),
-                &life,
-                calibration.clone(),
-                whims.apart(),
-            )?);
-            if lives
-                .last()
-                .is_some_and(|life| life.end == End::Exit(Exit::Done))
-            {
+            let lot = format!("calm-{n}");
+            lives.push(runner.run_life(&lot, &life, calibration.clone(), operator_dice.apart())?);
+            let last = lives.last();
+            if last.is_some_and(|life| life.end == End::Exit(Exit::Done)) {
                 break;
             }
         }
-        self.judged(&weather, &rig, lives, db)
+        self.judged(&scenario, &rig, lives, db)
     }
 
     fn judged(
         &self,
-        weather: &Weather,
+        scenario: &Scenario,
         rig: &SharedRig,
-        lives: Vec<life::Lived>,
+        lives: Vec<life::EndedLife>,
         db: &Path,
     ) -> anyhow::Result<Case> {
         let archive = Archive::open(db)?;
@@ -241,16 +213,16 @@ impl<'a> Sea<'a> {
             limits: limits
                 .map(|(key, range)| (key.name(), *range.start(), *range.end()))
                 .collect(),
-            faults: weather.faults.clone(),
-            disturbed_us: weather.disturbed_us.clone(),
+            faults: scenario.faults.clone(),
+            disturbed_us: scenario.disturbed_us.clone(),
             reaction,
             reaction_in_trouble: reaction + watchdog + watchdog,
-            lines_suffer: weather.lines_suffer,
+            lines_disturbed: scenario.lines_disturbed,
         })
     }
 
-    fn shop<'b>(&'b self, rig: &'b SharedRig, db: &'b Path) -> Shop<'b> {
-        Shop {
+    fn runner<'b>(&'b self, rig: &'b SharedRig, db: &'b Path) -> Runner<'b> {
+        Runner {
             plant: &self.plant,
             recipe: &self.recipe,
             db,
@@ -259,7 +231,7 @@ impl<'a> Sea<'a> {
     }
 
     fn rig(&self, seed: u64, golden: bool, faults: &[String]) -> anyhow::Result<SharedRig> {
-        let storms: PathBuf = self.folder.0.join("world.toml");
+        let storms = self.folder.path().join("world.toml");
         Ok(rigsim::build(&Options {
             config_dir: self.order.config.clone(),
             world: Some(self.order.world.clone().unwrap_or(storms)),
@@ -271,7 +243,7 @@ impl<'a> Sea<'a> {
         })?)
     }
 
-    /// The factors of a rig, found on a calm day.
+    /// Returns the calibration of a rig without faults, from the first seed that needed it.
     fn calibration(&self, rig: u64, db: &Path) -> anyhow::Result<Calibration> {
         let place = usize::try_from(rig % RIGS)?;
         if let Some(known) = self.calibrations[place].get() {
@@ -279,19 +251,22 @@ impl<'a> Sea<'a> {
         }
         let calm = self.rig(rig, true, &[])?;
         let apart = db.with_file_name("calibration.db");
-        let found = self.shop(&calm, &apart).calibrated()?;
+        let found = self.runner(&calm, &apart).calibrated()?;
         Ok(self.calibrations[place].get_or_init(|| found).clone())
     }
 }
 
 fn report(order: &Order, outcomes: &[Outcome], minutes: f64) -> Report {
     let n = outcomes.len() as u64;
-    let broken: Vec<&Outcome> = outcomes.iter().filter(|it| !it.broken.is_empty()).collect();
+    let violations = outcomes
+        .iter()
+        .filter(|it| !it.violations.is_empty())
+        .count() as u64;
     let sum = |of: fn(&Counts) -> u64| outcomes.iter().map(|it| of(&it.counts)).sum::<u64>();
     let hours = sum(|it| it.rig_us) as f64 / 3.6e9;
     let lives = sum(|it| it.lives);
     let about = |name: &str, of: u64, count: u64| Figure::count(name, of, Some(count));
-    let rule = Figure::count("seeds that broke a rule", n, Some(broken.len() as u64));
+    let rule = Figure::count("seeds that broke a rule", n, Some(violations));
     let counts = vec![
         about("kills of the controller", lives, sum(|it| it.kills)),
         about("lots completed", lives, sum(|it| it.completed)),
@@ -303,44 +278,27 @@ fn report(order: &Order, outcomes: &[Outcome], minutes: f64) -> Report {
     ];
     let per_minute = Some(hours / minutes);
     let pace = Figure::new("virtual hours per minute of wall time", n, per_minute, "h");
-    let digests: Vec<String> = outcomes
-        .iter()
-        .map(|it| format!("{:016x}", it.digest))
-        .collect();
-    let digest = trace::digest(digests.iter());
+    let digests = outcomes.iter().map(|it| format!("{:016x}", it.digest));
+    let digest = trace::digest(digests);
     let mut notes = vec![format!("digest of all traces: {digest:016x}")];
-    let shows = |it: &&Outcome| order.seed.is_some() || !it.broken.is_empty();
-    notes.extend(
-        outcomes
-            .iter()
-            .filter(shows)
-            .take(SHOWN)
-            .map(|it| shown(order, it)),
-    );
+    let shows = |it: &&Outcome| order.seed.is_some() || !it.violations.is_empty();
+    let worth = outcomes.iter().filter(shows).take(SHOWN);
+    notes.extend(worth.map(|it| shown(order, it)));
     let alarms = |it: &Outcome| (format!("seed {}", it.seed), Some(it.counts.alarms as f64));
-    Report {
-        study: "storm",
-        about: order.about(),
-        groups: vec![vec![rule.bar(Bar::AtMost(0.0))], counts, vec![pace]],
-        notes,
-        chart: Chart {
-            title: format!("alarms by seed: {}", order.about()),
-            unit: "",
-            from: 0.0,
-            marks: Vec::new(),
-            bars: outcomes.iter().take(40).map(alarms).collect(),
-        },
-    }
+    let title = format!("alarms by seed: {}", order.about());
+    let chart = Chart::new(title, "", Vec::new(), outcomes.iter().take(40).map(alarms));
+    let groups = vec![vec![rule.bar(Bar::AtMost(0.0))], counts, vec![pace]];
+    Report::new("storm", order.about(), groups, chart).noted(notes)
 }
 
 fn shown(order: &Order, it: &Outcome) -> String {
     let seed = it.seed;
-    // Who asks for one seed wants to see how it came to that.
+    // A report of one seed shows the whole trace.
     let last = match order.seed {
         Some(_) => it.trace.join("\n  "),
         None => trace::last(&it.trace).join("\n  "),
     };
-    let what = match it.broken.as_slice() {
+    let what = match it.violations.as_slice() {
         [] => "no rule broken".to_owned(),
         some => some.join("; "),
     };

@@ -1,8 +1,7 @@
-//! A restless person at the screen: disturbs a running lot, presses buttons that are dark, and brings the line up
-//! again whatever state it is in. Ends the program when the lot is complete, or when patience is at its end, and ends
-//! it at once when that takes too long.
+//! A simulated operator: gives sensible and random orders, refused ones included, and restarts the line from any state.
+//! Ends the program when the lot is complete or after [`PATIENCE`], and aborts it after as long again.
 
-use super::dice::Dice;
+use crate::dice::Dice;
 use bus::Pace;
 use machine::station::orders::JOGS;
 use machine::station::packml::State;
@@ -12,42 +11,43 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use tokio::sync::{mpsc, oneshot, watch};
 use units::{RigTime, Span};
 
-/// After so long the program is told to end, whatever it does, and after as long again to end at once.
+/// Time until the operator ends the program, and from then until it aborts the program.
 const PATIENCE: Span = Span::ms(25_000);
+
 /// One order and its answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Said {
-    /// When it was answered, rig time of the life.
+pub struct Answered {
+    /// Time of the answer, rig time of the life.
     pub at: RigTime,
-    /// State seen before.
+    /// PackML state before the order.
     pub state: String,
-    /// Word of the order.
+    /// Name of the order.
     pub order: String,
-    /// Why it was refused; none when it was taken.
+    /// Reason of a refusal; `None` for an accepted order.
     pub refused: Option<String>,
 }
 
-/// The person.
+/// The simulated operator.
 pub struct Operator {
-    /// View of the page.
+    /// Latest view of the station.
     pub view: watch::Receiver<View>,
-    /// Where orders go.
+    /// Channel to the station.
     pub orders: mpsc::Sender<OrderRequest>,
-    /// Rig time.
+    /// Clock of the rig time.
     pub pace: Pace,
-    /// Ends the program after the parts inside.
+    /// Ends the program once the parts inside are finished.
     pub stop: Arc<AtomicBool>,
-    /// Ends it at once.
+    /// Ends the program at once.
     pub abort: Arc<AtomicBool>,
     /// Draws orders and waits.
     pub dice: Dice,
     /// Receives every order with its answer.
-    pub said: mpsc::UnboundedSender<Said>,
+    pub answers: mpsc::UnboundedSender<Answered>,
 }
 
 impl Operator {
-    /// Until the lot is complete, the program gone, or patience at its end.
-    pub async fn rage(mut self) {
+    /// Gives orders until the lot is complete, the program has ended, or [`PATIENCE`] is over.
+    pub async fn operate(mut self) {
         while self.pace.now() < RigTime(0) + PATIENCE {
             let wait = Span::ms(self.dice.between(50, 2_000));
             self.pace.sleep_until(self.pace.now() + wait).await;
@@ -61,24 +61,24 @@ impl Operator {
             if known == State::Complete {
                 break;
             }
-            if let Some(order) = self.whim(known, &mode)
-                && self.give(state, order).await.is_none()
+            if let Some(order) = self.next_order(known, &mode)
+                && self.send_order(state, order).await.is_none()
             {
                 return;
             }
         }
         self.stop.store(true, Ordering::Release);
-        // A line that waits for steps or for a magazine does not finish the parts inside by itself.
+        // A line that waits for single steps or for a magazine does not finish the parts inside by itself.
         self.pace.sleep_until(self.pace.now() + PATIENCE).await;
         self.abort.store(true, Ordering::Release);
     }
 
-    fn whim(&mut self, state: State, mode: &str) -> Option<Order> {
+    fn next_order(&mut self, state: State, mode: &str) -> Option<Order> {
         let by_hand = mode == "manual" && state == State::Idle && self.dice.once_in(2);
         if by_hand || self.dice.once_in(12) {
-            return Some(self.any(by_hand.then_some("jog")));
+            return Some(self.random_order(by_hand.then_some("jog")));
         }
-        let word = *self.dice.one(sensible(state));
+        let word = *self.dice.one(usual_orders(state));
         let in_production = mode == "production";
         Some(Order {
             order: match word {
@@ -91,12 +91,12 @@ impl Operator {
         })
     }
 
-    /// Any button at all, or any motion by hand.
-    fn any(&mut self, word: Option<&str>) -> Order {
-        let any = *self.dice.one(&ORDERS);
+    /// Draws any order, or any motion by hand for the order `jog`.
+    fn random_order(&mut self, word: Option<&str>) -> Order {
+        let random_order = *self.dice.one(&ORDERS);
         let mode = *self.dice.one(&["production", "maintenance", "manual"]);
         Order {
-            order: word.unwrap_or(any).into(),
+            order: word.unwrap_or(random_order).into(),
             mode: Some(mode.into()),
             motion: Some(self.dice.one(&JOGS).0.into()),
             reason: Some("storm".into()),
@@ -104,8 +104,8 @@ impl Operator {
         }
     }
 
-    /// None when the program has gone.
-    async fn give(&self, state: String, order: Order) -> Option<()> {
+    /// Sends an order and waits for its answer; `None` when the program has ended.
+    async fn send_order(&self, state: String, order: Order) -> Option<()> {
         let (answer, answered) = oneshot::channel();
         let word = order.order.clone();
         let by = By {
@@ -116,18 +116,18 @@ impl Operator {
         let request = OrderRequest::new(order, by, move |it| drop(answer.send(it)));
         self.orders.send(request).await.ok()?;
         let answer = answered.await.ok()?;
-        let said = Said {
+        let answers = Answered {
             at: self.pace.now(),
             state,
             order: word,
             refused: answer.err().map(|why| why.say(texts::Lang::En)),
         };
-        self.said.send(said).ok()
+        self.answers.send(answers).ok()
     }
 }
 
-/// What a person does in a state; an empty word is to look on.
-fn sensible(state: State) -> &'static [&'static str] {
+/// Returns orders that make sense in a state; an empty name means no order.
+fn usual_orders(state: State) -> &'static [&'static str] {
     match state {
         State::Execute => &[
             "",

@@ -1,20 +1,23 @@
-//! What happened, as lines in order of time: lives, orders and answers, alarms, rows, and the ways of the bodies.
+//! The trace of a seed, as lines in order of time: lives, orders and answers, alarms, rows, and paths of the bodies.
 
 use super::judge::{Case, rig_us, seconds};
 
-/// Lines of a trace that a report shows.
+/// Last lines of a trace that a report shows.
 const LAST: usize = 40;
 
-/// All of it.
+/// Returns all lines of a trace.
 pub fn lines(case: &Case) -> Vec<String> {
     let mut lines: Vec<(u64, String)> = Vec::new();
     for life in &case.lives {
         lines.push((life.began_us, format!("{} begins", life.lot)));
         lines.push((life.ended_us, format!("{} ends: {:?}", life.lot, life.end)));
-        lines.extend(life.said.iter().map(|said| {
-            let answer = said.refused.as_deref().unwrap_or("taken");
-            let at_us = life.began_us + said.at.0;
-            (at_us, format!("{} in {}: {answer}", said.order, said.state))
+        lines.extend(life.answers.iter().map(|answers| {
+            let answer = answers.refused.as_deref().unwrap_or("taken");
+            let at_us = life.began_us + answers.at.0;
+            (
+                at_us,
+                format!("{} in {}: {answer}", answers.order, answers.state),
+            )
         }));
     }
     for alarm in &case.alarms {
@@ -48,15 +51,18 @@ pub fn lines(case: &Case) -> Vec<String> {
     lines.into_iter().map(text).collect()
 }
 
-/// The last lines.
+/// Returns the last lines of a trace.
 pub fn last(lines: &[String]) -> &[String] {
     &lines[lines.len().saturating_sub(LAST)..]
 }
 
-/// FNV-1a over all bytes: equal traces, equal digests.
-pub fn digest<'a>(lines: impl Iterator<Item = &'a String>) -> u64 {
-    let bytes = lines.flat_map(|line| line.bytes());
-    bytes.fold(0xCBF2_9CE4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3)
-    })
+/// Returns the FNV-1a hash of all bytes; equal traces have equal digests.
+pub fn digest(lines: impl IntoIterator<Item = impl AsRef<[u8]>>) -> u64 {
+    let hash = |hash: u64, line: &[u8]| {
+        line.iter().fold(hash, |hash, byte| {
+            (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01B3)
+        })
+    };
+    let lines = lines.into_iter();
+    lines.fold(0xCBF2_9CE4_8422_2325, |sum, line| hash(sum, line.as_ref()))
 }

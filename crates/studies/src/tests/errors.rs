@@ -7,7 +7,7 @@ use machine::dut::em_relay::Parameter;
 use serde_json::json;
 
 #[test]
-fn rms_bias_and_worst_error_count_good_parts_only_and_stand_in_millivolts() {
+fn errors_count_good_parts_in_millivolts() {
     let errors = Errors::of(Parameter::OperateVoltage, &three_good_one_bad());
     assert_eq!(errors.n(), 3);
     near(errors.bias(), 0.0);
@@ -25,7 +25,7 @@ fn the_rms_of_a_single_error_is_its_size() {
 }
 
 #[test]
-fn the_coil_error_is_a_share_of_the_true_coil() {
+fn the_coil_error_is_relative_to_the_truth() {
     let mut part = row(1, "pass", "pass", 8.0);
     part["values"]["coil_resistance_ohm"] = json!(402.0);
     let mut known = truth(1, None, "pass", 8.0);
@@ -37,7 +37,7 @@ fn the_coil_error_is_a_share_of_the_true_coil() {
 }
 
 #[test]
-fn a_parameter_that_nobody_measured_has_no_error_and_misses_its_bar() {
+fn an_unmeasured_parameter_misses_its_bar() {
     let errors = Pooled::of(Parameter::ReleaseTime, &[three_good_one_bad()]);
     assert_eq!(
         (errors.n(), errors.median_rms(), errors.coverage_pct()),
@@ -50,7 +50,7 @@ fn a_parameter_that_nobody_measured_has_no_error_and_misses_its_bar() {
 }
 
 #[test]
-fn a_lot_without_one_value_leaves_no_median_over_lots() {
+fn a_lot_without_values_leaves_no_median() {
     let empty = lot(&[], &[]);
     let errors = Pooled::of(Parameter::OperateVoltage, &[three_good_one_bad(), empty]);
     assert_eq!(errors.median_rms(), None);

@@ -1,6 +1,6 @@
-//! What became of the parts.
+//! Outcome of the parts: bins, verdicts and exceptions.
 
-use super::super::bins::{bin_of, defects, lots_without, machine, outcome};
+use super::super::bins::{bin_of, defects, lots_without_reject, machine, outcome};
 use super::super::exception;
 use super::super::lot::Lot;
 use super::{SUMMARY, figure, lot, near, row, three_good_one_bad, truth};
@@ -8,7 +8,7 @@ use machine::dut::em_relay::Parameter;
 use serde_json::{Value, json};
 
 #[test]
-fn good_rejected_bad_passed_and_bodies_elsewhere_are_each_told() {
+fn the_outcome_counts_rejects_passes_and_misplaced_bodies() {
     let rows = [
         row(1, "fail", "voltage", 8.0),
         row(2, "void", "retest", 8.0),
@@ -34,7 +34,7 @@ fn good_rejected_bad_passed_and_bodies_elsewhere_are_each_told() {
 }
 
 #[test]
-fn a_row_that_the_truth_does_not_know_is_not_good_and_not_where_it_says() {
+fn a_row_without_a_truth_is_not_good() {
     let it = lot(&[row(1, "pass", "pass", 8.0)], &[]);
     assert_eq!(it.good().count(), 0);
     let figures = outcome(&[it]);
@@ -49,17 +49,17 @@ fn a_row_that_the_truth_does_not_know_is_not_good_and_not_where_it_says() {
 }
 
 #[test]
-fn lots_of_a_hundred_are_cut_in_order_and_a_rest_counts_only_alone() {
+fn incomplete_lots_of_a_hundred_count_only_alone() {
     let mut rejected = vec![false; 250];
     rejected[120] = true;
     rejected[249] = true;
-    assert_eq!(lots_without(&rejected), (1, 2));
-    assert_eq!(lots_without(&[false, true]), (0, 1));
-    assert_eq!(lots_without(&[]), (0, 0));
+    assert_eq!(lots_without_reject(&rejected), (1, 2));
+    assert_eq!(lots_without_reject(&[false, true]), (0, 1));
+    assert_eq!(lots_without_reject(&[]), (0, 0));
 }
 
 #[test]
-fn a_defect_in_another_bin_and_a_defect_without_a_bin_miss_their_bars() {
+fn a_defect_in_the_wrong_bin_misses_its_bar() {
     let rows = [
         row(1, "fail", "time", 8.0),
         row(2, "fail", "coil", 8.0),
@@ -87,7 +87,7 @@ fn a_defect_in_another_bin_and_a_defect_without_a_bin_miss_their_bars() {
 }
 
 #[test]
-fn writes_that_nobody_counted_are_not_taken_for_none() {
+fn uncounted_eeprom_writes_miss_the_bar() {
     let mut it = three_good_one_bad();
     assert!(
         machine(std::slice::from_ref(&it))
@@ -102,7 +102,7 @@ fn writes_that_nobody_counted_are_not_taken_for_none() {
 }
 
 #[test]
-fn rows_cut_short_or_torn_are_refused_with_their_line() {
+fn a_torn_row_is_refused_with_its_line() {
     let error = |rows: &str, truth: &str| format!("{:#}", Lot::read(1, rows, truth).unwrap_err());
     assert!(error("", "").contains("no summary"));
     assert!(error("{\"type\":\"part\"", "").contains("rows, line 1"));
@@ -110,7 +110,7 @@ fn rows_cut_short_or_torn_are_refused_with_their_line() {
 }
 
 #[test]
-fn a_part_that_went_wrong_is_named_with_its_seed() {
+fn a_wrongly_judged_part_is_named_with_its_seed() {
     let mut rejected = row(1, "fail", "voltage", 8.0);
     rejected["reasons"] = json!(["not proven"]);
     let rows = [
@@ -131,7 +131,7 @@ fn a_part_that_went_wrong_is_named_with_its_seed() {
 }
 
 #[test]
-fn a_long_list_of_parts_is_cut_and_says_so() {
+fn a_long_list_of_parts_is_cut() {
     let rows: Vec<Value> = (1..=23).map(|seq| row(seq, "fail", "coil", 8.0)).collect();
     let truths: Vec<Value> = (1..=23).map(|seq| truth(seq, None, "coil", 8.0)).collect();
     let notes = exception::outcome(&[lot(&rows, &truths)]);
@@ -139,7 +139,7 @@ fn a_long_list_of_parts_is_cut_and_says_so() {
 }
 
 #[test]
-fn parts_over_the_time_allowed_are_named_with_both_times() {
+fn slow_parts_are_named_with_both_times() {
     let notes = exception::slow(&[three_good_one_bad()], 0.4, 2.5);
     assert_eq!(notes.len(), 4);
     assert!(
@@ -151,7 +151,7 @@ fn parts_over_the_time_allowed_are_named_with_both_times() {
 }
 
 #[test]
-fn a_part_drawn_beyond_a_limit_is_rejected_with_reason_and_not_called_good() {
+fn a_part_beyond_a_limit_is_rightly_rejected() {
     let rows = [
         row(1, "fail", "voltage", 9.1),
         row(2, "pass", "pass", 9.0),
@@ -163,7 +163,7 @@ fn a_part_drawn_beyond_a_limit_is_rejected_with_reason_and_not_called_good() {
         truth(3, None, "pass", 9.001),
     ];
     let mut it = lot(&rows, &truths);
-    it.hold_against(&[(Parameter::OperateVoltage, f64::NEG_INFINITY..=9.0)]);
+    it.mark_out_of_limits(&[(Parameter::OperateVoltage, f64::NEG_INFINITY..=9.0)]);
     let notes = exception::outcome(std::slice::from_ref(&it));
     assert_eq!(notes.len(), 1);
     assert!(

@@ -27,7 +27,7 @@ fn report() -> Report {
 }
 
 #[test]
-fn a_bar_includes_its_ends_except_below_and_no_bar_admits_nan() {
+fn a_bar_includes_its_ends_except_below() {
     assert!(Bar::AtMost(1.0).is_met(1.0) && Bar::AtLeast(1.0).is_met(1.0));
     assert!(Bar::Within(93.0, 99.5).is_met(99.5) && !Bar::Within(93.0, 99.5).is_met(99.6));
     assert!(!Bar::Below(0.5).is_met(0.5));
@@ -42,7 +42,7 @@ fn a_bar_includes_its_ends_except_below_and_no_bar_admits_nan() {
 }
 
 #[test]
-fn the_table_names_what_missed_and_a_figure_without_a_bar_cannot_miss() {
+fn the_table_names_the_missed_bars() {
     let text = report().text();
     assert!(text.ends_with("1 of 2 bars missed: a, \"b\"\n"), "{text}");
     let rows: Vec<&str> = text
@@ -76,7 +76,7 @@ fn json_lines_carry_every_figure_and_then_a_summary() {
 }
 
 #[test]
-fn csv_has_one_header_for_all_groups_and_quotes_what_must_be() {
+fn csv_has_one_header_for_all_groups() {
     let csv = report().csv();
     let lines: Vec<&str> = csv.split("\r\n").collect();
     assert_eq!(lines[0], "figure,n,value,unit,max,bar,met");

@@ -6,7 +6,7 @@ use super::{figure, lot, near, row, three_good_one_bad, truth};
 use serde_json::{Value, json};
 
 #[test]
-fn the_pieces_of_a_cycle_add_up_to_the_cycle() {
+fn the_pieces_add_up_to_the_cycle() {
     let mut part = row(1, "pass", "pass", 8.0);
     part["spent"] = json!({"bus_s": 0.1, "settling_s": 0.05, "conversion_s": 0.2, "ramp_s": 0.1});
     let lots = [lot(&[part], &[truth(1, None, "pass", 8.0)])];
@@ -25,14 +25,14 @@ fn the_pieces_of_a_cycle_add_up_to_the_cycle() {
 }
 
 #[test]
-fn rows_that_do_not_tell_where_the_time_went_still_give_test_and_mechanics() {
+fn rows_without_pieces_give_test_and_mechanics() {
     let found = pieces(&[three_good_one_bad()]);
     let names: Vec<&str> = found.iter().map(|it| it.name.as_str()).collect();
     assert_eq!(names, ["cycle", "mechanics outside the test", "test"]);
 }
 
 #[test]
-fn the_longest_test_is_held_against_the_bar_and_not_the_mean() {
+fn the_bar_applies_to_the_longest_test() {
     let mut long = row(2, "fail", "voltage", 8.0);
     long["test_s"] = json!(1.2);
     let truths = [
@@ -53,7 +53,7 @@ fn the_longest_test_is_held_against_the_bar_and_not_the_mean() {
 }
 
 #[test]
-fn a_repeat_with_other_bytes_is_seen_and_silence_about_bytes_is_no_proof() {
+fn a_repeat_with_other_bytes_is_counted() {
     let (a, mut b) = (three_good_one_bad(), three_good_one_bad());
     assert_eq!(same_bytes(&[a.clone(), b.clone()]).met(), Some(true));
     b.summary.bytes.insert("measure".into(), "b2".into());
@@ -63,7 +63,7 @@ fn a_repeat_with_other_bytes_is_seen_and_silence_about_bytes_is_no_proof() {
 }
 
 #[test]
-fn the_first_parts_of_a_lot_are_told_apart_from_those_that_follow() {
+fn the_first_parts_of_a_lot_count_apart() {
     let with_test = |seq: u64| {
         let mut row = row(seq, "pass", "pass", 8.0);
         row["test_s"] = json!(if seq == 6 { 1.05 } else { 0.7 });
@@ -79,7 +79,7 @@ fn the_first_parts_of_a_lot_are_told_apart_from_those_that_follow() {
 }
 
 #[test]
-fn the_wall_profile_is_a_mean_over_runs_greatest_first() {
+fn the_wall_profile_is_a_mean_over_runs() {
     let (mut a, mut b) = (three_good_one_bad(), three_good_one_bad());
     (a.wall_s, b.wall_s) = (4.0, 4.0);
     a.summary.wall_profile = [("rig".into(), 1.0), ("history".into(), 0.5)].into();

@@ -1,4 +1,4 @@
-//! The cases file: parameters of a relay, and what is done to it.
+//! The cases file: parameters of a relay, and the excitations of its coil.
 //!
 //! ```text
 //! parameters         SI units; a name left out is that of the default relay; T in Celsius
@@ -8,11 +8,11 @@
 //!        .s0         [flux linkage, x, v, y, w] at 0
 //!        .initial    without s0: "rest", or "sealed12" for a relay that holds with 12 V
 //!        .waveform   [[s, V], ...], linear between, held after; two points at one instant are a step
-//!        .freewheel_clamp_V   not null: switched off at 0 into this clamp, the waveform does not count
+//!        .freewheel_clamp_V   not null: the coil switches off at 0 into this coil suppression; no waveform
 //!        .t_end      s
 //! ```
 //!
-//! What such a file also carries as an answer (`results`, `events`, `probe` ...) is not read.
+//! The reader ignores answers in the file (`results`, `events`, `probe` ...).
 
 use super::field::Field;
 use anyhow::{Context, bail};
@@ -22,19 +22,19 @@ use serde_json::Value;
 /// One transient to integrate.
 #[derive(Debug)]
 pub struct Case {
-    /// Its name.
+    /// Name of the case.
     pub name: String,
-    /// The relay.
+    /// Parameters of the relay.
     pub parameters: Parameters,
-    /// State at 0.
+    /// State at time 0.
     pub start: State,
-    /// What stands at the coil.
+    /// Voltage or suppression at the coil.
     pub excitation: Excitation,
-    /// End, s.
+    /// Duration, s.
     pub end_s: f64,
 }
 
-/// All that a case may hold; the second half are answers.
+/// Keys of a case; the second half are answers.
 const KEYS: &[&str] = &[
     "name",
     "changed",
@@ -55,7 +55,7 @@ const KEYS: &[&str] = &[
 /// Reads every case.
 ///
 /// # Errors
-/// No JSON, or a field that is missing, unknown or outside its range; the message names it.
+/// Text that is not JSON, or a field that is missing, unknown or outside its range; the error names the field.
 pub fn read(text: &str) -> anyhow::Result<Vec<Case>> {
     let file: Value = serde_json::from_str(text).context("expected JSON")?;
     let root = Field::root(&file);

@@ -1,9 +1,9 @@
-//! A field of a JSON file with the path under which a message names it.
+//! A field of a JSON file with its path, which error messages name.
 
 use anyhow::{anyhow, bail};
 use serde_json::{Map, Value};
 
-/// A value and where it stands.
+/// A JSON value and its path in the file.
 #[derive(Clone)]
 pub struct Field<'a> {
     path: String,
@@ -11,7 +11,7 @@ pub struct Field<'a> {
 }
 
 impl<'a> Field<'a> {
-    /// The whole file.
+    /// Returns the field of the whole file.
     pub fn root(value: &'a Value) -> Self {
         Self {
             path: String::new(),
@@ -19,7 +19,7 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// What was found and what was expected, as an error.
+    /// Returns the error that names path, found value and expected value.
     pub fn wrong(&self, expected: &str) -> anyhow::Error {
         let path = if self.path.is_empty() {
             "the file"
@@ -38,10 +38,10 @@ impl<'a> Field<'a> {
         anyhow!("{path}: found {found}, expected {expected}")
     }
 
-    /// A member that may be absent or null.
+    /// Returns a member; `None` when it is absent or null.
     ///
     /// # Errors
-    /// This is no object.
+    /// The field is not an object.
     pub fn member(&self, key: &str) -> anyhow::Result<Option<Field<'a>>> {
         let dot = if self.path.is_empty() { "" } else { "." };
         Ok(self
@@ -54,20 +54,20 @@ impl<'a> Field<'a> {
             }))
     }
 
-    /// A member that must be there.
+    /// Returns a required member.
     ///
     /// # Errors
-    /// It is absent or null, or this is no object.
+    /// The member is absent or null, or the field is not an object.
     pub fn must(&self, key: &str, expected: &str) -> anyhow::Result<Field<'a>> {
         let dot = if self.path.is_empty() { "" } else { "." };
         self.member(key)?
             .ok_or_else(|| anyhow!("{}{dot}{key}: missing, expected {expected}", self.path))
     }
 
-    /// Members, none of which may have another name than those known.
+    /// Returns all members.
     ///
     /// # Errors
-    /// A name is unknown, or this is no object.
+    /// A member whose name is not in `known`, or a field that is not an object.
     pub fn members(&self, known: &[&str]) -> anyhow::Result<Vec<(&'a str, Field<'a>)>> {
         let dot = if self.path.is_empty() { "" } else { "." };
         let mut all = Vec::new();
@@ -87,10 +87,10 @@ impl<'a> Field<'a> {
             .ok_or_else(|| self.wrong("an object"))
     }
 
-    /// Elements of a list.
+    /// Returns the elements of a list.
     ///
     /// # Errors
-    /// This is no list.
+    /// The field is not a list.
     pub fn list(&self, expected: &str) -> anyhow::Result<Vec<Field<'a>>> {
         let list = self.value.as_array().ok_or_else(|| self.wrong(expected))?;
         let one = |(at, value)| Field {
@@ -100,10 +100,10 @@ impl<'a> Field<'a> {
         Ok(list.iter().enumerate().map(one).collect())
     }
 
-    /// So many finite numbers.
+    /// Returns `N` finite numbers.
     ///
     /// # Errors
-    /// This is something else.
+    /// The field is not a list of `N` finite numbers.
     pub fn numbers<const N: usize>(&self, expected: &str) -> anyhow::Result<[f64; N]> {
         let list = self.list(expected)?;
         if list.len() != N {
@@ -116,19 +116,19 @@ impl<'a> Field<'a> {
         Ok(numbers)
     }
 
-    /// A finite number.
+    /// Returns a finite number.
     ///
     /// # Errors
-    /// This is something else.
+    /// The field is not a finite number.
     pub fn number(&self) -> anyhow::Result<f64> {
         let number = self.value.as_f64().filter(|number| number.is_finite());
         number.ok_or_else(|| self.wrong("a finite number"))
     }
 
-    /// A text.
+    /// Returns a text.
     ///
     /// # Errors
-    /// This is something else.
+    /// The field is not a text.
     pub fn text(&self) -> anyhow::Result<&'a str> {
         self.value.as_str().ok_or_else(|| self.wrong("a text"))
     }

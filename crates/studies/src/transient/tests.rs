@@ -1,4 +1,4 @@
-//! Cases files: what is read, what is refused, and that the answers are those of the file.
+//! Cases files: reading, refusals, and answers equal to those of the file.
 #![allow(clippy::unwrap_used)]
 
 use super::*;
@@ -6,7 +6,7 @@ use serde_json::json;
 
 const FILE: &str = include_str!("cases.json");
 
-/// The file with one place overwritten; `None` takes the key away.
+/// Returns the file with the value at `pointer` replaced, or removed for `None`.
 fn with(pointer: &str, value: Option<Value>) -> String {
     let mut file: Value = serde_json::from_str(FILE).unwrap();
     let (parent, key) = pointer.rsplit_once('/').unwrap();
@@ -31,7 +31,7 @@ fn refused(pointer: &str, value: Option<Value>, names: &str) {
     );
 }
 
-/// Largest distance of the answers of a file from what it carries: first events, later events.
+/// Returns the largest error of the answers against those in the file, s: of first events and of later events.
 fn distance(text: &str, rtol: f64) -> [f64; 2] {
     let file: Value = serde_json::from_str(text).unwrap();
     let mut worst = [0.0f64; 2];
@@ -67,13 +67,13 @@ fn distance(text: &str, rtol: f64) -> [f64; 2] {
 }
 
 #[test]
-fn the_answers_are_those_that_the_file_carries() {
+fn the_answers_are_those_of_the_file() {
     let [first, last] = distance(FILE, 1e-10);
     assert!(first < 1e-9 && last < 1e-7, "{first:e} {last:e}");
 }
 
 #[test]
-fn a_state_that_is_given_counts_before_its_name() {
+fn a_given_state_takes_precedence() {
     let given = [1e-3, 1e-6, 0.0, 0.0, 0.0];
     let cases = cases::read(&with("/cases/0/s0", Some(json!(given)))).unwrap();
     assert_eq!(cases[0].start, given);
@@ -84,7 +84,7 @@ fn a_state_that_is_given_counts_before_its_name() {
 }
 
 #[test]
-fn what_is_wrong_is_named_with_its_field() {
+fn an_error_names_its_field() {
     refused(
         "/cases/0/t_end",
         Some(json!(0.0)),
@@ -158,7 +158,7 @@ fn what_is_wrong_is_named_with_its_field() {
 }
 
 #[test]
-fn an_initial_state_is_rest_or_sealed_at_a_voltage_that_holds() {
+fn an_initial_state_is_rest_or_sealed() {
     let with_initial = |label: &str| {
         let mut file: Value = serde_json::from_str(FILE).unwrap();
         file["cases"][0]["initial"] = json!(label);

@@ -1,20 +1,20 @@
-//! Every body lies in the one bin that its row names, or an alarm declared it lost; no row without a body, none
-//! twice. Which row is whose is found by the rig's truth: who stood in the nest when it was judged, who came to
-//! rest in the bin when it was seen. A body that clung to another one was never judged: it has no row, and the alarm of
-//! the beam that counted it says which bin it lies in.
+//! Checks that every body lies in the one bin that its row names, or that an alarm declares it lost; that no row lacks a
+//! body, and no body has two rows. The truth of the rig assigns rows to bodies: by the body in the nest at the verdict, and
+//! by the body that came to rest in the bin at the confirmation. A body that clung to another one has no row, because it
+//! was never judged; the alarm of the beam that counted it names its bin.
 
 use super::{Case, rig_us, seconds};
-use crate::storm::life::{End, Lived};
+use crate::storm::life::{End, EndedLife};
 use history::{Alarm, Part};
 use rigsim::truth::{BodyTruth, Place};
 
-/// From a body at rest to its confirmation by the beam: fall, second body, polls and repeated polls, microseconds.
+/// Longest time from a body at rest to its confirmation by the beam, microseconds: fall, second body, repeated polls.
 const CONFIRMED_US: u64 = 3_000_000;
-/// The fingers take so long to open, microseconds: a run that ends meanwhile tells of the part before it falls.
+/// Time in which the fingers open, microseconds: a run that ends meanwhile declares the part before it falls.
 const OPENING_US: u64 = 300_000;
-/// A part that is gone is noticed at the latest at the reset after it, microseconds; a person may take this long.
+/// Longest time until the reset that detects a lost part, microseconds: the operator may take this long.
 const NOTICED_US: u64 = 60_000_000;
-/// A part is gone: what says so.
+/// Codes of the alarms that declare a part lost.
 const DECLARED: [&str; 6] = [
     "part_dropped",
     "part_lost",
@@ -24,43 +24,45 @@ const DECLARED: [&str; 6] = [
     "gripper_left_end",
 ];
 
-pub fn broken(case: &Case) -> Vec<String> {
-    let (owners, mut broken) = owners(case);
+pub fn violations(case: &Case) -> Vec<String> {
+    let (owners, mut violations) = owners(case);
     for (number, body) in case.bodies.iter().enumerate() {
         let rows: Vec<&Part> = owners
             .iter()
             .filter(|(_, owner)| *owner == number)
             .map(|(row, _)| *row)
             .collect();
-        let found = fate(case, body, &rows).into_iter().chain(twice(&rows));
+        let found = misplaced(case, body, &rows)
+            .into_iter()
+            .chain(recorded_twice(&rows));
         let name = name(body);
-        broken.extend(found.map(|what| format!("{name} {what}")));
+        violations.extend(found.map(|what| format!("{name} {what}")));
     }
-    broken
+    violations
 }
 
-/// Rows with the number of their body, and rows that have none. Who landed is told by the bin, the others by the
-/// place where they were judged.
+/// Assigns rows to the numbers of their bodies and describes rows without one. The bin decides for a landed part, the place
+/// at the verdict for the others.
 pub fn owners(case: &Case) -> (Vec<(&Part, usize)>, Vec<String>) {
-    let (mut owners, mut broken) = (Vec::new(), Vec::new());
+    let (mut owners, mut violations) = (Vec::new(), Vec::new());
     let (landed, other): (Vec<&Part>, Vec<&Part>) =
         case.rows.iter().partition(|row| row.landed_at.is_some());
     for row in landed.into_iter().chain(other) {
-        let by_bin = who_landed(case, row);
-        match by_bin.or_else(|| who_was_judged(case, row, &owners)) {
+        let by_bin = body_by_bin(case, row);
+        match by_bin.or_else(|| body_by_place(case, row, &owners)) {
             Some(number) => owners.push((row, number)),
             None => {
                 let (kind, seq, lot) = (&row.kind, row.seq, &row.lot);
-                broken.push(format!("row {kind} {seq} of {lot} is nobody's"));
+                violations.push(format!("row {kind} {seq} of {lot} is nobody's"));
             }
         }
     }
     owners.sort_by_key(|(row, _)| row.time);
-    (owners, broken)
+    (owners, violations)
 }
 
-/// The body that came to rest in the bin just before its beam was believed, if it was inside when the row was judged.
-fn who_landed(case: &Case, row: &Part) -> Option<usize> {
+/// Returns the body that came to rest in the bin just before the confirmation and was inside at the verdict.
+fn body_by_bin(case: &Case, row: &Part) -> Option<usize> {
     let (bin, seen_us) = (row.landed_bin.as_deref()?, rig_us(row.landed_at?));
     let judged_us = rig_us(row.time);
     let inside = |body: &BodyTruth| {
@@ -77,9 +79,9 @@ fn who_landed(case: &Case, row: &Part) -> Option<usize> {
         .map(|(number, _)| number)
 }
 
-/// A test is judged in the nest. What was never tested may have been found between the fingers: then it had no row
-/// in this life, and the one in the nest waits for its own.
-fn who_was_judged(case: &Case, row: &Part, known: &[(&Part, usize)]) -> Option<usize> {
+/// Returns the body in the nest for a tested part. A part without a test may also have been in the gripper: then the body
+/// there comes first, unless it has a row in the same life.
+fn body_by_place(case: &Case, row: &Part, known: &[(&Part, usize)]) -> Option<usize> {
     let judged_us = rig_us(row.time);
     let at = |place: &Place| {
         let mut all = case.bodies.iter();
@@ -97,7 +99,7 @@ fn who_was_judged(case: &Case, row: &Part, known: &[(&Part, usize)]) -> Option<u
     first.or(nest).or(gripper)
 }
 
-fn twice(rows: &[&Part]) -> Option<String> {
+fn recorded_twice(rows: &[&Part]) -> Option<String> {
     let landed: Vec<&str> = rows
         .iter()
         .filter(|row| row.landed_bin.is_some())
@@ -111,7 +113,7 @@ fn twice(rows: &[&Part]) -> Option<String> {
     (landed.len() > 1).then(|| format!("landed {} times: {landed:?}", landed.len()))
 }
 
-fn fate(case: &Case, body: &BodyTruth, rows: &[&Part]) -> Option<String> {
+fn misplaced(case: &Case, body: &BodyTruth, rows: &[&Part]) -> Option<String> {
     let (at_us, place) = body.path.last()?;
     let landed = rows.iter().find_map(|row| row.landed_bin.as_deref());
     match place {
@@ -138,7 +140,8 @@ fn fate(case: &Case, body: &BodyTruth, rows: &[&Part]) -> Option<String> {
     }
 }
 
-/// When it began to fall: whoever let it go has to tell what became of it, not who came while it fell.
+/// Returns the instant at which the body began to fall, microseconds: the life that released it must declare it lost, not
+/// a life that began during the fall.
 fn let_go_us(body: &BodyTruth) -> u64 {
     let mut falls = body.path.iter().rev();
     let fell = falls.find(|(_, place)| *place == Place::Air);
@@ -177,27 +180,27 @@ fn in_a_bin(
     }
 }
 
-/// An alarm of the life in which it happened tells it, or of the ones that came after until one had homed.
+/// Returns true when an alarm of the life at that instant declares the loss, or of a later life up to the first that homed.
 fn is_declared(case: &Case, at_us: u64) -> bool {
-    is_told(case, at_us, |alarm| DECLARED.contains(&alarm.code.as_str()))
+    has_alarm(case, at_us, |alarm| DECLARED.contains(&alarm.code.as_str()))
 }
 
-/// The same of a body that fell into a bin beside the one that was let go: the alarm names the bin. A life that was cut
-/// off may have confirmed the first one and not have heard of the second.
+/// Returns true when an alarm counts a second body in the bin. A killed life may have confirmed the first body and not yet
+/// counted the second.
 fn is_counted(case: &Case, at_us: u64, bin: &str) -> bool {
     let confirmed_us = at_us + CONFIRMED_US;
     let cut_off = case
         .life_at(at_us)
         .is_none_or(|life| life.ended_us < confirmed_us && life.end == End::Killed);
     cut_off
-        || is_told(case, at_us, |alarm| {
+        || has_alarm(case, at_us, |alarm| {
             alarm.code == "bin_beam" && alarm.args.get("bin") == Some(bin)
         })
 }
 
-fn is_told(case: &Case, at_us: u64, tells: impl Fn(&Alarm) -> bool) -> bool {
+fn has_alarm(case: &Case, at_us: u64, tells: impl Fn(&Alarm) -> bool) -> bool {
     let noticed_us = at_us + NOTICED_US;
-    let told = |life: &Lived| {
+    let is_reported = |life: &EndedLife| {
         let until_us = noticed_us.max(life.began_us + NOTICED_US);
         let mut alarms = case.alarms_of(life);
         alarms.any(|(raised_us, alarm)| (at_us..=until_us).contains(&raised_us) && tells(alarm))
@@ -207,20 +210,22 @@ fn is_told(case: &Case, at_us: u64, tells: impl Fn(&Alarm) -> bool) -> bool {
         .filter(|life| life.ended_us >= noticed_us);
     let since = case.lives.iter().filter(|life| life.ended_us >= at_us);
     match own {
-        Some(life) => told(life),
-        None => whose_turn(case, at_us, since).into_iter().any(told),
+        Some(life) => is_reported(life),
+        None => responsible_lives(case, at_us, since)
+            .into_iter()
+            .any(is_reported),
     }
 }
 
-/// The life in which something happened, and those after it up to the first that has judged a part: that one has homed
-/// and seen what is gone, so whatever a later one tells is something else.
-fn whose_turn<'a>(
+/// Returns the life of an instant and the lives after it up to the first that judged a part: that life has homed and
+/// detected the loss, so that alarms of later lives have other causes.
+fn responsible_lives<'a>(
     case: &Case,
     at_us: u64,
-    since: impl Iterator<Item = &'a Lived>,
-) -> Vec<&'a Lived> {
+    since: impl Iterator<Item = &'a EndedLife>,
+) -> Vec<&'a EndedLife> {
     let has_homed =
-        |life: &Lived| life.began_us > at_us && case.rows.iter().any(|row| row.lot == life.lot);
+        |life: &EndedLife| life.began_us > at_us && case.rows.iter().any(|row| row.lot == life.lot);
     let mut turns = Vec::new();
     for life in since {
         turns.push(life);

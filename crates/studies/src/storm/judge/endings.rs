@@ -1,12 +1,12 @@
-//! Every life ends by itself unless it was killed, a trouble has its name in the history, and when faults cease
-//! production resumes: the last life is calm and completes its lot.
+//! Checks that every life ends by itself unless the study kills it, that an alarm in the history names every trouble, and
+//! that production resumes after the faults: the last life completes its lot.
 
 use super::{Case, seconds};
-use crate::storm::life::{End, Lived};
+use crate::storm::life::{End, EndedLife};
 use app::exit::Exit;
 
-pub fn broken(case: &Case) -> Vec<String> {
-    let mut broken: Vec<String> = case
+pub fn violations(case: &Case) -> Vec<String> {
+    let mut violations: Vec<String> = case
         .lives
         .iter()
         .filter_map(|life| of(case, life))
@@ -16,12 +16,12 @@ pub fn broken(case: &Case) -> Vec<String> {
         .last()
         .is_none_or(|life| life.end != End::Exit(Exit::Done))
     {
-        broken.push("the storm has passed and production did not resume".to_owned());
+        violations.push("the storm has passed and production did not resume".to_owned());
     }
-    broken
+    violations
 }
 
-fn of(case: &Case, life: &Lived) -> Option<String> {
+fn of(case: &Case, life: &EndedLife) -> Option<String> {
     let lot = &life.lot;
     match &life.end {
         End::Killed => None,

@@ -1,10 +1,10 @@
-//! A storm that finds nothing must be able to find: one sound case, and an error planted for each rule.
+//! The rules find errors: one sound case, and one planted error for each rule.
 
 #![allow(clippy::unwrap_used)]
 
 use super::Case;
-use crate::storm::life::{EPOCH_US, End, Lived};
-use crate::storm::operator::Said;
+use crate::storm::life::{EPOCH_US, End, EndedLife};
+use crate::storm::operator::Answered;
 use app::exit::{Cause, Exit};
 use history::{Alarm, AlarmState, Moment, Part};
 use rigsim::truth::{BodyTruth, PartTruth, Place};
@@ -63,18 +63,18 @@ fn way(from_s: u64, last: Place) -> Vec<(u64, Place)> {
     ]
 }
 
-fn life(lot: &str, from_s: u64, to_s: u64, end: End) -> Lived {
-    Lived {
+fn life(lot: &str, from_s: u64, to_s: u64, end: End) -> EndedLife {
+    EndedLife {
         lot: lot.into(),
         began_us: from_s * S,
         ended_us: to_s * S,
         end,
-        said: Vec::new(),
+        answers: Vec::new(),
     }
 }
 
-fn said(order: &str, at_s: u64) -> Said {
-    Said {
+fn answers(order: &str, at_s: u64) -> Answered {
+    Answered {
         at: RigTime(at_s * S),
         state: "Execute".into(),
         order: order.into(),
@@ -101,11 +101,11 @@ fn alarm(lot: &str, code: &str, raised_s: u64) -> Alarm {
     }
 }
 
-/// Two lives. The first tests a good part and drops one on the way, which it tells; somebody aborts and the
-/// program ends. The second one completes.
+/// Returns a case of two lives. The first tests a good part, drops another one and declares it; the operator aborts and the
+/// program ends. The second life completes.
 fn sound() -> Case {
     let mut first = life("one", 0, 20, End::Exit(Exit::Trouble(Cause::aborted())));
-    first.said = vec![said("abort", 18)];
+    first.answers = vec![answers("abort", 18)];
     Case {
         lives: vec![first, life("two", 30, 60, End::Exit(Exit::Done))],
         bodies: vec![
@@ -126,24 +126,24 @@ fn sound() -> Case {
         disturbed_us: vec![22 * S],
         reaction: Span::ms(250),
         reaction_in_trouble: Span::ms(2_250),
-        lines_suffer: false,
+        lines_disturbed: false,
     }
 }
 
-/// The case with an error planted is found out, in these words and no others.
+/// Checks that every broken rule of the sound case with a planted error contains `words`.
 fn found(plant: impl FnOnce(&mut Case), words: &str) {
     let mut case = sound();
     plant(&mut case);
-    let broken = case.broken();
-    assert!(!broken.is_empty(), "not found: {words}");
-    for one in broken {
+    let violations = case.violations();
+    assert!(!violations.is_empty(), "not found: {words}");
+    for one in violations {
         assert!(one.contains(words), "{one}\nexpected: {words}");
     }
 }
 
 #[test]
 fn a_sound_case_breaks_no_rule() {
-    assert_eq!(sound().broken(), Vec::<String>::new());
+    assert_eq!(sound().violations(), Vec::<String>::new());
 }
 
 #[test]
@@ -155,7 +155,7 @@ fn bodies_that_touched_are_found() {
 }
 
 #[test]
-fn a_row_that_names_another_bin_than_the_bodys_is_found() {
+fn a_row_with_another_bin_is_found() {
     found(
         |case| case.bodies[0].path[3].1 = Place::Bin("coil".into()),
         "lies in coil, row 1 of one says pass",
@@ -163,7 +163,7 @@ fn a_row_that_names_another_bin_than_the_bodys_is_found() {
 }
 
 #[test]
-fn a_row_that_is_gone_is_found() {
+fn a_missing_row_is_found() {
     found(
         |case| drop(case.rows.remove(2)),
         "lies in voltage since 40.000 s without a row",
@@ -171,7 +171,7 @@ fn a_row_that_is_gone_is_found() {
 }
 
 #[test]
-fn a_row_that_was_written_twice_is_found() {
+fn a_row_written_twice_is_found() {
     found(
         |case| case.rows.insert(1, case.rows[0].clone()),
         "has 2 rows",
@@ -189,7 +189,7 @@ fn a_body_that_landed_by_two_rows_is_found() {
 }
 
 #[test]
-fn a_row_of_nobody_is_found() {
+fn a_row_without_a_body_is_found() {
     found(
         |case| case.rows.push(row("two", 2, 55, "void", "retest", None)),
         "is nobody's",
@@ -197,7 +197,7 @@ fn a_row_of_nobody_is_found() {
 }
 
 #[test]
-fn a_landing_that_the_row_does_not_know_is_found() {
+fn a_landing_without_a_confirmation_is_found() {
     let forget = |case: &mut Case| {
         case.rows[2].landed_bin = None;
     };
@@ -205,28 +205,28 @@ fn a_landing_that_the_row_does_not_know_is_found() {
 }
 
 #[test]
-fn a_part_that_fell_while_the_program_was_killed_is_told_by_the_one_that_comes_after() {
+fn the_next_life_declares_a_part_lost_at_the_kill() {
     let mut case = sound();
     case.lives[0].ended_us = 6 * S - 1;
     case.lives[0].end = End::Killed;
     case.lives[1].began_us = 6 * S;
-    case.lives[0].said.clear();
+    case.lives[0].answers.clear();
     case.bodies = vec![body(&way(1, Place::Bin("pass".into())), None)];
     case.bodies[0].path.insert(3, (6 * S - 2, Place::Air));
     case.rows.truncate(1);
     (case.rows[0].landed_bin, case.rows[0].landed_at) = (None, None);
     (case.alarms, case.driven, case.disturbed_us) = (Vec::new(), Vec::new(), Vec::new());
-    assert!(case.broken()[0].contains("its row does not know it"));
+    assert!(case.violations()[0].contains("its row does not know it"));
     case.alarms.push(alarm("two", "part_lost", 8));
-    assert_eq!(case.broken(), Vec::<String>::new());
+    assert_eq!(case.violations(), Vec::<String>::new());
 }
 
 #[test]
-fn what_a_run_tells_after_another_one_has_judged_parts_does_not_declare_an_earlier_loss() {
+fn a_late_alarm_declares_no_earlier_loss() {
     let mut case = sound();
     case.lives[0].ended_us = 14 * S;
     case.lives[0].end = End::Killed;
-    case.lives[0].said.clear();
+    case.lives[0].answers.clear();
     case.lives
         .push(life("three", 70, 90, End::Exit(Exit::Done)));
     for (lot, declared) in [("one", true), ("two", true), ("three", false)] {
@@ -237,14 +237,18 @@ fn what_a_run_tells_after_another_one_has_judged_parts_does_not_declare_an_earli
             _ => 71,
         };
         case.alarms = vec![alarm(lot, "part_lost", raised_s)];
-        let broken = case.broken();
+        let violations = case.violations();
         let is_found = |it: &String| it.contains("lies on the floor since 12.000 s");
-        assert_eq!(!broken.iter().any(is_found), declared, "{lot}: {broken:?}");
+        assert_eq!(
+            !violations.iter().any(is_found),
+            declared,
+            "{lot}: {violations:?}"
+        );
     }
 }
 
 #[test]
-fn a_part_on_the_floor_that_no_alarm_declares_is_found() {
+fn an_undeclared_part_on_the_floor_is_found() {
     found(
         |case| case.alarms[0].code = "door_open".into(),
         "lies on the floor since 12.000 s and no alarm",
@@ -252,7 +256,7 @@ fn a_part_on_the_floor_that_no_alarm_declares_is_found() {
 }
 
 #[test]
-fn a_part_on_the_floor_whose_row_says_it_landed_is_found() {
+fn a_landed_row_of_a_fallen_part_is_found() {
     found(
         |case| case.rows[1].landed_bin = Some("voltage".into()),
         "its row says Some(\"voltage\")",
@@ -260,15 +264,15 @@ fn a_part_on_the_floor_whose_row_says_it_landed_is_found() {
 }
 
 #[test]
-fn a_second_body_in_a_bin_that_no_beam_told_of_is_found() {
+fn a_second_body_without_a_beam_alarm_is_found() {
     let mut case = sound();
     let mut second = body(&way(1, Place::Bin("pass".into())), None);
     second.clung = true;
     case.bodies.insert(1, second);
-    let broken = case.broken();
-    assert_eq!(broken.len(), 1, "{broken:?}");
-    assert!(broken[0].contains("second body") && broken[0].contains("came into pass"));
-    for (code, bin, told) in [
+    let violations = case.violations();
+    assert_eq!(violations.len(), 1, "{violations:?}");
+    assert!(violations[0].contains("second body") && violations[0].contains("came into pass"));
+    for (code, bin, is_reported) in [
         ("bin_beam", "pass", true),
         ("bin_beam", "coil", false),
         ("part_dropped", "pass", false),
@@ -277,12 +281,12 @@ fn a_second_body_in_a_bin_that_no_beam_told_of_is_found() {
         let mut one = alarm("one", code, 7);
         one.args = one.args.with("bin", bin);
         case.alarms.insert(0, one);
-        assert_eq!(case.broken().is_empty(), told, "{bin}");
+        assert_eq!(case.violations().is_empty(), is_reported, "{bin}");
     }
 }
 
 #[test]
-fn a_part_that_was_left_inside_is_found() {
+fn a_part_left_inside_is_found() {
     found(
         |case| case.bodies.push(body(&[(45, Place::Pocket)], None)),
         "was left in Pocket",
@@ -323,7 +327,7 @@ fn a_good_part_that_failed_is_found() {
 }
 
 #[test]
-fn a_defect_in_the_bin_of_another_cause_is_found() {
+fn a_defect_in_the_wrong_bin_is_found() {
     found(
         |case| case.bodies[2].part.defect = Some("slow"),
         "slow belongs to time, its row says voltage",
@@ -331,7 +335,7 @@ fn a_defect_in_the_bin_of_another_cause_is_found() {
 }
 
 #[test]
-fn a_motion_while_a_safety_input_is_open_is_found() {
+fn a_motion_with_an_open_safety_input_is_found() {
     let open = |case: &mut Case| case.disturbed_us.push(14 * S + 500_000);
     found(
         open,
@@ -340,16 +344,16 @@ fn a_motion_while_a_safety_input_is_open_is_found() {
 }
 
 #[test]
-fn a_motion_after_an_abort_and_before_the_reset_is_found() {
+fn a_motion_between_abort_and_reset_is_found() {
     found(
         |case| case.driven.push((19 * S, "pusher")),
         "pusher was driven at 19.000 s after the abort ordered at 18.000 s",
     );
     let mut case = sound();
-    case.lives[0].said.push(said("reset", 19));
+    case.lives[0].answers.push(answers("reset", 19));
     case.driven.push((19 * S + 1, "pusher"));
     assert_eq!(
-        case.broken(),
+        case.violations(),
         Vec::<String>::new(),
         "after the reset it may move"
     );
@@ -364,7 +368,7 @@ fn a_motion_without_a_controller_is_found() {
 }
 
 #[test]
-fn a_life_that_hangs_fails_or_ends_without_a_name_is_found() {
+fn a_life_that_ends_badly_is_found() {
     found(|case| case.lives[0].end = End::Hung, "one never ended");
     found(
         |case| case.lives[0].end = End::Failed("disk".into()),
@@ -383,7 +387,7 @@ fn a_life_that_hangs_fails_or_ends_without_a_name_is_found() {
 }
 
 #[test]
-fn a_production_that_does_not_resume_is_found() {
+fn a_production_that_stays_down_is_found() {
     let held = |case: &mut Case| {
         case.lives[1].end = End::Exit(Exit::Trouble(Cause::aborted()));
         case.alarms.push(alarm("two", "bus_trouble", 59));

@@ -1,5 +1,5 @@
-//! No value but the body's own, and a verdict that its truth bears out. Only what was tested to the end counts: an
-//! interrupted test has no verdict.
+//! Checks that every value belongs to the body of its row and that the verdict agrees with the truth. Only complete tests
+//! count: an interrupted one has no verdict.
 
 use super::Case;
 use super::bodies::owners;
@@ -9,14 +9,14 @@ use machine::dut::em_relay::Parameter;
 use rigsim::truth::PartTruth;
 use serde_json::Value;
 
-/// A value further from its truth than so many expanded uncertainties (k = 2) is somebody else's. Over 10^6 values
-/// a true one is this far off less than once in 10^9 times.
-const SOMEBODY_ELSES: f64 = 4.0;
-/// A true value is beyond a limit, or clear of it, by so many expanded uncertainties.
-const CLEARLY: f64 = 2.0;
+/// Least distance from its truth, in expanded uncertainties (k = 2), at which a value must belong to another body. A right
+/// value is this far off less than once in 10^9 storms of 10^6 values.
+const FOREIGN_K: f64 = 4.0;
+/// Distance from a limit, in expanded uncertainties, from which a true value is clearly inside or outside.
+const CLEAR_K: f64 = 2.0;
 
-pub fn broken(case: &Case) -> Vec<String> {
-    let mut broken = Vec::new();
+pub fn violations(case: &Case) -> Vec<String> {
+    let mut violations = Vec::new();
     for (row, number) in owners(case).0 {
         let body = &case.bodies[number];
         if body.is_reference || !matches!(row.verdict.as_str(), "pass" | "fail") {
@@ -27,15 +27,15 @@ pub fn broken(case: &Case) -> Vec<String> {
             .iter()
             .filter_map(|parameter| Reading::of(parameter.name(), row, &truth))
             .collect();
-        let found = strange(&readings, &body.part)
+        let found = foreign_value(&readings, &body.part)
             .into_iter()
             .chain(misjudged(case, row, &readings, &body.part));
-        broken.extend(found.map(|what| format!("part {} of {}: {what}", row.seq, row.lot)));
+        violations.extend(found.map(|what| format!("part {} of {}: {what}", row.seq, row.lot)));
     }
-    broken
+    violations
 }
 
-/// A value beside its truth.
+/// A measured value and its truth.
 struct Reading {
     key: &'static str,
     value: f64,
@@ -54,12 +54,12 @@ impl Reading {
     }
 }
 
-fn strange(readings: &[Reading], part: &PartTruth) -> Option<String> {
-    // Its resistance is another one at every closure: there is no one truth.
+fn foreign_value(readings: &[Reading], part: &PartTruth) -> Option<String> {
+    // The resistance of an unstable contact differs at every closure: it has no single truth.
     let unstable = part.defect == Some("unstable_contact");
     let far = |it: &&Reading| {
         let defined = !(unstable && it.key.starts_with("contact"));
-        defined && (it.value - it.truth).abs() > SOMEBODY_ELSES * it.expanded
+        defined && (it.value - it.truth).abs() > FOREIGN_K * it.expanded
     };
     let it = readings.iter().find(far)?;
     let (key, value, truth, u) = (it.key, it.value, it.truth, it.expanded);
@@ -72,12 +72,12 @@ fn misjudged(case: &Case, row: &Part, readings: &[Reading], part: &PartTruth) ->
     let limit = |key: &str| case.limits.iter().find(|limit| limit.0 == key);
     let clear = |it: &Reading| {
         limit(it.key).is_none_or(|(_, low, high)| {
-            it.truth - low > CLEARLY * it.expanded && high - it.truth > CLEARLY * it.expanded
+            it.truth - low > CLEAR_K * it.expanded && high - it.truth > CLEAR_K * it.expanded
         })
     };
     let beyond = |it: &&Reading| {
         limit(it.key).is_some_and(|(_, low, high)| {
-            low - it.truth > CLEARLY * it.expanded || it.truth - high > CLEARLY * it.expanded
+            low - it.truth > CLEAR_K * it.expanded || it.truth - high > CLEAR_K * it.expanded
         })
     };
     match (row.verdict.as_str(), part.defect) {
@@ -100,7 +100,7 @@ fn misjudged(case: &Case, row: &Part, readings: &[Reading], part: &PartTruth) ->
     }
 }
 
-/// A part with a defect may be beyond another limit too.
+/// Returns true when a true value lies beyond a limit that belongs to the bin `asked`.
 fn also_beyond(asked: &str, readings: &[Reading], beyond: &dyn Fn(&&Reading) -> bool) -> bool {
     let of_bin = |key: &str| match asked {
         "coil" => key.starts_with("coil"),

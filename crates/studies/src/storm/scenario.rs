@@ -1,21 +1,21 @@
-//! What a seed draws: a rig, faults of world and line, and the lives of the controller.
+//! The scenario of a seed: a rig, faults of world and line, and the lives of the controller.
 //!
-//! Everything that strikes has struck, or has ended, [`CEASES_US`] after the start; what still waits for its part
-//! is called off then. The lives after that are calm.
+//! Every fault has begun and ended [`CEASES_US`] after the start; a fault that still waits for its part is cancelled
+//! then. The lives after that have no faults.
 
-use super::dice::Dice;
+use crate::dice::Dice;
 use machine::rig::wiring::Wiring;
 
-/// Rigs that the seeds share; each is calibrated once.
+/// Number of rigs that the seeds share; the study calibrates each once.
 pub const RIGS: u64 = 8;
-/// The storm has passed, microseconds of rig time.
+/// End of all faults, microseconds of rig time.
 pub const CEASES_US: u64 = 16_000_000;
-/// Door, emergency stop and air are disturbed for so long, microseconds: `fault_hold_ms` of the storm's world.
+/// Duration of a disturbance of door, emergency stop or air, microseconds: `fault_hold_ms` of [`WORLD`].
 pub const DISTURBED_US: u64 = 3_000_000;
-/// What the storm's world has in place of the default: more defects, so that every bin is used.
+/// Keys of the world that differ from the default: more defects, so that parts go to every bin.
 pub const WORLD: &str = "[defects]\nrate_pct = 25.0\n\n[mechanism]\nfault_hold_ms = 3000.0\n";
 
-/// Strike once at a part.
+/// Faults that happen once, at a part.
 const AT_A_PART: [&str; 10] = [
     "jam_pusher",
     "stuck_clamp",
@@ -28,78 +28,78 @@ const AT_A_PART: [&str; 10] = [
     "stuck_lift",
     "stuck_gripper",
 ];
-/// Strike at an instant; while they do nothing may be driven.
+/// Faults of safety inputs, at an instant; the rig must drive no motion during them.
 const SAFETY: [&str; 3] = ["door", "estop", "air"];
-/// Of replies and requests, each with a probability.
+/// Faults of replies and requests, each with a probability.
 const OF_A_REPLY: [&str; 8] = [
     "drop", "deaf", "truncate", "late", "flip", "noise", "garble", "delay",
 ];
 
-/// One life of the controller.
+/// Plan of one life of the controller.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Life {
     /// Parts of its lot.
     pub count: u64,
-    /// A restless operator stands at the screen.
+    /// Whether an operator gives random orders.
     pub attended: bool,
-    /// The program is killed so long after its start, microseconds.
+    /// Time from the start of the program to its kill, microseconds; `None` for a life that ends by itself.
     pub killed_after_us: Option<u64>,
-    /// Nobody starts it before so long after the life before, microseconds.
+    /// Pause after the life before, microseconds.
     pub pause_us: u64,
 }
 
-/// Everything that a seed draws.
+/// Everything that a seed determines.
 #[derive(Debug, Clone)]
-pub struct Weather {
-    /// Draws errors of the modules and stroke times; one of [`RIGS`].
+pub struct Scenario {
+    /// Seed of the rig, from 1 to [`RIGS`]; it determines errors of the modules and stroke times.
     pub rig: u64,
-    /// The first life begins without a calibration: references and golden parts come first.
+    /// Whether the first life begins without a calibration, and measures references and reference parts first.
     pub uncalibrated: bool,
-    /// For the simulated rig.
+    /// Faults of the simulated rig, in the form of `--fault`.
     pub faults: Vec<String>,
-    /// When a safety input is disturbed, microseconds.
+    /// Instants at which a safety input is disturbed, microseconds.
     pub disturbed_us: Vec<u64>,
-    /// A line may be deaf or slow for a while, so that outputs wait for the watchdogs of their modules.
-    pub lines_suffer: bool,
-    /// Lives under the storm.
+    /// Whether a line may be deaf or slow for a while, so that outputs wait for the watchdogs of their modules.
+    pub lines_disturbed: bool,
+    /// Lives while faults happen.
     pub lives: Vec<Life>,
-    /// Of the operator.
-    pub whims: Dice,
+    /// Random numbers of the operator.
+    pub operator_dice: Dice,
 }
 
-impl Weather {
-    /// The weather of a seed; lots have `parts` parts at most.
+impl Scenario {
+    /// Draws the scenario of a seed; lots have at most `parts` parts.
     pub fn of(seed: u64, parts: u64, wiring: &Wiring) -> Self {
         let mut dice = Dice::new(seed);
-        let whims = dice.apart();
+        let operator_dice = dice.apart();
         let uncalibrated = dice.once_in(16);
-        let mut weather = Self {
+        let mut scenario = Self {
             rig: 1 + seed % RIGS,
             uncalibrated,
             faults: vec![format!("parts_seed={}", seed % (1 << 40))],
             disturbed_us: Vec::new(),
-            lines_suffer: false,
+            lines_disturbed: false,
             lives: lives(&mut dice, uncalibrated, parts),
-            whims,
+            operator_dice,
         };
         for _ in 0..dice.below(4) {
-            weather.of_the_world(&mut dice);
+            scenario.add_world_fault(&mut dice);
         }
         if dice.once_in(2) {
-            weather.lines_suffer = true;
+            scenario.lines_disturbed = true;
             for _ in 0..dice.between(1, 4) {
-                let fault = of_a_line(&mut dice, wiring);
-                weather.faults.push(fault);
+                let fault = line_fault(&mut dice, wiring);
+                scenario.faults.push(fault);
             }
         }
-        weather
+        scenario
     }
 
-    fn of_the_world(&mut self, dice: &mut Dice) {
+    fn add_world_fault(&mut self, dice: &mut Dice) {
         if dice.once_in(3) {
             let at_us = dice.between(0, CEASES_US - DISTURBED_US);
             let fault = *dice.one(&SAFETY);
-            // The same input twice would calm down with the first of both.
+            // Two disturbances of one input would both end with the first of them.
             if self.faults.iter().any(|it| it.starts_with(fault)) {
                 return;
             }
@@ -131,8 +131,8 @@ fn lives(dice: &mut Dice, uncalibrated: bool, parts: u64) -> Vec<Life> {
         .collect()
 }
 
-/// A fault of a line or a module with its window.
-fn of_a_line(dice: &mut Dice, wiring: &Wiring) -> String {
+/// Draws a fault of a line or a module with its window.
+fn line_fault(dice: &mut Dice, wiring: &Wiring) -> String {
     let seconds = |us: u64| us as f64 * 1e-6;
     let from = dice.below(CEASES_US - 1_000_000);
     let until = (from + dice.between(50_000, 6_000_000)).min(CEASES_US);

@@ -1,36 +1,34 @@
-//! The chance that a measured part is judged wrongly (JCGM 106:2012, 9.5).
+//! Global risks of a wrong decision about a part (JCGM 106:2012, 9.5).
 //!
-//! The process is normal, the measurement too. With a guard band `w = U` a value is accepted inside the limit by w,
-//! rejected outside by w; in between the part is measured again, and accepted only if the mean of all its readings
-//! lies inside by the U of that mean. What systematic errors there are, both readings share: the first is the mean
-//! plus what averaging has taken away.
+//! Process and measurement are normal. With a guard band `w = U` the rule accepts a value inside the limit by w and
+//! rejects a value outside by w. In between it takes a confirmation measurement, and accepts the part only if the mean of
+//! all readings lies inside the limit by the U of that mean. Both readings share the systematic errors: the first one is
+//! the mean plus the noise that averaging removes.
 
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::ops::RangeInclusive;
 
 /// Steps of the integral over +-8 standard deviations of the process.
 const STEPS: u32 = 40_000;
-/// Steps of the integral over +-6 standard deviations of the second reading.
+/// Steps of the integral over +-6 standard deviations of the mean with the confirmation measurement.
 const AGAIN_STEPS: u32 = 240;
 
 /// A process and a measurement, in the unit of the parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Chance {
+pub struct DecisionRisk {
     /// Mean of the true values.
     pub mean: f64,
-    /// Their standard deviation.
+    /// Standard deviation of the true values.
     pub sd: f64,
     /// Standard uncertainty of one measurement.
     pub u: f64,
-    /// That of the mean once a part near a limit was measured again; none where no part was.
+    /// Standard uncertainty of the mean after a confirmation measurement; `None` when no part had one.
     pub again: Option<f64>,
 }
 
-impl Chance {
-    /// Chances of a false accept and of a false reject, with the limits moved inwards by `guard` times the expanded
-    /// uncertainty (k = 2).
-    ///
-    /// `None` where a spread is not positive.
+impl DecisionRisk {
+    /// Returns the probabilities of a false accept and of a false reject, with the limits moved inwards by `guard` times
+    /// the expanded uncertainty (k = 2); `None` unless both standard deviations are positive.
     pub fn of(&self, limits: &RangeInclusive<f64>, guard: f64) -> Option<(f64, f64)> {
         let process = Normal::new(self.mean, self.sd).ok()?;
         let noise = Normal::new(0.0, self.u).ok()?;
@@ -54,7 +52,7 @@ impl Chance {
         Some((accept, reject))
     }
 
-    /// Chance of a part that its first reading left open and its repetition accepts.
+    /// Returns the probability that the first reading of a part is inconclusive and the confirmation measurement accepts it.
     fn second(&self, limits: &RangeInclusive<f64>, guard: f64, truth: f64) -> f64 {
         let (near, band) = (8.0 * self.u, guard * 2.0 * self.u);
         let far = |limit: &f64| (limit - truth).abs() > near;
@@ -87,7 +85,7 @@ impl Chance {
     }
 }
 
-/// Chance that `about` plus noise lies between two ends.
+/// Returns the probability that `about` plus noise lies from `low` to `high`.
 fn within(noise: &Normal, low: f64, high: f64, about: f64) -> f64 {
     (noise.cdf(high - about) - noise.cdf(low - about)).max(0.0)
 }
@@ -99,7 +97,7 @@ mod tests {
     /// Parts per million.
     const PPM: f64 = 1e6;
 
-    fn ppm(chance: Chance, limit: f64, guard: f64) -> (f64, f64) {
+    fn ppm(chance: DecisionRisk, limit: f64, guard: f64) -> (f64, f64) {
         let (accept, reject) = chance
             .of(&(f64::NEG_INFINITY..=limit), guard)
             .expect("a process with a spread");
@@ -107,8 +105,8 @@ mod tests {
     }
 
     #[test]
-    fn a_pickup_process_of_7_88_v_has_the_risks_of_the_tables() {
-        let of = |u| Chance {
+    fn a_pickup_process_has_the_risks_of_the_tables() {
+        let of = |u| DecisionRisk {
             mean: 7.88,
             sd: 0.30,
             u,
@@ -127,8 +125,8 @@ mod tests {
     }
 
     #[test]
-    fn without_a_spread_there_is_no_chance() {
-        let none = Chance {
+    fn a_process_without_a_spread_has_no_risk() {
+        let none = DecisionRisk {
             mean: 1.0,
             sd: 0.0,
             u: 0.1,
@@ -138,14 +136,14 @@ mod tests {
     }
 
     #[test]
-    fn a_second_look_takes_back_rejects_and_lets_few_accepts_in() {
-        let once = Chance {
+    fn a_confirmation_measurement_lowers_false_rejects() {
+        let once = DecisionRisk {
             mean: 8.74,
             sd: 0.26,
             u: 0.008,
             again: None,
         };
-        let of = |again: Option<f64>| ppm(Chance { again, ..once }, 9.0, 1.0);
+        let of = |again: Option<f64>| ppm(DecisionRisk { again, ..once }, 9.0, 1.0);
         let (accept, reject) = of(None);
         let (accept_again, reject_again) = of(Some(0.006));
         assert!(reject_again < 0.85 * reject, "{reject_again} {reject}");

@@ -1,0 +1,136 @@
+//! The lots that a study runs: each in a process of this very program, with a history that goes with the process.
+
+use super::lot::{Admitted, Lot};
+use super::pool::{self, LOTS_AT_ONCE};
+use anyhow::{Context, ensure};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::Instant;
+use tempfile::TempDir;
+
+/// Exit status of a lot that an alarm ended; its rows count like those of any other.
+const RIG_TROUBLE: i32 = 3;
+
+/// Lots to run.
+#[derive(Debug, Clone)]
+pub struct Order {
+    /// Path of this program, which the study starts for every lot.
+    pub program: PathBuf,
+    /// Directory of the configuration.
+    pub config: PathBuf,
+    /// Recipe of every lot.
+    pub recipe: String,
+    /// Range that the recipe admits, by parameter.
+    pub admitted: Admitted,
+    /// World of the simulated rig; `None` uses the one of the configuration.
+    pub world: Option<PathBuf>,
+    /// Faults of the simulated rig, in the form of `--fault`.
+    pub faults: Vec<String>,
+    /// Number of lots.
+    pub lots: u64,
+    /// First seed; only the storm reads it.
+    pub from: u64,
+    /// The only seed to run; only the storm reads it.
+    pub seed: Option<u64>,
+    /// Parts of each lot.
+    pub parts: u64,
+}
+
+impl Order {
+    /// Describes the lots for the head of a report.
+    pub fn about(&self) -> String {
+        let world = self
+            .world
+            .as_ref()
+            .map_or_else(|| "the default world".into(), |it| it.display().to_string());
+        format!(
+            "{} x {} parts of {} in {world}",
+            self.lots, self.parts, self.recipe
+        )
+    }
+
+    /// Runs a lot for each seed, `at_once` processes at a time; the lots keep the order of the seeds.
+    ///
+    /// # Errors
+    /// The first lot that did not start, ended with bad input or wrote unreadable rows.
+    pub fn run(&self, seeds: &[u64], at_once: usize) -> anyhow::Result<Vec<Lot>> {
+        let named = |seed: &u64| format!("the lot with seed {seed}");
+        pool::map(seeds, at_once, |seed| {
+            self.lot(*seed).with_context(|| named(seed))
+        })
+    }
+
+    /// Runs the lots with seeds 1 to `lots`.
+    ///
+    /// # Errors
+    /// As [`Order::run`].
+    pub fn run_all(&self) -> anyhow::Result<Vec<Lot>> {
+        let seeds: Vec<u64> = (1..=self.lots).collect();
+        self.run(&seeds, LOTS_AT_ONCE)
+    }
+
+    fn lot(&self, seed: u64) -> anyhow::Result<Lot> {
+        let folder = TempDir::new()?;
+        let truth = folder.path().join("truth.jsonl");
+        let mut command =
+            self.lot_command("study", &folder.path().join("history.db"), self.parts, seed);
+        let began = Instant::now();
+        let output = finished(command.arg("--truth").arg(&truth), &[0, RIG_TROUBLE])?;
+        let wall_s = began.elapsed().as_secs_f64();
+        let rows = String::from_utf8_lossy(&output.stdout);
+        let mut lot = Lot::read(seed, &rows, &std::fs::read_to_string(&truth)?)?;
+        lot.mark_out_of_limits(&self.admitted);
+        Ok(Lot {
+            errors_logged: String::from_utf8_lossy(&output.stderr).lines().count() as u64,
+            wall_s,
+            ..lot
+        })
+    }
+
+    /// Returns the command `run` for one lot in virtual time, with its rows as JSON.
+    pub fn lot_command(&self, lot: &str, db: &Path, parts: u64, seed: u64) -> Command {
+        let mut command = self.rig_command("run", db, seed);
+        command.args(["--pace", "virtual", "--lot", lot]);
+        command.args(["--count", &parts.to_string()]);
+        command
+    }
+
+    /// Returns the command `action` on the simulated rig, with recipe, world and faults of the order and answers as
+    /// JSON; errors alone are logged.
+    pub fn rig_command(&self, action: &str, db: &Path, seed: u64) -> Command {
+        let mut command = self.command(db, "error");
+        command.args([action, "--sim", "--json", "--recipe", &self.recipe]);
+        command.args(["--seed", &seed.to_string()]);
+        if let Some(world) = &self.world {
+            command.arg("--world").arg(world);
+        }
+        for fault in &self.faults {
+            command.args(["--fault", fault]);
+        }
+        command
+    }
+
+    /// Returns this program with configuration, history and log level; the caller adds the action.
+    pub fn command(&self, db: &Path, log: &str) -> Command {
+        let mut command = Command::new(&self.program);
+        command.arg("--config").arg(&self.config);
+        command.arg("--db").arg(db).args(["--log", log]);
+        command.stdin(Stdio::null());
+        command
+    }
+}
+
+/// Runs a command to its end and returns its output.
+///
+/// # Errors
+/// The command does not start, or ends with a status that is not in `accepted`; the error carries its stderr.
+pub fn finished(command: &mut Command, accepted: &[i32]) -> anyhow::Result<Output> {
+    let output = command.output()?;
+    let status = output.status;
+    ensure!(
+        status.code().is_some_and(|code| accepted.contains(&code)),
+        "{status}, {}",
+        String::from_utf8_lossy(&output.stderr).trim()
+    );
+    Ok(output)
+}
