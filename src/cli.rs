@@ -10,6 +10,7 @@ pub mod config;
 pub mod demo;
 pub mod history;
 pub mod lot;
+mod output;
 pub mod rig;
 pub mod run;
 pub mod serve;

@@ -2,6 +2,7 @@
 //!
 //! While a controller runs its own screen is the place (`POST /api/orders`): it would not hear of what is done here.
 
+use super::output::Output;
 use anyhow::{bail, ensure};
 use app::exit::Exit;
 use history::{
@@ -9,7 +10,6 @@ use history::{
 };
 use machine::station::orders::shelf_minutes;
 use serde_json::json;
-use std::io::Write;
 use std::path::Path;
 
 /// What is asked of the alarms.
@@ -133,20 +133,12 @@ pub fn run(db: &Path, args: &AlarmArgs) -> anyhow::Result<Exit> {
 }
 
 fn list(left: &[UnacknowledgedAlarm], as_json: bool) -> anyhow::Result<()> {
-    let mut out = std::io::stdout().lock();
-    for it in left {
-        let shelved = it.shelved_until_us.map(|us| Moment(us).to_string());
-        if as_json {
-            let it = json!({"code": it.code, "count": it.count, "text": it.text, "shelved_until": shelved});
-            writeln!(out, "{it}")?;
-            continue;
-        }
-        let shelved = shelved.map_or_else(String::new, |until| format!(", shelved until {until}"));
-        writeln!(
-            out,
-            "{} ({} times{shelved}): {}",
-            it.code, it.count, it.text
-        )?;
-    }
-    Ok(())
+    let shelved = |it: &UnacknowledgedAlarm| it.shelved_until_us.map(|us| Moment(us).to_string());
+    let object = |it: &UnacknowledgedAlarm| json!({"code": it.code, "count": it.count, "text": it.text, "shelved_until": shelved(it)});
+    let row = |it: &UnacknowledgedAlarm| {
+        let shelved =
+            shelved(it).map_or_else(String::new, |until| format!(", shelved until {until}"));
+        format!("{} ({} times{shelved}): {}", it.code, it.count, it.text)
+    };
+    Ok(Output::stdout().lines(as_json, left, object, row)?)
 }

@@ -2,13 +2,14 @@
 //!
 //! Exit status: 0 every move is clear, 1 a move is blocked, 2 bad input (one message, nothing on stdout).
 
+use super::output::input;
 use anyhow::{Context, anyhow, bail};
 use app::exit::Exit;
 use lpm::scene::{Format, MeshFault, MoveOrder, RigNames, Scene, read_moves, read_scene_of_rig};
 use lpm::{Answer, ElementKey, Model, Move, Mover};
 use machine::guard::{Actuator, part_names};
 use serde::Serialize;
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Collision answers for a scene and its moves, without a rig.
@@ -119,12 +120,7 @@ fn load_scene(path: &Path) -> anyhow::Result<Scene> {
 }
 
 fn read_text(path: &Path) -> anyhow::Result<String> {
-    let mut text = String::new();
-    let read = if path == Path::new("-") {
-        std::io::stdin().read_to_string(&mut text).map(|_| text)
-    } else {
-        std::fs::read_to_string(path)
-    };
+    let read = input(path).and_then(std::io::read_to_string);
     read.map_err(|error| anyhow!("{}: not readable: {error}", path.display()))
 }
 

@@ -8,7 +8,6 @@ mod generate;
 mod import;
 mod lots;
 mod orders;
-mod output;
 pub(in crate::cli) mod paper;
 mod prune;
 mod quality;
@@ -21,11 +20,11 @@ mod stats;
 
 pub use quality::{QualityArgs, run_quality};
 
+use super::output::Output;
 use app::exit::Exit;
 use clap::{Args, Subcommand};
 use history::inquiry::InquiryError;
 use history::{Archive, Filter, Identity, Store};
-use output::Output;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `history`.

@@ -55,9 +55,8 @@ pub fn run(db: &Path, args: UserArgs) -> anyhow::Result<Exit> {
     let mut register = Register::open(&access_path(db))?;
     match args.action {
         Action::List => {
-            let mut out = std::io::stdout().lock();
             for person in register.people()? {
-                writeln!(out, "{:<12}{}", person.role, person.name)?;
+                writeln!(std::io::stdout(), "{:<12}{}", person.role, person.name)?;
             }
         }
         Action::Add { name, role, stdin } => {

@@ -1,10 +1,10 @@
 //! `relayrig wear`: how often probes and jaws were used since they were replaced.
 
+use super::output::Output;
 use anyhow::ensure;
 use app::exit::Exit;
-use history::{Identity, Store};
+use history::{Identity, Store, Wear};
 use serde_json::json;
-use std::io::Write;
 use std::path::Path;
 
 /// What is asked of the counters.
@@ -68,17 +68,12 @@ pub fn run(db: &Path, args: &WearArgs) -> anyhow::Result<Exit> {
 }
 
 fn list(store: &Store, sim: bool, as_json: bool) -> anyhow::Result<()> {
-    let mut out = std::io::stdout().lock();
-    for it in store.wear(sim)? {
-        if as_json {
-            writeln!(out, "{}", json!(it))?;
-            continue;
-        }
-        let replaced = match (it.replaced, it.replaced_by) {
+    let row = |it: &Wear| {
+        let replaced = match (&it.replaced, &it.replaced_by) {
             (Some(at), Some(by)) => format!("replaced {at} by {by}"),
             (_, _) => "never replaced".to_owned(),
         };
-        writeln!(out, "{:<16}{:>10}  {replaced}", it.name, it.count)?;
-    }
-    Ok(())
+        format!("{:<16}{:>10}  {replaced}", it.name, it.count)
+    };
+    Ok(Output::stdout().lines(as_json, &store.wear(sim)?, |it| json!(it), row)?)
 }

@@ -2,6 +2,7 @@
 //! the trace of an alarm.
 
 use super::{PortArgs, print};
+use crate::cli::output::input;
 use anyhow::{Context, bail};
 use app::exit::Exit;
 use app::follower::{self, News, What};
@@ -60,13 +61,9 @@ pub(super) enum Level {
 
 pub(super) async fn run(args: &MonitorArgs) -> anyhow::Result<Exit> {
     if let Some(path) = &args.trace {
-        let text = if path.as_os_str() == "-" {
-            std::io::read_to_string(std::io::stdin()).context("reading stdin")?
-        } else {
-            std::fs::read_to_string(path).with_context(|| format!("--trace {}", path.display()))?
-        };
-        let recorded =
-            Recorded::parse(&text).with_context(|| format!("--trace {}", path.display()))?;
+        let named = || format!("--trace {}", path.display());
+        let text = input(path).and_then(std::io::read_to_string);
+        let recorded = Recorded::parse(&text.with_context(named)?).with_context(named)?;
         let mut teller = Teller::new(args.level, recorded.checksum);
         for entry in &recorded.entries {
             print(&teller.tell(entry))?;

@@ -3,6 +3,7 @@
 
 mod sheet;
 
+use crate::cli::output::input;
 use anyhow::Context;
 use app::exit::Exit;
 use clap::Args;
@@ -10,7 +11,7 @@ use history::{
     Archive, Filter, Identity, ImportRow, LOT_NAME, LotRecord, PartRecord, Store, csv, is_lot_name,
     parse_records, snapshot_hash,
 };
-use std::io::{self, Read};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -45,7 +46,10 @@ pub(super) fn run(db: &Path, args: &ImportArgs) -> anyhow::Result<Exit> {
         args.lot
     );
     let name = args.file.display();
-    let bytes = read(&args.file).with_context(|| format!("reading {name}"))?;
+    let mut bytes = Vec::new();
+    input(&args.file)
+        .and_then(|mut file| file.read_to_end(&mut bytes))
+        .with_context(|| format!("reading {name}"))?;
     let records = if sheet::is_named_so(&args.file) {
         let zone = jiff::tz::TimeZone::system();
         sheet::records(&args.file, args.sheet.as_deref(), &zone)
@@ -87,15 +91,6 @@ fn numbered(rows: Vec<ImportRow>, lot: &str, now_us: i64) -> Vec<PartRecord> {
         }
     };
     (1..).zip(rows).map(part).collect()
-}
-
-fn read(file: &Path) -> io::Result<Vec<u8>> {
-    if file.as_os_str() != "-" {
-        return std::fs::read(file);
-    }
-    let mut bytes = Vec::new();
-    io::stdin().read_to_end(&mut bytes)?;
-    Ok(bytes)
 }
 
 fn text(bytes: &[u8]) -> anyhow::Result<&str> {

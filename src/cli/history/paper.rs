@@ -1,6 +1,6 @@
 //! Options of everything that is printed: language, file.
 
-use super::output::Output;
+use crate::cli::output::Output;
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use history::inquiry;

@@ -1,11 +1,10 @@
 //! `history prune`: old runs that were copied whole lose their parts here; without `--yes` it only says which.
 
-use super::output::{Output, Table};
+use crate::cli::output::{Column, Output};
 use app::exit::Exit;
 use app::progress::{PIECES, progress};
 use clap::Args;
 use history::{Identity, Pruned, Store};
-use std::io::Write;
 use std::path::Path;
 
 #[derive(Debug, Args)]
@@ -26,27 +25,13 @@ pub(super) fn run(db: &Path, args: &PruneArgs) -> anyhow::Result<Exit> {
     let now_us = jiff::Timestamp::now().as_microsecond();
     let before = now_us - DAY_US * i64::from(args.older_than_days);
     let runs = store.prunable(before)?;
-    let mut out = Output::stdout();
-    let mut table = Table::new(&["lot", "run", "parts", "copy"]);
-    for Pruned {
-        lot,
-        run,
-        parts,
-        file,
-    } in &runs
-    {
-        table.row(
-            &mut out,
-            vec![
-                lot.clone(),
-                run.to_string(),
-                parts.to_string(),
-                file.clone(),
-            ],
-        )?;
-    }
-    table.finish(&mut out)?;
-    out.flush()?;
+    let columns: [Column<Pruned>; 4] = [
+        ("lot", |it| it.lot.clone()),
+        ("run", |it| it.run.to_string()),
+        ("parts", |it| it.parts.to_string()),
+        ("copy", |it| it.file.clone()),
+    ];
+    Output::stdout().table(&runs, &columns)?;
     if !args.yes {
         eprintln!(
             "{} runs could go; nothing was deleted (say --yes)",

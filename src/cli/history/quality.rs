@@ -1,14 +1,14 @@
 //! `quality`: figures from a file of readings, no history needed.
 
-use super::output::{Output, Table, figure};
+use crate::cli::output::{Column, Output, figure, input};
 use anyhow::Context;
 use app::exit::Exit;
 use clap::{Args, Subcommand};
 use history::csv;
 use quality::average_range::average_and_range;
 use quality::gauge_rr::{GaugeRr, Reading, anova};
-use std::io::{Read, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, Write};
+use std::path::PathBuf;
 
 /// Arguments of `quality`.
 #[derive(Debug, Args)]
@@ -38,7 +38,8 @@ pub fn run_quality(args: QualityArgs) -> anyhow::Result<Exit> {
 fn dispatch(command: &Command) -> anyhow::Result<Exit> {
     let Command::Grr { file, json } = command;
     let name = file.display().to_string();
-    let text = read(file).with_context(|| format!("reading {name}"))?;
+    let text = input(file).and_then(io::read_to_string);
+    let text = text.with_context(|| format!("reading {name}"))?;
     let readings = readings(&text).with_context(|| name.clone())?;
     let result = anova(&readings).context(name)?;
     let mut out = Output::stdout();
@@ -54,16 +55,6 @@ fn dispatch(command: &Command) -> anyhow::Result<Exit> {
     }
     out.flush()?;
     Ok(Exit::Done)
-}
-
-fn read(file: &Path) -> std::io::Result<String> {
-    let mut text = String::new();
-    if file.as_os_str() == "-" {
-        std::io::stdin().read_to_string(&mut text)?;
-    } else {
-        text = std::fs::read_to_string(file)?;
-    }
-    Ok(text)
 }
 
 fn readings(text: &str) -> anyhow::Result<Vec<Reading>> {
@@ -105,7 +96,7 @@ fn readings(text: &str) -> anyhow::Result<Vec<Reading>> {
 }
 
 fn table(it: &GaugeRr, out: &mut Output) -> anyhow::Result<()> {
-    let mut table = Table::new(&[it.method, "sd", "percent of total"]);
+    let share = |sd: f64| (it.total > 0.0).then(|| format!("{:.2}", 100.0 * sd / it.total));
     let sources = [
         ("repeatability", it.repeatability),
         ("reproducibility", it.reproducibility),
@@ -113,19 +104,14 @@ fn table(it: &GaugeRr, out: &mut Output) -> anyhow::Result<()> {
         ("gauge r&r", it.grr),
         ("part", it.part),
         ("total", it.total),
+    ]
+    .map(|(source, sd)| (source, sd, share(sd).unwrap_or_default()));
+    let columns: [Column<(&str, f64, String)>; 3] = [
+        (it.method, |it| it.0.to_owned()),
+        ("sd", |it| figure(Some(it.1))),
+        ("percent of total", |it| it.2.clone()),
     ];
-    for (source, sd) in sources {
-        let percent = (it.total > 0.0).then(|| format!("{:.2}", 100.0 * sd / it.total));
-        table.row(
-            out,
-            vec![
-                source.to_owned(),
-                figure(Some(sd)),
-                percent.unwrap_or_default(),
-            ],
-        )?;
-    }
-    table.finish(out)?;
+    out.table(&sources, &columns)?;
     let ndc = it.ndc.map_or("unlimited".to_owned(), |ndc| ndc.to_string());
     Ok(writeln!(out, "distinct categories: {ndc}")?)
 }

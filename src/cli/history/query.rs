@@ -1,7 +1,7 @@
 //! `history query`: parts that a filter leaves, one at a time from file to stdout.
 
 use super::filter::{PartArgs, RangeArgs};
-use super::output::{Format, FormatArgs, Output, Table, figure, text};
+use crate::cli::output::{Format, FormatArgs, Output, Table, figure, text};
 use clap::Args;
 use history::inquiry::{checks, export};
 use history::{Archive, Filter};
@@ -56,11 +56,10 @@ fn write_table(
             .map(String::as_str)
             .collect(),
     };
-    let header: Vec<&str> = ["time", "lot", "run", "seq", "verdict", "bin"]
-        .into_iter()
-        .chain(shown.clone())
-        .collect();
-    let mut table = Table::new(&[header, vec!["reasons"]].concat());
+    let mut headings = vec!["time", "lot", "run", "seq", "verdict", "bin"];
+    headings.extend(&shown);
+    headings.push("reasons");
+    let mut table = Table::new(&headings);
     archive.each(filter, |part| {
         let mut row = vec![
             part.time.to_string(),

@@ -1,6 +1,6 @@
 //! `history rejudge`: what another recipe would have said. The history stays as it is.
 
-use super::output::{Output, Table};
+use crate::cli::output::{Output, Table};
 use clap::Args;
 use config::load_recipe;
 use history::Archive;
