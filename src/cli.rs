@@ -28,6 +28,7 @@ pub mod wear;
 use app::exit::Exit;
 use app::order::Files;
 use clap::{Parser, Subcommand};
+use machine::view::By;
 use std::path::PathBuf;
 
 /// Controller of a JZC-22F relay performance tester with automatic feed and discharge.
@@ -138,6 +139,19 @@ impl Cli {
             Command::Quality(args) => history::run_quality(args),
         }
     }
+}
+
+/// Who gives an order with `--by`; there is no role at the command line.
+fn person(name: &str) -> anyhow::Result<By> {
+    anyhow::ensure!(
+        !name.trim().is_empty(),
+        "--by: found nothing, expected a name"
+    );
+    Ok(By {
+        who: name.to_owned(),
+        role: String::new(),
+        origin: "command line".into(),
+    })
 }
 
 /// A reader that has seen enough and closed the pipe is no error.

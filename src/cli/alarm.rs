@@ -3,12 +3,13 @@
 //! While a controller runs its own screen is the place (`POST /api/orders`): it would not hear of what is done here.
 
 use super::output::Output;
-use anyhow::{bail, ensure};
+use super::person;
+use anyhow::ensure;
+use app::alarm_order;
 use app::exit::Exit;
-use history::{
-    AlarmChange, AlarmChangeRecord, Identity, Moment, OrderRecord, Row, Store, UnacknowledgedAlarm,
-};
+use history::{Identity, Moment, Store, UnacknowledgedAlarm};
 use machine::station::orders::shelf_minutes;
+use machine::view::Order;
 use serde_json::json;
 use std::path::Path;
 
@@ -67,21 +68,18 @@ enum Action {
 /// Runs the command.
 pub fn run(db: &Path, args: &AlarmArgs) -> anyhow::Result<Exit> {
     let mut store = Store::open(db, &Identity::of_this_program())?;
-    let left = store.unacknowledged_alarms(args.sim)?;
-    let now_us = jiff::Timestamp::now().as_microsecond();
-    let (code, by, change, what) = match &args.action {
+    let (order, by) = match &args.action {
         Action::List { json } => {
-            list(&left, *json)?;
+            list(&store.unacknowledged_alarms(args.sim)?, *json)?;
             return Ok(Exit::Done);
         }
         Action::Acknowledge { code, by } => {
-            let change = AlarmChange::Acknowledged { by: by.clone() };
-            (
-                code.as_deref(),
-                by,
-                change,
-                json!({"order": "acknowledge", "alarm": code}),
-            )
+            let order = Order {
+                order: "acknowledge".into(),
+                alarm: code.clone(),
+                ..Order::default()
+            };
+            (order, by)
         }
         Action::Shelve {
             code,
@@ -93,42 +91,17 @@ pub fn run(db: &Path, args: &AlarmArgs) -> anyhow::Result<Exit> {
                 !reason.trim().is_empty(),
                 "--reason: found nothing, expected why it is shelved"
             );
-            let minutes = shelf_minutes(Some(*minutes));
-            let change = AlarmChange::Shelved {
-                until_us: now_us + i64::from(minutes) * 60_000_000,
-                by: by.clone(),
-                reason: reason.clone(),
+            let order = Order {
+                order: "shelve".into(),
+                alarm: Some(code.clone()),
+                minutes: Some(shelf_minutes(Some(*minutes))),
+                reason: Some(reason.clone()),
+                ..Order::default()
             };
-            let what =
-                json!({"order": "shelve", "alarm": code, "minutes": minutes, "reason": reason});
-            (Some(code.as_str()), by, change, what)
+            (order, by)
         }
     };
-    ensure!(
-        !by.trim().is_empty(),
-        "--by: found nothing, expected a name"
-    );
-    if let Some(code) = code.filter(|code| left.iter().all(|it| it.code != *code)) {
-        let known: Vec<&str> = left.iter().map(|it| it.code.as_str()).collect();
-        bail!(
-            "found no alarm {code:?} that nobody has seen, expected one of {}",
-            known.join(", ")
-        );
-    }
-    let order = OrderRecord {
-        at_us: now_us,
-        who: by.clone(),
-        origin: "command line".into(),
-        what: what.to_string(),
-        ..OrderRecord::default()
-    };
-    let changed = AlarmChangeRecord {
-        simulated: args.sim,
-        code: code.map(str::to_owned),
-        at_us: now_us,
-        change,
-    };
-    store.record(&[Row::Order(order), Row::AlarmChange(changed)])?;
+    alarm_order::write(&mut store, args.sim, &order, &person(by)?)?;
     Ok(Exit::Done)
 }
 

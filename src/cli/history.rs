@@ -21,10 +21,11 @@ mod stats;
 pub use quality::{QualityArgs, run_quality};
 
 use super::output::Output;
+use app::copies;
 use app::exit::Exit;
 use clap::{Args, Subcommand};
+use history::Archive;
 use history::inquiry::InquiryError;
-use history::{Archive, Filter, Identity, Store};
 use std::path::{Path, PathBuf};
 
 /// Arguments of `history`.
@@ -133,21 +134,11 @@ fn dispatch(config: &Path, db: &Path, command: Command) -> anyhow::Result<Exit> 
         Command::Rejudge(args) => rejudge::run(config, &Archive::open(db)?, &args)?,
         Command::Export(args) => export::run(db, &args)?,
         Command::Backup { file } => {
-            let bytes = Archive::open(db)?.backup(&file)?;
+            let bytes = copies::backup(db, &file)?;
             eprintln!("{}: {bytes} bytes, checked", file.display());
-            copied(db, &Filter::default(), &file)?;
         }
     }
     Ok(Exit::Done)
-}
-
-/// Notes for the retention that `file` holds these runs whole.
-fn copied(db: &Path, filter: &Filter, file: &Path) -> anyhow::Result<()> {
-    let mut store = Store::open(db, &Identity::of_this_program())?;
-    let file = std::path::absolute(file)?;
-    let now_us = jiff::Timestamp::now().as_microsecond();
-    store.copied(filter, &file.to_string_lossy(), now_us)?;
-    Ok(())
 }
 
 /// Damage is an answer (status 1), not bad input.

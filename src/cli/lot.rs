@@ -2,11 +2,12 @@
 //!
 //! What a person decides here is an order like those of a screen: it stands in the audit of orders with the name.
 
+use super::person;
 use anyhow::{Context, ensure};
 use app::exit::Exit;
 use app::lot_decision;
 use history::{Archive, Decision, Filter};
-use machine::view::{By, Order};
+use machine::view::Order;
 use serde_json::json;
 use std::io::Write;
 use std::path::Path;
@@ -76,10 +77,7 @@ pub fn run(db: &Path, args: &LotArgs) -> anyhow::Result<Exit> {
 }
 
 fn decide(db: &Path, it: &Decided, decision: Decision) -> anyhow::Result<()> {
-    ensure!(
-        !it.by.trim().is_empty(),
-        "--by: found nothing, expected a name"
-    );
+    let by = person(&it.by)?;
     ensure!(
         decision != Decision::Hold || !it.reason.is_empty(),
         "--reason: found nothing, expected why the lot is held"
@@ -90,11 +88,6 @@ fn decide(db: &Path, it: &Decided, decision: Decision) -> anyhow::Result<()> {
         lot: Some(it.lot.clone()),
         reason: Some(it.reason.clone()),
         ..Order::default()
-    };
-    let by = By {
-        who: it.by.clone(),
-        role: String::new(),
-        origin: "command line".into(),
     };
     Ok(lot_decision::write(db, &order, &by, decision)?)
 }

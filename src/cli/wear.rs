@@ -1,7 +1,7 @@
 //! `relayrig wear`: how often probes and jaws were used since they were replaced.
 
 use super::output::Output;
-use anyhow::ensure;
+use super::person;
 use app::exit::Exit;
 use history::{Identity, Store, Wear};
 use serde_json::json;
@@ -48,12 +48,9 @@ pub fn run(db: &Path, args: &WearArgs) -> anyhow::Result<Exit> {
     match &args.action {
         Action::List { json } => list(&store, args.sim, *json)?,
         Action::Replaced { name, by } => {
-            ensure!(
-                !by.trim().is_empty(),
-                "--by: found nothing, expected a name"
-            );
+            let by = person(by)?.who;
             let at_us = jiff::Timestamp::now().as_microsecond();
-            if !store.replaced(args.sim, name, by, at_us)? {
+            if !store.replaced(args.sim, name, &by, at_us)? {
                 let known = store.wear(args.sim)?;
                 let known: Vec<&str> = known.iter().map(|it| it.name.as_str()).collect();
                 eprintln!(

@@ -3,10 +3,10 @@
 use crate::cli::output::{Column, Output, figure, input};
 use anyhow::Context;
 use app::exit::Exit;
+use app::gauge_study::read_csv;
 use clap::{Args, Subcommand};
-use history::csv;
 use quality::average_range::average_and_range;
-use quality::gauge_rr::{GaugeRr, Reading, anova};
+use quality::gauge_rr::{GaugeRr, anova};
 use std::io::{self, Write};
 use std::path::PathBuf;
 
@@ -40,7 +40,7 @@ fn dispatch(command: &Command) -> anyhow::Result<Exit> {
     let name = file.display().to_string();
     let text = input(file).and_then(io::read_to_string);
     let text = text.with_context(|| format!("reading {name}"))?;
-    let readings = readings(&text).with_context(|| name.clone())?;
+    let readings = read_csv(&text).with_context(|| name.clone())?;
     let result = anova(&readings).context(name)?;
     let mut out = Output::stdout();
     if *json {
@@ -55,44 +55,6 @@ fn dispatch(command: &Command) -> anyhow::Result<Exit> {
     }
     out.flush()?;
     Ok(Exit::Done)
-}
-
-fn readings(text: &str) -> anyhow::Result<Vec<Reading>> {
-    let records = csv::read(text)?;
-    let (header, rows) = records.split_first().context("line 1: expected a header")?;
-    let column = |name: &str| {
-        header
-            .fields
-            .iter()
-            .position(|field| field.trim().eq_ignore_ascii_case(name))
-            .with_context(|| {
-                format!("line 1: column {name} is missing; expected part, operator, trial, value")
-            })
-    };
-    let [part, operator, trial, value] = [
-        column("part")?,
-        column("operator")?,
-        column("trial")?,
-        column("value")?,
-    ];
-    rows.iter()
-        .map(|row| {
-            let cell = |column: usize| row.fields[column].trim();
-            let number = cell(value).parse().ok().filter(|it: &f64| it.is_finite());
-            Ok(Reading {
-                part: cell(part).to_owned(),
-                operator: cell(operator).to_owned(),
-                trial: cell(trial).to_owned(),
-                value: number.with_context(|| {
-                    format!(
-                        "line {}, column value: found {:?}, expected a finite number",
-                        row.line,
-                        cell(value)
-                    )
-                })?,
-            })
-        })
-        .collect()
 }
 
 fn table(it: &GaugeRr, out: &mut Output) -> anyhow::Result<()> {
