@@ -1,6 +1,6 @@
-//! `relayrig alarm`: alarms that nobody has seen yet, of runs that have ended.
+//! `relayrig alarm`: unacknowledged alarms of runs that have ended.
 //!
-//! While a controller runs its own screen is the place (`POST /api/orders`): it would not hear of what is done here.
+//! A running controller does not read these changes: use its page or `POST /api/orders` instead.
 
 use super::output::Output;
 use super::person;
@@ -13,7 +13,7 @@ use machine::view::Order;
 use serde_json::json;
 use std::path::Path;
 
-/// What is asked of the alarms.
+/// Lists, acknowledges or shelves alarms.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   relayrig alarm list
@@ -30,36 +30,36 @@ pub struct AlarmArgs {
 
 #[derive(Debug, clap::Subcommand)]
 enum Action {
-    /// Alarms that nobody has acknowledged
+    /// List unacknowledged alarms
     #[command(after_help = "Example: relayrig alarm list --sim --json")]
     List {
         /// One JSON object per alarm
         #[arg(long)]
         json: bool,
     },
-    /// Somebody has seen an alarm, or all of them
+    /// Acknowledge an alarm, or all of them
     #[command(after_help = "Example: relayrig alarm acknowledge door_open --by li")]
     Acknowledge {
-        /// Its code; without it every alarm
+        /// Code of the alarm; without it every alarm
         code: Option<String>,
-        /// Who has seen it
+        /// Person who acknowledges it
         #[arg(long, value_name = "NAME")]
         by: String,
     },
-    /// An alarm is not shown for a while
+    /// Hide an alarm for a while
     #[command(
         after_help = "Example: relayrig alarm shelve bin_full --by li --reason 'sensor is on its way'"
     )]
     Shelve {
-        /// Its code
+        /// Code of the alarm
         code: String,
-        /// How long, 1 to 480
+        /// Minutes, 1 to 480
         #[arg(long, value_name = "N", default_value_t = 30)]
         minutes: u32,
-        /// Who puts it there
+        /// Person who shelves it
         #[arg(long, value_name = "NAME")]
         by: String,
-        /// Why
+        /// Reason
         #[arg(long, value_name = "TEXT")]
         reason: String,
     },
@@ -89,7 +89,7 @@ pub fn run(db: &Path, args: &AlarmArgs) -> anyhow::Result<Exit> {
         } => {
             ensure!(
                 !reason.trim().is_empty(),
-                "--reason: found nothing, expected why it is shelved"
+                "--reason: found nothing, expected the reason"
             );
             let order = Order {
                 order: "shelve".into(),

@@ -1,4 +1,4 @@
-//! `relayrig calibrate`: the factors of a rig from its references and golden parts, or their verification.
+//! `relayrig calibrate`: the factors of a rig from its standards and reference parts, or their verification.
 
 use super::output::Output;
 use super::rig::RigArgs;
@@ -11,7 +11,7 @@ use machine::gauge::factor::Named;
 use serde_json::json;
 use std::io::Write;
 
-/// What to calibrate.
+/// Calibrates a rig or verifies its calibration.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = "Examples:
   relayrig calibrate --sim
@@ -26,7 +26,7 @@ pub struct CalibrateArgs {
     /// Measure again and compare with the stored calibration
     #[arg(long)]
     pub verify: bool,
-    /// Recipe in config/recipes whose coil voltage chooses the golden parts
+    /// Recipe in config/recipes whose coil voltage chooses the reference parts
     #[arg(long, value_name = "NAME", default_value = "jzc-22f-012")]
     pub recipe: String,
     /// One JSON object per factor, then a summary

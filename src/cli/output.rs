@@ -22,7 +22,7 @@ pub(super) enum Format {
     Json,
 }
 
-/// `--format` and its short cut.
+/// `--format` and `--json`.
 #[derive(Debug, Args)]
 pub(super) struct FormatArgs {
     /// Form of the answer
@@ -81,18 +81,18 @@ impl Output {
     pub fn to(sink: impl Write + 'static) -> Self {
         Self(BufWriter::with_capacity(1 << 16, Box::new(sink)))
     }
-    /// One line, handed on at once.
+    /// Writes one line and flushes.
     pub fn line(&mut self, text: &str) -> io::Result<()> {
         writeln!(self.0, "{text}")?;
         self.0.flush()
     }
-    /// One object and the end of the line.
+    /// Writes one object and the end of the line.
     pub fn json(&mut self, object: &impl Serialize) -> anyhow::Result<()> {
         serde_json::to_writer(&mut self.0, object).map_err(io::Error::from)?;
         Ok(self.0.write_all(b"\n")?)
     }
 
-    /// Writes the rows in this form; JSON shows the whole row, whatever the columns are.
+    /// Writes the rows in this form; JSON shows every field of a row, not only the columns.
     pub fn list<T: Serialize>(
         &mut self,
         format: Format,
@@ -195,18 +195,18 @@ impl Table {
     }
 }
 
-/// Every bin with its count.
+/// Returns every bin with its count.
 pub(super) fn bins(counts: &BTreeMap<impl Display, u64>) -> String {
     let bins = counts.iter().map(|(bin, n)| format!("{bin} {n}"));
     bins.collect::<Vec<_>>().join(", ")
 }
 
-/// Empty for nothing.
+/// Returns a text, empty for `None`.
 pub(super) fn text(value: Option<impl ToString>) -> String {
     value.map(|it| it.to_string()).unwrap_or_default()
 }
 
-/// Six significant digits, without trailing zeros; empty for nothing.
+/// Returns six significant digits without trailing zeros; empty for `None`.
 pub(super) fn figure(value: Option<f64>) -> String {
     let Some(value) = value else {
         return String::new();
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_stand_under_each_other_in_chinese_too() {
+    fn columns_align_with_chinese_text() {
         let mut table = Table::new(&["lot", "n"]);
         let mut out = Vec::new();
         table

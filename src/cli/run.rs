@@ -22,7 +22,7 @@ use std::path::PathBuf;
   relayrig run --sim --study grr --lot G --recipe jzc-22f-012
   relayrig run --lot A --recipe jzc-22f-012 --line measure=/dev/ttyUSB0 --line motion=/dev/ttyUSB1")]
 pub struct RunArgs {
-    /// The rig it runs on.
+    /// The rig.
     #[command(flatten)]
     pub rig: RigArgs,
     /// Lot the parts belong to
@@ -40,10 +40,10 @@ pub struct RunArgs {
     /// One JSON object per part, then a summary
     #[arg(long)]
     pub json: bool,
-    /// Test parts of the lot again, to which NAME has agreed; the first results stay
+    /// Test parts of the lot a second time with the consent of NAME; the first results stay
     #[arg(long, value_name = "NAME")]
     pub retest: Option<String>,
-    /// Instead of one lot: ten parts (or --count) three times over three rigs, and what the gauge adds
+    /// Instead of one lot, ten parts (or --count) three times on three rigs, for the share of the gauge
     #[arg(long, value_enum, value_name = "NAME", requires = "sim")]
     pub study: Option<StudyArg>,
 }
@@ -67,7 +67,7 @@ pub fn run(files: &Files, args: &RunArgs) -> anyhow::Result<Exit> {
     if let Some(StudyArg::Grr) = args.study {
         let study = gauge_study::run(files, &source, &order, &mut Terminal::quiet())?;
         return match study {
-            Ok(figures) => tell(&figures, args.json).map(|()| Exit::Done),
+            Ok(figures) => print_study(&figures, args.json).map(|()| Exit::Done),
             Err(exit) => Ok(exit),
         };
     }
@@ -100,7 +100,7 @@ fn percent(it: Option<f64>) -> String {
     it.map_or("-".to_owned(), |it| format!("{it:.2}"))
 }
 
-fn tell(figures: &[Figure], as_json: bool) -> anyhow::Result<()> {
+fn print_study(figures: &[Figure], as_json: bool) -> anyhow::Result<()> {
     let object = |it: &Figure| {
         let key = it.characteristic.key();
         match &it.anova {

@@ -1,4 +1,4 @@
-//! Results and bins at the end of a run, for a person.
+//! The table at the end of a run: statistics of each parameter, verdicts, bins.
 
 use super::output::{Fixed, bins, cells, headings};
 use app::lot::Summary;
@@ -28,7 +28,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Takes in one part of this kind.
+    /// Adds the usable values of one part.
     pub fn add(&mut self, kind: Kind, judged: &Judged) {
         for characteristic in kind.characteristics() {
             if let Some(reading) = judged.record.usable(characteristic) {
@@ -38,7 +38,7 @@ impl Table {
         }
     }
 
-    /// The table.
+    /// Returns the table.
     pub fn text(&self, summary: &Summary) -> String {
         let mut text = headings(&COLUMNS) + "\n";
         for (characteristic, values) in &self.values {

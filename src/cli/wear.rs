@@ -1,4 +1,4 @@
-//! `relayrig wear`: how often probes and jaws were used since they were replaced.
+//! `relayrig wear`: uses of probes and jaws since their last replacement.
 
 use super::output::Output;
 use super::person;
@@ -7,13 +7,13 @@ use history::{Identity, Store, Wear};
 use serde_json::json;
 use std::path::Path;
 
-/// What is asked of the counters.
+/// Lists or resets the counters.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   relayrig wear list
   relayrig wear replaced probe_touches --by li
 
-Limits are [wear] of lot.toml; at a limit the line goes on and says so.")]
+Limits are [wear] of lot.toml; at a limit the line goes on and warns.")]
 pub struct WearArgs {
     /// Counters of the simulated rig
     #[arg(long, global = true)]
@@ -24,19 +24,19 @@ pub struct WearArgs {
 
 #[derive(Debug, clap::Subcommand)]
 enum Action {
-    /// Every counter
+    /// List every counter
     #[command(after_help = "Example: relayrig wear list --json")]
     List {
         /// One JSON object per counter
         #[arg(long)]
         json: bool,
     },
-    /// What wears was replaced: its counter begins anew
+    /// Reset the counter of a replaced part
     #[command(after_help = "Example: relayrig wear replaced probe_touches --by li")]
     Replaced {
         /// Name of the counter
         name: String,
-        /// Who replaced it
+        /// Person who replaced it
         #[arg(long, value_name = "NAME")]
         by: String,
     },

@@ -17,7 +17,7 @@ pub fn write(store: &mut Store, simulated: bool, order: &Order, by: &By) -> anyh
     if let Some(code) = code.filter(|code| left.iter().all(|it| it.code != **code)) {
         let known: Vec<&str> = left.iter().map(|it| it.code.as_str()).collect();
         bail!(
-            "found no alarm {code:?} that nobody has seen, expected one of {}",
+            "found no unacknowledged alarm {code:?}, expected one of {}",
             known.join(", ")
         );
     }

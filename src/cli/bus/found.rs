@@ -1,11 +1,11 @@
-//! What a scan has found, as a table or as objects.
+//! Modules that a scan has found, as a table or as JSON.
 
 use crate::cli::output::{Fixed, cells, headings};
 use bus::{LineLog, ModuleHealth};
 use dcon::{Address, Config};
 use serde_json::json;
 
-/// A module that has answered.
+/// A module that answered.
 pub(super) struct Found {
     pub(super) asked: Address,
     pub(super) stored: Address,
@@ -30,14 +30,14 @@ impl Found {
     }
 }
 
-/// A row or an object per module.
-pub(super) fn told(found: &[Found], as_json: bool) -> String {
+/// Returns a row or an object per module.
+pub(super) fn listing(found: &[Found], as_json: bool) -> String {
     let rows = found.iter().map(|module| match as_json {
         true => object(module),
         false => cells(module, &COLUMNS),
     });
     let head = match (found.is_empty(), as_json) {
-        (true, false) => Some("nobody answered".to_owned()),
+        (true, false) => Some("no module answered".to_owned()),
         (false, false) => Some(headings(&COLUMNS)),
         (_, true) => None,
     };
@@ -81,13 +81,13 @@ fn latency(module: &Found, share: f64) -> String {
     format!("{:.2}", ms(&module.counts(), share).unwrap_or(0.0))
 }
 
-/// Latency that this share of the answers did not exceed.
+/// Returns the latency that this share of the replies did not exceed, milliseconds.
 fn ms(counts: &ModuleHealth, share: f64) -> Option<f64> {
     let span = counts.latency.percentile(share)?;
     Some(span.as_seconds() * 1e3)
 }
 
-/// What differs between how the module was found and what it has stored.
+/// Names the settings that differ between the scan and the memory of the module.
 fn remarks(module: &Found) -> Vec<String> {
     let mut remarks = Vec::new();
     if module.stored != module.asked {

@@ -1,7 +1,7 @@
-//! `history export`: CSV that spreadsheets open right, Chinese included, or a spreadsheet with charts.
+//! `history export`: CSV that spreadsheets open as UTF-8, or a spreadsheet with charts.
 
 use super::filter::{PartArgs, RangeArgs};
-use super::paper::{Tongue, sink};
+use super::paper::{LangArg, sink};
 use anyhow::Context;
 use app::copies;
 use app::progress::{PIECES, progress};
@@ -31,9 +31,9 @@ pub(super) struct ExportArgs {
     /// Form of the file; when absent, from the end of its name
     #[arg(long, value_enum)]
     format: Option<Kind>,
-    /// Lang of the spreadsheet's summary
+    /// Language of the spreadsheet's summary
     #[arg(long, value_enum, default_value = "zh")]
-    lang: Tongue,
+    lang: LangArg,
 }
 
 pub(super) fn run(db: &Path, args: &ExportArgs) -> anyhow::Result<()> {
@@ -41,11 +41,15 @@ pub(super) fn run(db: &Path, args: &ExportArgs) -> anyhow::Result<()> {
     let filter = args.parts.within(&args.range)?;
     checks::known_runs(archive, &filter)?;
     let parameters = checks::parameters(archive, filter.param.as_deref())?;
-    let named_so = args
+    let is_spreadsheet = args
         .file
         .extension()
         .is_some_and(|it| it.eq_ignore_ascii_case("xlsx"));
-    let by_name = if named_so { Kind::Xlsx } else { Kind::Csv };
+    let by_name = if is_spreadsheet {
+        Kind::Xlsx
+    } else {
+        Kind::Csv
+    };
     let written = match args.format.unwrap_or(by_name) {
         Kind::Csv => {
             let mut out = sink(&args.file)?;

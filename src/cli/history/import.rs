@@ -16,7 +16,7 @@ pub(super) struct ImportArgs {
     /// Lot to put the parts into
     #[arg(long)]
     lot: String,
-    /// A column of the file and the key it stands for; may be given several times
+    /// Parameter key of a column of the file; may be given several times
     #[arg(long = "map", value_name = "COLUMN=KEY", value_parser = pair)]
     maps: Vec<(String, String)>,
     /// Sheet of the spreadsheet; the first when absent
@@ -24,13 +24,13 @@ pub(super) struct ImportArgs {
     sheet: Option<String>,
 }
 
-/// No column with a key.
+/// The text is no column with its key.
 #[derive(Debug, thiserror::Error)]
 #[error("expected COLUMN=KEY")]
-struct NoPair;
+struct PairError;
 
-fn pair(text: &str) -> Result<(String, String), NoPair> {
-    let parts = text.split_once('=').ok_or(NoPair)?;
+fn pair(text: &str) -> Result<(String, String), PairError> {
+    let parts = text.split_once('=').ok_or(PairError)?;
     Ok((parts.0.trim().to_owned(), parts.1.trim().to_owned()))
 }
 

@@ -36,7 +36,7 @@ pub(super) const COLUMNS: [Column<LotSummary>; 16] = [
 
 pub(super) fn run(archive: &Archive, args: &ListArgs) -> anyhow::Result<()> {
     let filter = args.runs.filter();
-    super::query::remark_unknown(archive, &filter);
+    super::query::warn_unknown(archive, &filter);
     let lots = archive.lots(&filter)?;
     Output::stdout().list(args.format.format(), &lots, &COLUMNS)
 }

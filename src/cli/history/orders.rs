@@ -1,4 +1,4 @@
-//! `history orders`: who ordered what, and whether it was taken.
+//! `history orders`: orders with person, place and answer.
 
 use super::filter::RunArgs;
 use crate::cli::output::{Column, FormatArgs, Output, text};

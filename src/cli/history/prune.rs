@@ -1,4 +1,4 @@
-//! `history prune`: old runs that were copied whole lose their parts here; without `--yes` it only says which.
+//! `history prune`: deletes the parts of old runs that were copied whole; lists them without `--yes`.
 
 use crate::cli::output::{Column, Output};
 use app::exit::Exit;
@@ -9,7 +9,7 @@ use std::path::Path;
 
 #[derive(Debug, Args)]
 pub(super) struct PruneArgs {
-    /// Runs that ended at least so many days ago
+    /// Runs that ended at least N days ago
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=36_500))]
     older_than_days: u32,
     /// Delete them; without it they are only listed

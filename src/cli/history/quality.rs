@@ -30,9 +30,9 @@ enum Command {
     },
 }
 
-/// Runs the command; gives the exit status. An error is bad input: status 2.
+/// Runs the command. An error is bad input: exit status 2.
 pub fn run_quality(args: QualityArgs) -> anyhow::Result<Exit> {
-    super::super::unless_reader_left(dispatch(&args.command))
+    super::super::unless_pipe_closed(dispatch(&args.command))
 }
 
 fn dispatch(command: &Command) -> anyhow::Result<Exit> {
@@ -47,7 +47,7 @@ fn dispatch(command: &Command) -> anyhow::Result<Exit> {
         out.json(&result)?;
     } else {
         table(&result, &mut out)?;
-        // Beyond its published factors there is no second opinion.
+        // The method has no published factors for larger studies.
         if let Ok(by_ranges) = average_and_range(&readings) {
             writeln!(out)?;
             table(&by_ranges, &mut out)?;

@@ -1,4 +1,4 @@
-//! `history show`: a lot with its runs, or a part with everything that was measured on it.
+//! `history show`: a lot with its runs, or a part with its measurements.
 
 use super::{lots, orders};
 use crate::cli::output::{Column, Format, FormatArgs, Output, bins, figure, text};
@@ -17,7 +17,7 @@ pub(super) struct ShowArgs {
     /// Only this run of the lot (1, 2, ...)
     #[arg(long, value_name = "N")]
     run: Option<u32>,
-    /// The golden part of that number
+    /// The reference part of that number
     #[arg(long)]
     golden: bool,
     #[command(flatten)]
@@ -79,7 +79,7 @@ fn one_part(archive: &Archive, args: &ShowArgs, seq: u64, out: &mut Output) -> a
         })
 }
 
-/// For a person; CSV has no form for a part with its replies, so it gets this page too.
+/// Writes a part as text; CSV has no form for a part with its replies, so it gets this text too.
 fn page(part: &Part, out: &mut Output) -> anyhow::Result<()> {
     let Part {
         lot,
@@ -122,10 +122,10 @@ fn page(part: &Part, out: &mut Output) -> anyhow::Result<()> {
     part.curves.iter().try_for_each(|it| curve(it, out))
 }
 
-/// Samples on a line: milliseconds since the first one, and the value.
+/// Samples on a line, each with its time since the first, milliseconds.
 const ON_A_LINE: usize = 6;
 
-/// A sample that gave no number is a dash.
+/// Writes a curve; a dash is a sample without a number.
 fn curve(it: &Curve, out: &mut Output) -> anyhow::Result<()> {
     let Curve {
         signal,

@@ -28,10 +28,10 @@ pub(super) struct SpcArgs {
     #[arg(long, value_name = "N", default_value_t = 1, requires = "param",
         value_parser = clap::value_parser!(u8).range(i64::from(*SUBGROUPS.start())..=i64::from(*SUBGROUPS.end())))]
     subgroup: u8,
-    /// Rules of runs
+    /// Run rules
     #[arg(long, value_enum, default_value = "nelson")]
     rules: RuleSet,
-    /// How many of the last points are drawn; limits come from all
+    /// Draw the last N points; limits come from all
     #[arg(long, value_name = "N", default_value_t = 200)]
     last: usize,
     /// One JSON object per chart
@@ -63,10 +63,10 @@ pub(super) fn run(archive: &Archive, args: &SpcArgs) -> anyhow::Result<()> {
             .paper
             .write(&charts::page(&paper, &about, &charts, args.last));
     }
-    told(&charts, args)
+    print(&charts, args)
 }
 
-fn told(charts: &[Charted], args: &SpcArgs) -> anyhow::Result<()> {
+fn print(charts: &[Charted], args: &SpcArgs) -> anyhow::Result<()> {
     let mut out = Output::stdout();
     if args.json {
         charts.iter().try_for_each(|chart| out.json(chart))?;

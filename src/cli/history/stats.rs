@@ -41,7 +41,7 @@ pub(super) fn run(archive: &Archive, args: &StatsArgs) -> anyhow::Result<()> {
     Ok(out.flush()?)
 }
 
-/// Those of the command line, if there are any.
+/// Returns the limits of the command line, if given.
 fn limits(args: &StatsArgs) -> anyhow::Result<Option<Limits>> {
     let (low, high) = (args.low, args.high);
     if low.is_none() && high.is_none() {

@@ -49,7 +49,7 @@ pub fn import(db: &Path, source: &Source, lot: &str) -> anyhow::Result<Imported>
     );
     let now_us = jiff::Timestamp::now().as_microsecond();
     let record = lot_record(lot, snapshot, now_us);
-    only_once(&archive, &record).with_context(name)?;
+    refuse_second_import(&archive, &record).with_context(name)?;
     let rows = parse_records(&records, source.maps, &archive.parameters()?).with_context(name)?;
     let parts = numbered(rows, lot, now_us);
     Ok(Imported {
@@ -59,14 +59,14 @@ pub fn import(db: &Path, source: &Source, lot: &str) -> anyhow::Result<Imported>
 }
 
 fn records(source: &Source) -> anyhow::Result<Vec<csv::Record>> {
-    if sheet::is_named_so(source.file) {
+    if sheet::is_spreadsheet(source.file) {
         let zone = jiff::tz::TimeZone::system();
         return sheet::records(source.file, source.sheet, &zone);
     }
     Ok(csv::read(text(source.bytes)?)?)
 }
 
-/// In order of the file; a row without a time gets that of the import.
+/// Numbers the parts in order of the file; a row without a time gets that of the import.
 fn numbered(rows: Vec<ImportRow>, lot: &str, now_us: i64) -> Vec<PartRecord> {
     let part = |(seq, row): (u64, ImportRow)| {
         let judged_at_us = if row.timed {
@@ -103,7 +103,7 @@ fn lot_record(lot: &str, recipe_snapshot: String, opened_at_us: i64) -> LotRecor
     }
 }
 
-fn only_once(archive: &Archive, lot: &LotRecord) -> anyhow::Result<()> {
+fn refuse_second_import(archive: &Archive, lot: &LotRecord) -> anyhow::Result<()> {
     let filter = Filter {
         lot: Some(lot.lot.clone()),
         ..Filter::default()

@@ -1,8 +1,8 @@
 //! The first (or a named) sheet of a spreadsheet as records: xlsx, xlsm, xlsb, xls, ods.
 //!
 //! Numbers come as the shortest text that reads back the same, dates as RFC 3339 in the zone of this
-//! computer (a spreadsheet has no zone). A row without any content is passed over; the others keep the
-//! number that the spreadsheet shows beside them.
+//! computer (a spreadsheet has no zone). A row without any content is skipped; the others keep
+//! their numbers in the spreadsheet.
 
 use anyhow::Context;
 use calamine::{Data, Reader, open_workbook_auto};
@@ -11,18 +11,18 @@ use jiff::Timestamp;
 use jiff::tz::TimeZone;
 use std::path::Path;
 
-/// Ends of the names that are taken for spreadsheets.
+/// Extensions of spreadsheets.
 const ENDINGS: [&str; 5] = ["xlsx", "xlsm", "xlsb", "xls", "ods"];
 /// Days from the epoch of spreadsheets to 1970.
 const EPOCH_DAYS: f64 = 25_569.0;
 
-/// Whether the file is named as a spreadsheet.
-pub(super) fn is_named_so(file: &Path) -> bool {
+/// Returns true for the name of a spreadsheet.
+pub(super) fn is_spreadsheet(file: &Path) -> bool {
     let ending = file.extension().map(std::ffi::OsStr::to_ascii_lowercase);
     ending.is_some_and(|it| ENDINGS.iter().any(|known| it == *known))
 }
 
-/// Header first, then the rows.
+/// Returns the header and the rows with content.
 pub(super) fn records(
     file: &Path,
     sheet: Option<&str>,
@@ -62,7 +62,7 @@ fn text(cell: &Data, zone: &TimeZone) -> String {
     }
 }
 
-/// Days of a spreadsheet as RFC 3339; none beyond the calendar.
+/// Returns days of a spreadsheet as RFC 3339; `None` beyond the calendar.
 fn instant(days: f64, zone: &TimeZone) -> Option<String> {
     let microseconds = ((days - EPOCH_DAYS) * 86_400e6).round() as i64;
     let civil = Timestamp::from_microsecond(microseconds)

@@ -1,7 +1,7 @@
 //! Facts about spreadsheets of an older system.
 #![allow(clippy::unwrap_used)]
 
-use super::sheet::{is_named_so, records};
+use super::sheet::{is_spreadsheet, records};
 use jiff::tz::TimeZone;
 use rust_xlsxwriter::{ExcelDateTime, Format, Workbook};
 use std::path::Path;
@@ -31,7 +31,7 @@ fn a_sheet_becomes_records_with_the_numbers_of_its_rows() {
 }
 
 #[test]
-fn a_file_is_taken_for_what_its_name_says() {
-    assert!(is_named_so(Path::new("老数据.XLSX")) && is_named_so(Path::new("a.ods")));
-    assert!(!is_named_so(Path::new("a.csv")) && !is_named_so(Path::new("-")));
+fn the_extension_names_a_spreadsheet() {
+    assert!(is_spreadsheet(Path::new("老数据.XLSX")) && is_spreadsheet(Path::new("a.ods")));
+    assert!(!is_spreadsheet(Path::new("a.csv")) && !is_spreadsheet(Path::new("-")));
 }
