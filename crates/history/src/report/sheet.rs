@@ -221,6 +221,3 @@ fn serial(at: Moment, zone: &TimeZone) -> Option<f64> {
     let local = stamp.as_second() + i64::from(zone.to_offset(stamp).seconds());
     Some(local as f64 / 86_400.0 + EPOCH_DAYS)
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,9 +1,9 @@
 //! Facts about spreadsheets, read back by another crate.
 #![allow(clippy::unwrap_used)]
 
-use super::Sheet;
 use crate::Part;
 use crate::report::Lang;
+use crate::report::sheet::Sheet;
 use calamine::{Data, Reader, Xlsx};
 use jiff::tz::TimeZone;
 use std::io::Cursor;
