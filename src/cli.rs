@@ -1,4 +1,4 @@
-//! The commands, a file each: arguments into types of [`app`], answers into text.
+//! The commands, a file each, turn arguments into types of [`app`] and answers into text.
 
 pub mod alarm;
 pub mod bus;
@@ -10,6 +10,7 @@ pub mod config;
 pub mod demo;
 pub mod history;
 pub mod lot;
+mod output;
 pub mod rig;
 pub mod run;
 pub mod serve;
@@ -27,6 +28,7 @@ pub mod wear;
 use app::exit::Exit;
 use app::order::Files;
 use clap::{Parser, Subcommand};
+use machine::view::By;
 use std::path::PathBuf;
 
 /// Controller of a JZC-22F relay performance tester with automatic feed and discharge.
@@ -55,7 +57,7 @@ pub struct Cli {
         value_name = "FILE"
     )]
     pub db: PathBuf,
-    /// What goes to the log on stderr: error, warn, info, debug, or a filter per module
+    /// Level of the log on stderr: error, warn, info, debug, or a filter per module
     #[arg(long, global = true, default_value = "info", value_name = "FILTER")]
     pub log: String,
     /// What to do
@@ -66,22 +68,22 @@ pub struct Cli {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// The main job with nothing to prepare: simulated rig, a lot running, a page on 127.0.0.1:8080
+    /// Simulated rig, a running lot and the page on 127.0.0.1:8080, without preparation
     #[cfg(feature = "sim")]
     Demo(demo::DemoArgs),
-    /// The rig under one program for the whole day: page and API, lots are started there
+    /// Serve the page and the API of a rig; lots start there
     Serve(serve::ServeArgs),
     /// Run a lot, on a rig or on the simulated one
     Run(Box<run::RunArgs>),
-    /// Factors of the rig from its references and golden parts, or their verification
+    /// Factors of the rig from its standards and reference parts, or their verification
     Calibrate(calibrate::CalibrateArgs),
     /// Only the simulated rig, on pseudo-terminals in real time
     #[cfg(feature = "sim")]
     Sim(sim::SimArgs),
-    /// Play a script of troubles and orders on the simulated rig and tell what happened
+    /// Play a script of troubles and orders on the simulated rig and print the events
     #[cfg(feature = "sim")]
     Story(story::StoryArgs),
-    /// Figures that anyone can reprint, each beside its bar
+    /// Reproducible figures, each beside its bar
     Study(study::StudyArgs),
     /// Check the configuration, or print the schema of a file
     #[command(subcommand)]
@@ -92,11 +94,11 @@ pub enum Command {
     Check(check::CheckArgs),
     /// Lots, parts, filters, statistics
     History(history::HistoryArgs),
-    /// Alarms that nobody has seen yet; acknowledge or shelve them
+    /// Unacknowledged alarms; acknowledge or shelve them
     Alarm(alarm::AlarmArgs),
-    /// Where a lot stands; hold, release or close it
+    /// State of a lot; hold, release or close it
     Lot(lot::LotArgs),
-    /// How often probes and jaws were used since they were replaced
+    /// Uses of probes and jaws since their last replacement
     Wear(wear::WearArgs),
     /// People who may log in at the screen
     User(user::UserArgs),
@@ -107,7 +109,7 @@ pub enum Command {
 }
 
 impl Cli {
-    /// Runs the command. An error is bad input, to be told once.
+    /// Runs the command. An error is bad input; the caller prints it once.
     pub fn execute(self) -> anyhow::Result<Exit> {
         let files = Files {
             config: self.config,
@@ -139,8 +141,21 @@ impl Cli {
     }
 }
 
-/// A reader that has seen enough and closed the pipe is no error.
-fn unless_reader_left(done: anyhow::Result<Exit>) -> anyhow::Result<Exit> {
+/// Returns the person of `--by`, without a role. Fails for a blank name.
+fn person(name: &str) -> anyhow::Result<By> {
+    anyhow::ensure!(
+        !name.trim().is_empty(),
+        "--by: found nothing, expected a name"
+    );
+    Ok(By {
+        who: name.to_owned(),
+        role: String::new(),
+        origin: "command line".into(),
+    })
+}
+
+/// Takes a closed pipe for a normal end.
+fn unless_pipe_closed(done: anyhow::Result<Exit>) -> anyhow::Result<Exit> {
     let left = |cause: &(dyn std::error::Error + 'static)| {
         cause
             .downcast_ref::<std::io::Error>()

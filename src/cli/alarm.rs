@@ -1,18 +1,19 @@
-//! `relayrig alarm`: alarms that nobody has seen yet, of runs that have ended.
+//! `relayrig alarm`: unacknowledged alarms of runs that have ended.
 //!
-//! While a controller runs its own screen is the place (`POST /api/orders`): it would not hear of what is done here.
+//! A running controller does not read these changes: use its page or `POST /api/orders` instead.
 
-use anyhow::{bail, ensure};
+use super::output::Output;
+use super::person;
+use anyhow::ensure;
+use app::alarm_order;
 use app::exit::Exit;
-use history::{
-    AlarmChange, AlarmChangeRecord, Identity, Moment, OrderRecord, Row, Store, UnacknowledgedAlarm,
-};
+use history::{Identity, Moment, Store, UnacknowledgedAlarm};
 use machine::station::orders::shelf_minutes;
+use machine::view::Order;
 use serde_json::json;
-use std::io::Write;
 use std::path::Path;
 
-/// What is asked of the alarms.
+/// Lists, acknowledges or shelves alarms.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   relayrig alarm list
@@ -29,36 +30,36 @@ pub struct AlarmArgs {
 
 #[derive(Debug, clap::Subcommand)]
 enum Action {
-    /// Alarms that nobody has acknowledged
+    /// List unacknowledged alarms
     #[command(after_help = "Example: relayrig alarm list --sim --json")]
     List {
         /// One JSON object per alarm
         #[arg(long)]
         json: bool,
     },
-    /// Somebody has seen an alarm, or all of them
+    /// Acknowledge an alarm, or all of them
     #[command(after_help = "Example: relayrig alarm acknowledge door_open --by li")]
     Acknowledge {
-        /// Its code; without it every alarm
+        /// Code of the alarm; without it every alarm
         code: Option<String>,
-        /// Who has seen it
+        /// Person who acknowledges it
         #[arg(long, value_name = "NAME")]
         by: String,
     },
-    /// An alarm is not shown for a while
+    /// Hide an alarm for a while
     #[command(
         after_help = "Example: relayrig alarm shelve bin_full --by li --reason 'sensor is on its way'"
     )]
     Shelve {
-        /// Its code
+        /// Code of the alarm
         code: String,
-        /// How long, 1 to 480
+        /// Minutes, 1 to 480
         #[arg(long, value_name = "N", default_value_t = 30)]
         minutes: u32,
-        /// Who puts it there
+        /// Person who shelves it
         #[arg(long, value_name = "NAME")]
         by: String,
-        /// Why
+        /// Reason
         #[arg(long, value_name = "TEXT")]
         reason: String,
     },
@@ -67,21 +68,18 @@ enum Action {
 /// Runs the command.
 pub fn run(db: &Path, args: &AlarmArgs) -> anyhow::Result<Exit> {
     let mut store = Store::open(db, &Identity::of_this_program())?;
-    let left = store.unacknowledged_alarms(args.sim)?;
-    let now_us = jiff::Timestamp::now().as_microsecond();
-    let (code, by, change, what) = match &args.action {
+    let (order, by) = match &args.action {
         Action::List { json } => {
-            list(&left, *json)?;
+            list(&store.unacknowledged_alarms(args.sim)?, *json)?;
             return Ok(Exit::Done);
         }
         Action::Acknowledge { code, by } => {
-            let change = AlarmChange::Acknowledged { by: by.clone() };
-            (
-                code.as_deref(),
-                by,
-                change,
-                json!({"order": "acknowledge", "alarm": code}),
-            )
+            let order = Order {
+                order: "acknowledge".into(),
+                alarm: code.clone(),
+                ..Order::default()
+            };
+            (order, by)
         }
         Action::Shelve {
             code,
@@ -91,62 +89,29 @@ pub fn run(db: &Path, args: &AlarmArgs) -> anyhow::Result<Exit> {
         } => {
             ensure!(
                 !reason.trim().is_empty(),
-                "--reason: found nothing, expected why it is shelved"
+                "--reason: found nothing, expected the reason"
             );
-            let minutes = shelf_minutes(Some(*minutes));
-            let change = AlarmChange::Shelved {
-                until_us: now_us + i64::from(minutes) * 60_000_000,
-                by: by.clone(),
-                reason: reason.clone(),
+            let order = Order {
+                order: "shelve".into(),
+                alarm: Some(code.clone()),
+                minutes: Some(shelf_minutes(Some(*minutes))),
+                reason: Some(reason.clone()),
+                ..Order::default()
             };
-            let what =
-                json!({"order": "shelve", "alarm": code, "minutes": minutes, "reason": reason});
-            (Some(code.as_str()), by, change, what)
+            (order, by)
         }
     };
-    ensure!(
-        !by.trim().is_empty(),
-        "--by: found nothing, expected a name"
-    );
-    if let Some(code) = code.filter(|code| left.iter().all(|it| it.code != *code)) {
-        let known: Vec<&str> = left.iter().map(|it| it.code.as_str()).collect();
-        bail!(
-            "found no alarm {code:?} that nobody has seen, expected one of {}",
-            known.join(", ")
-        );
-    }
-    let order = OrderRecord {
-        at_us: now_us,
-        who: by.clone(),
-        origin: "command line".into(),
-        what: what.to_string(),
-        ..OrderRecord::default()
-    };
-    let changed = AlarmChangeRecord {
-        simulated: args.sim,
-        code: code.map(str::to_owned),
-        at_us: now_us,
-        change,
-    };
-    store.record(&[Row::Order(order), Row::AlarmChange(changed)])?;
+    alarm_order::write(&mut store, args.sim, &order, &person(by)?)?;
     Ok(Exit::Done)
 }
 
 fn list(left: &[UnacknowledgedAlarm], as_json: bool) -> anyhow::Result<()> {
-    let mut out = std::io::stdout().lock();
-    for it in left {
-        let shelved = it.shelved_until_us.map(|us| Moment(us).to_string());
-        if as_json {
-            let it = json!({"code": it.code, "count": it.count, "text": it.text, "shelved_until": shelved});
-            writeln!(out, "{it}")?;
-            continue;
-        }
-        let shelved = shelved.map_or_else(String::new, |until| format!(", shelved until {until}"));
-        writeln!(
-            out,
-            "{} ({} times{shelved}): {}",
-            it.code, it.count, it.text
-        )?;
-    }
-    Ok(())
+    let shelved = |it: &UnacknowledgedAlarm| it.shelved_until_us.map(|us| Moment(us).to_string());
+    let object = |it: &UnacknowledgedAlarm| json!({"code": it.code, "count": it.count, "text": it.text, "shelved_until": shelved(it)});
+    let row = |it: &UnacknowledgedAlarm| {
+        let shelved =
+            shelved(it).map_or_else(String::new, |until| format!(", shelved until {until}"));
+        format!("{} ({} times{shelved}): {}", it.code, it.count, it.text)
+    };
+    Ok(Output::stdout().lines(as_json, left, object, row)?)
 }

@@ -1,4 +1,4 @@
-//! `relayrig bus`: find modules, send one command, watch a line. No rig file is needed.
+//! `relayrig bus`: finds modules, sends one command, watches a line. It needs no rig file.
 
 mod found;
 mod monitor;
@@ -30,13 +30,13 @@ pub struct BusArgs {
 enum BusCommand {
     /// Find modules: address, baud and checksum, name, firmware, configuration
     Scan(scan::ScanArgs),
-    /// Send one command and put the reply into words
+    /// Send one command and decode the reply
     Send(send::SendArgs),
-    /// Watch a line without talking, or read the trace of an alarm
+    /// Watch a line without sending, or read the trace of an alarm
     Monitor(monitor::MonitorArgs),
 }
 
-/// Where the modules are.
+/// The port of the modules.
 #[derive(Debug, Clone, clap::Args)]
 struct PortArgs {
     /// Serial port, or a link to it
@@ -70,10 +70,10 @@ pub fn run(args: &BusArgs) -> anyhow::Result<Exit> {
             BusCommand::Monitor(args) => monitor::run(args).await,
         }
     });
-    super::unless_reader_left(done)
+    super::unless_pipe_closed(done)
 }
 
-/// Writes whole lines at once.
+/// Writes whole lines and flushes.
 fn print(text: &str) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
     out.write_all(text.as_bytes())

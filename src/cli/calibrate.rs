@@ -1,15 +1,17 @@
-//! `relayrig calibrate`: the factors of a rig from its references and golden parts, or their verification.
+//! `relayrig calibrate`: the factors of a rig from its standards and reference parts, or their verification.
 
+use super::output::Output;
 use super::rig::RigArgs;
 use super::terminal::Terminal;
 use app::calibration::{Calibrated, Compared, K, K_OF_ALL, calibrate, date};
 use app::exit::Exit;
 use app::order::Files;
 use machine::dut::Calibration;
+use machine::gauge::factor::Named;
 use serde_json::json;
 use std::io::Write;
 
-/// What to calibrate.
+/// Calibrates a rig or verifies its calibration.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = "Examples:
   relayrig calibrate --sim
@@ -24,7 +26,7 @@ pub struct CalibrateArgs {
     /// Measure again and compare with the stored calibration
     #[arg(long)]
     pub verify: bool,
-    /// Recipe in config/recipes whose coil voltage chooses the golden parts
+    /// Recipe in config/recipes whose coil voltage chooses the reference parts
     #[arg(long, value_name = "NAME", default_value = "jzc-22f-012")]
     pub recipe: String,
     /// One JSON object per factor, then a summary
@@ -53,58 +55,30 @@ pub fn run(files: &Files, args: &CalibrateArgs) -> anyhow::Result<Exit> {
 }
 
 fn stored(found: &Calibration, as_json: bool) -> anyhow::Result<Exit> {
-    let mut out = std::io::stdout().lock();
-    let facts = found.facts();
-    for it in facts.factors {
+    let factor = |it: &Named| json!({"type": "factor", "factor": it.name, "unit": it.unit, "value": it.factor.value, "expanded_u": K * it.factor.u});
+    let row = |it: &Named| {
         let (value, u) = (it.factor.value, K * it.factor.u);
-        if as_json {
-            let it = json!({"type": "factor", "factor": it.name, "unit": it.unit, "value": value, "expanded_u": u});
-            writeln!(out, "{it}")?;
-        } else {
-            writeln!(
-                out,
-                "{:<18} {value:>14.6} +- {u:<10.6} {}",
-                it.name, it.unit
-            )?;
-        }
-    }
-    let (made, due) = (date(facts.made_at_us)?, date(facts.due_at_us)?);
-    if as_json {
-        let it = json!({"type": "calibration", "made_at": made, "due_at": due, "simulated": facts.is_simulated, "nominal_v": facts.nominal_v, "k": K});
-        writeln!(out, "{it}")?;
-    } else {
-        writeln!(out, "made {made}, due {due}; +- is U (k = {K})")?;
-    }
+        format!("{:<18} {value:>14.6} +- {u:<10.6} {}", it.name, it.unit)
+    };
+    let (made, due) = (date(found.made_at_us())?, date(found.due_at_us())?);
+    let whole = json!({"type": "calibration", "made_at": made, "due_at": due, "simulated": found.is_simulated(), "nominal_v": found.nominal_v(), "k": K});
+    let end = format!("made {made}, due {due}; +- is U (k = {K})");
+    let mut out = Output::stdout();
+    out.lines(as_json, &found.factors(), factor, row)?;
+    out.line(&if as_json { whole.to_string() } else { end })?;
     Ok(Exit::Done)
 }
 
 fn verified(compared: &[Compared], due: &str, as_json: bool) -> anyhow::Result<Exit> {
-    let verified = compared.iter().all(Compared::holds);
-    let mut out = std::io::stdout().lock();
-    for it in compared {
-        if as_json {
-            let it = json!({"type": "factor", "factor": it.name, "unit": it.unit, "found": it.found, "expected": it.expected, "expanded_u": it.expanded_u, "holds": it.holds()});
-            writeln!(out, "{it}")?;
-        } else {
-            writeln!(out, "{it}")?;
-        }
-    }
-    let outcome = match verified {
-        true => "verified",
-        false => "verification failed",
+    let factor = |it: &Compared| json!({"type": "factor", "factor": it.name, "unit": it.unit, "found": it.found, "expected": it.expected, "expanded_u": it.expanded_u, "holds": it.holds()});
+    let (verified, outcome, exit) = match compared.iter().all(Compared::holds) {
+        true => (true, "verified", Exit::Done),
+        false => (false, "verification failed", Exit::AnswerIsNo),
     };
-    if as_json {
-        let it =
-            json!({"type": "verification", "verified": verified, "due_at": due, "k": K_OF_ALL});
-        writeln!(out, "{it}")?;
-    } else {
-        writeln!(
-            out,
-            "{outcome}, due {due}; +- is the combined U (k = {K_OF_ALL})"
-        )?;
-    }
-    Ok(match verified {
-        true => Exit::Done,
-        false => Exit::AnswerIsNo,
-    })
+    let whole = json!({"type": "verification", "verified": verified, "due_at": due, "k": K_OF_ALL});
+    let end = format!("{outcome}, due {due}; +- is the combined U (k = {K_OF_ALL})");
+    let mut out = Output::stdout();
+    out.lines(as_json, compared, factor, Compared::to_string)?;
+    out.line(&if as_json { whole.to_string() } else { end })?;
+    Ok(exit)
 }

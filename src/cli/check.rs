@@ -2,13 +2,11 @@
 //!
 //! Exit status: 0 every move is clear, 1 a move is blocked, 2 bad input (one message, nothing on stdout).
 
+use super::output::input;
 use anyhow::{Context, anyhow, bail};
+use app::collision::{LoadedScene, MoveAnswer};
 use app::exit::Exit;
-use lpm::scene::{Format, MeshFault, MoveOrder, RigNames, Scene, read_moves, read_scene_of_rig};
-use lpm::{Answer, ElementKey, Model, Move, Mover};
-use machine::guard::{Actuator, part_names};
-use serde::Serialize;
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Collision answers for a scene and its moves, without a rig.
@@ -42,18 +40,6 @@ pub struct CheckArgs {
     pub range: f64,
 }
 
-/// One line of the answer, as other programs read it.
-#[derive(Debug, Serialize)]
-struct Line<'a> {
-    id: &'a str,
-    verdict: &'static str,
-    t_stop: Option<f64>,
-    blocker: Option<&'a str>,
-    clearance_mm: Option<f64>,
-    at: Option<[f64; 3]>,
-    normal: Option<[f64; 3]>,
-}
-
 /// Runs the command and returns [`Exit::Done`] or [`Exit::AnswerIsNo`].
 ///
 /// # Errors
@@ -65,19 +51,14 @@ pub fn run(args: CheckArgs) -> anyhow::Result<Exit> {
             args.range
         );
     }
-    let scene = load_scene(&args.scene)?;
+    let scene = LoadedScene::load(&args.scene)?;
     let text = read_text(&args.moves)?;
-    let orders = read_moves(&text, &scene).with_context(|| args.moves.display().to_string())?;
-    let (model, keys) = built(&scene)?;
-    let movers = scene
-        .movers
-        .iter()
-        .map(|mover| Mover::new(&mover.carried()).with_context(|| format!("mover {}", mover.id)))
-        .collect::<anyhow::Result<Vec<Mover>>>()?;
+    let named = || args.moves.display().to_string();
+    let orders = scene.moves(&text).with_context(named)?;
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
     let mut exit = Exit::Done;
     for order in &orders {
-        let line = answered(&model, &keys, &movers[order.mover], order, args.range);
+        let line = scene.answer(order, args.range);
         if line.verdict == "blocked" {
             exit = Exit::AnswerIsNo;
         }
@@ -89,92 +70,12 @@ pub fn run(args: CheckArgs) -> anyhow::Result<Exit> {
     Ok(exit)
 }
 
-fn load_scene(path: &Path) -> anyhow::Result<Scene> {
-    let is = |known: &str| {
-        path.extension()
-            .is_some_and(|it| it.eq_ignore_ascii_case(known))
-    };
-    let format = if is("toml") {
-        Format::Toml
-    } else if is("json") {
-        Format::Json
-    } else {
-        bail!(
-            "{}: found no known extension, expected .toml or .json",
-            path.display()
-        )
-    };
-    let text = read_text(path)?;
-    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    let mut files = |name: &str| {
-        std::fs::read(folder.join(name)).map_err(|error| MeshFault::File(error.to_string()))
-    };
-    let actuators = [Actuator::names().as_slice(), &Actuator::OTHER_NAMES].concat();
-    let elsewhere = RigNames {
-        actuators: &actuators,
-        bodies: &part_names(),
-    };
-    read_scene_of_rig(&text, format, &mut files, &elsewhere)
-        .with_context(|| path.display().to_string())
-}
-
 fn read_text(path: &Path) -> anyhow::Result<String> {
-    let mut text = String::new();
-    let read = if path == Path::new("-") {
-        std::io::stdin().read_to_string(&mut text).map(|_| text)
-    } else {
-        std::fs::read_to_string(path)
-    };
+    let read = input(path).and_then(std::io::read_to_string);
     read.map_err(|error| anyhow!("{}: not readable: {error}", path.display()))
 }
 
-fn built(scene: &Scene) -> anyhow::Result<(Model, Vec<ElementKey>)> {
-    let elements = scene.elements.iter();
-    let model = Model::of(elements.map(|it| (it.id.as_str(), &it.shape, &it.pose)));
-    let model = model.map_err(|(number, flaw)| {
-        anyhow!(flaw).context(format!("element {}", scene.elements[number].id))
-    })?;
-    let keys = model.keys().collect();
-    Ok((model, keys))
-}
-
-fn answered<'a>(
-    model: &'a Model,
-    keys: &[ElementKey],
-    mover: &Mover,
-    order: &'a MoveOrder,
-    range_mm: f64,
-) -> Line<'a> {
-    let ignore: Vec<ElementKey> = order.ignore.iter().map(|element| keys[*element]).collect();
-    let way = Move {
-        from: order.from,
-        to: order.to,
-        margin_mm: order.margin_mm,
-        ignore: &ignore,
-    };
-    let clearance_mm = model
-        .clearance(mover, &way, range_mm)
-        .map(|least| least.distance_mm);
-    let contact = match model.first_contact(mover, &way) {
-        Answer::Clear => None,
-        Answer::Blocked(contact) => Some(contact),
-    };
-    Line {
-        id: &order.id,
-        verdict: if contact.is_some() {
-            "blocked"
-        } else {
-            "clear"
-        },
-        t_stop: contact.map(|contact| contact.t_stop),
-        blocker: contact.map(|contact| model.id(contact.blocker)),
-        clearance_mm,
-        at: contact.map(|contact| contact.at),
-        normal: contact.map(|contact| contact.normal),
-    }
-}
-
-fn written(out: &mut impl Write, line: &Line, json: bool) -> std::io::Result<()> {
+fn written(out: &mut impl Write, line: &MoveAnswer, json: bool) -> std::io::Result<()> {
     if json {
         serde_json::to_writer(&mut *out, line)?;
         return writeln!(out);

@@ -1,4 +1,4 @@
-//! `relayrig config check` and `relayrig config schema NAME`: nothing is opened, nothing moves.
+//! `relayrig config check` and `relayrig config schema NAME`: read files only; no port is opened.
 
 use anyhow::Context;
 use app::exit::Exit;
@@ -9,7 +9,7 @@ use machine::rig::wiring::Wiring;
 use std::io::Write;
 use std::path::Path;
 
-/// What to do with the configuration.
+/// Checks the configuration or prints a schema.
 #[derive(Debug, Clone, clap::Subcommand)]
 pub enum Args {
     /// Check everything that loading would refuse, without moving anything
@@ -42,7 +42,7 @@ pub fn run(dir: &Path, args: &Args) -> anyhow::Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Loads everything and says what was looked at.
+/// Loads everything and returns a line per file, line and recipe.
 fn check(dir: &Path) -> anyhow::Result<String> {
     let plant = Plant::load(dir)?;
     let wiring = &plant.wiring;
@@ -64,19 +64,17 @@ fn check(dir: &Path) -> anyhow::Result<String> {
         wiring.longest_reaction().as_seconds() * 1e3,
         wiring.safety.estop_reaction_ms
     ));
-    lines.push(
-        "  every point has a terminal of its own; every address is used once on its line"
-            .to_owned(),
-    );
+    lines
+        .push("  every point has its own terminal; every address is unique on its line".to_owned());
     lines.push(format!(
-        "{}: {} bodies, every actuator has its way",
+        "{}: {} bodies, every actuator has its stroke",
         dir.join("scene.toml").display(),
         plant.scene.elements.len()
     ));
     if let Some(file) = &plant.calibration.reference_file {
         let count = plant.golden.parts.len();
         lines.push(format!(
-            "{}: {count} golden parts",
+            "{}: {count} reference parts",
             dir.join(file).display()
         ));
     }
@@ -97,7 +95,7 @@ fn describe_line(wiring: &Wiring, index: usize) -> String {
     let checksum = if line.checksum {
         "checksum on"
     } else {
-        "NO CHECKSUM: a damaged reply that keeps its form cannot be told from a true one"
+        "NO CHECKSUM: a damaged reply in the right form passes for a true one"
     };
     format!(
         "  line {}: {} at {} baud, {modules} modules, {checksum}",
@@ -109,15 +107,13 @@ fn describe_recipe(dir: &Path, plant: &Plant, name: &str) -> anyhow::Result<Stri
     let recipe = load_recipe(dir, name)?;
     plant.admit(&recipe)?;
     let file = dir.join("recipes").join(format!("{name}.toml"));
-    let golden = match recipe
-        .device
-        .part()
-        .nominal_v
+    let reference = match recipe
+        .rated_v()
         .map(|volts| plant.golden.of_nominal(volts).count())
     {
-        None => "no golden parts needed".to_owned(),
-        Some(0) => "NO GOLDEN PARTS of its coil voltage: a lot cannot be calibrated".to_owned(),
-        Some(count) => format!("{count} golden parts"),
+        None => "no reference parts needed".to_owned(),
+        Some(0) => "NO REFERENCE PARTS of its coil voltage: a lot cannot be calibrated".to_owned(),
+        Some(count) => format!("{count} reference parts"),
     };
     let all = recipe.device.kind().characteristics().len();
     let judged = recipe
@@ -125,7 +121,7 @@ fn describe_recipe(dir: &Path, plant: &Plant, name: &str) -> anyhow::Result<Stri
         .filter(|(_, limit)| limit.low.is_some() || limit.high.is_some())
         .count();
     Ok(format!(
-        "{}: {judged} of {all} parameters judged, {golden}, sha256 {}",
+        "{}: {judged} of {all} parameters judged, {reference}, sha256 {}",
         file.display(),
         &recipe.hash[..12]
     ))
@@ -158,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_without_checksum_is_pointed_out() {
+    fn a_line_without_checksum_is_reported() {
         let rig = include_str!("../../config/rig.toml");
         let careless = wiring(&rig.replace("checksum = true", "checksum = false"));
         assert!(describe_line(&careless, 0).contains("NO CHECKSUM"));

@@ -1,5 +1,4 @@
-//! `relayrig demo`: the main job with nothing to prepare, which is [`serve`] over the simulated rig with a first lot
-//! that starts by itself.
+//! `relayrig demo`: [`serve`] over the simulated rig with a first lot that starts at once; it needs no preparation.
 
 use super::rig::{self, PaceArg, RigArgs};
 use super::serve::{self, ServeArgs};
@@ -14,7 +13,7 @@ use app::order::{Files, LotOrder};
   relayrig demo --speed 5
   relayrig demo --pace real")]
 pub struct DemoArgs {
-    /// Where the page listens
+    /// Address of the page
     #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:8080")]
     pub listen: std::net::SocketAddr,
     /// Fault of the simulated rig, see `relayrig sim --faults`
@@ -26,7 +25,7 @@ pub struct DemoArgs {
     /// Speed of the held rig, in multiples of the wall clock (0.1 to 100)
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = rig::speed)]
     pub speed: f64,
-    /// Draws rig and lot
+    /// Seed of rig and lot
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
     /// Parts of the lot; without it the lot goes on until it is stopped

@@ -1,6 +1,6 @@
 //! `history`: lots, parts, filters, statistics, CSV, backup; and `quality`, which works on files.
 //!
-//! Data goes to stdout, remarks to stderr. A reader that goes away (`| head`) is no error.
+//! Data goes to stdout, remarks to stderr. A closed pipe (`| head`) is no error.
 
 mod export;
 mod filter;
@@ -8,7 +8,6 @@ mod generate;
 mod import;
 mod lots;
 mod orders;
-mod output;
 pub(in crate::cli) mod paper;
 mod prune;
 mod quality;
@@ -21,11 +20,12 @@ mod stats;
 
 pub use quality::{QualityArgs, run_quality};
 
+use super::output::Output;
+use app::copies;
 use app::exit::Exit;
 use clap::{Args, Subcommand};
+use history::Archive;
 use history::inquiry::InquiryError;
-use history::{Archive, Filter, Identity, Store};
-use output::Output;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `history`.
@@ -45,7 +45,7 @@ enum Command {
         after_help = "Examples:\n  relayrig history show A\n  relayrig history show A 17 --json"
     )]
     Show(show::ShowArgs),
-    /// Parts that a filter leaves
+    /// Parts that match a filter
     #[command(
         after_help = "Examples:\n  relayrig history query --lot A --verdict fail\n  \
         relayrig history query --param operate_voltage_v --min 8.5 --format csv\n  \
@@ -70,7 +70,7 @@ enum Command {
         relayrig history report --alarms --out alarms.html"
     )]
     Report(report::ReportArgs),
-    /// Who ordered what at which screen, and whether it was taken
+    /// Orders with person, place and answer
     #[command(after_help = "Examples:\n  relayrig history orders --lot A\n  \
         relayrig history orders --who li --since 2026-03-01T00:00:00Z --refused")]
     Orders(orders::OrdersArgs),
@@ -85,7 +85,7 @@ enum Command {
         after_help = "Example: relayrig history import old.csv --lot 2019-07 --map Uop=operate_voltage_v"
     )]
     Import(import::ImportArgs),
-    /// What another recipe would have said of a lot; nothing is written
+    /// Verdicts of another recipe on a lot; writes nothing
     #[command(after_help = "Example: relayrig history rejudge --lot A --recipe jzc-22f-012")]
     Rejudge(rejudge::RejudgeArgs),
     /// Delete the parts of old runs that a backup or an export holds whole
@@ -97,7 +97,7 @@ enum Command {
         /// File to make; must not exist
         file: PathBuf,
     },
-    /// Fill the history with made-up parts, for trying queries and reports
+    /// Fill the history with random parts, for trying queries and reports
     #[command(after_help = "Example: relayrig --db big.db history generate --parts 1000000")]
     Generate(generate::GenerateArgs),
     /// Check the file for damage
@@ -105,12 +105,12 @@ enum Command {
     Check,
 }
 
-/// Runs the command on the history file `db`; gives the exit status. An error is bad input: status 2.
+/// Runs the command on the history file `db`. An error is bad input: exit status 2.
 pub fn run(config: &Path, db: &Path, args: HistoryArgs) -> anyhow::Result<Exit> {
-    super::unless_reader_left(dispatch(config, db, *args.command).map_err(by_option))
+    super::unless_pipe_closed(dispatch(config, db, *args.command).map_err(by_option))
 }
 
-/// A member of the question that cannot be meant is an option here.
+/// Names the option instead of the member of the filter.
 fn by_option(error: anyhow::Error) -> anyhow::Error {
     match error.downcast_ref::<InquiryError>() {
         Some(InquiryError::Member { field, reason }) => anyhow::anyhow!("--{field}: {reason}"),
@@ -134,24 +134,14 @@ fn dispatch(config: &Path, db: &Path, command: Command) -> anyhow::Result<Exit> 
         Command::Rejudge(args) => rejudge::run(config, &Archive::open(db)?, &args)?,
         Command::Export(args) => export::run(db, &args)?,
         Command::Backup { file } => {
-            let bytes = Archive::open(db)?.backup(&file)?;
+            let bytes = copies::backup(db, &file)?;
             eprintln!("{}: {bytes} bytes, checked", file.display());
-            copied(db, &Filter::default(), &file)?;
         }
     }
     Ok(Exit::Done)
 }
 
-/// Notes for the retention that `file` holds these runs whole.
-fn copied(db: &Path, filter: &Filter, file: &Path) -> anyhow::Result<()> {
-    let mut store = Store::open(db, &Identity::of_this_program())?;
-    let file = std::path::absolute(file)?;
-    let now_us = jiff::Timestamp::now().as_microsecond();
-    store.copied(filter, &file.to_string_lossy(), now_us)?;
-    Ok(())
-}
-
-/// Damage is an answer (status 1), not bad input.
+/// Checks the file; damage is an answer (status 1), not bad input.
 fn check(db: &Path) -> anyhow::Result<Exit> {
     match Archive::open(db)?.check() {
         Ok(()) => {

@@ -1,17 +1,18 @@
-//! `relayrig lot`: where a lot stands, and a person who holds, releases or closes it.
+//! `relayrig lot`: shows the state of a lot; holds, releases or closes it.
 //!
-//! What a person decides here is an order like those of a screen: it stands in the audit of orders with the name.
+//! A decision is an order like those of a screen: the audit of orders records it with the name.
 
+use super::person;
 use anyhow::{Context, ensure};
 use app::exit::Exit;
 use app::lot_decision;
 use history::{Archive, Decision, Filter};
-use machine::view::{By, Order};
+use machine::view::Order;
 use serde_json::json;
 use std::io::Write;
 use std::path::Path;
 
-/// What is asked of a lot.
+/// Shows, holds, releases or closes a lot.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   relayrig lot show A
@@ -27,7 +28,7 @@ pub struct LotArgs {
 
 #[derive(Debug, clap::Subcommand)]
 enum Action {
-    /// State, recipe and calibration by their hashes, first and final yield, golden checks, suspect parts
+    /// State, recipe and calibration by their hashes, first and final yield, reference checks, suspect parts
     #[command(after_help = "Example: relayrig lot show A --json")]
     Show {
         /// Name of the lot
@@ -36,30 +37,30 @@ enum Action {
         #[arg(long)]
         json: bool,
     },
-    /// No run of the lot before it is released
+    /// Refuse runs of the lot until it is released
     #[command(after_help = "Example: relayrig lot hold A --by li --reason 'wrong label'")]
     Hold(Decided),
-    /// The lot may be run again
+    /// Allow runs of the lot again
     #[command(
-        after_help = "Example: relayrig lot release A --by li --reason 'golden part cleaned'"
+        after_help = "Example: relayrig lot release A --by li --reason 'reference part cleaned'"
     )]
     Release(Decided),
-    /// The lot is complete as it is
+    /// Close the lot as it is
     #[command(
         after_help = "Example: relayrig lot close A --by li --reason 'rest of the reel returned'"
     )]
     Close(Decided),
 }
 
-/// Who decides, and why.
+/// A decision about a lot.
 #[derive(Debug, clap::Args)]
 struct Decided {
     /// Name of the lot
     lot: String,
-    /// Who decides
+    /// Person who decides
     #[arg(long, value_name = "NAME")]
     by: String,
-    /// Why
+    /// Reason
     #[arg(long, value_name = "TEXT", default_value = "")]
     reason: String,
 }
@@ -76,13 +77,10 @@ pub fn run(db: &Path, args: &LotArgs) -> anyhow::Result<Exit> {
 }
 
 fn decide(db: &Path, it: &Decided, decision: Decision) -> anyhow::Result<()> {
-    ensure!(
-        !it.by.trim().is_empty(),
-        "--by: found nothing, expected a name"
-    );
+    let by = person(&it.by)?;
     ensure!(
         decision != Decision::Hold || !it.reason.is_empty(),
-        "--reason: found nothing, expected why the lot is held"
+        "--reason: found nothing, expected the reason"
     );
     known(&Archive::open(db)?, &it.lot)?;
     let order = Order {
@@ -90,11 +88,6 @@ fn decide(db: &Path, it: &Decided, decision: Decision) -> anyhow::Result<()> {
         lot: Some(it.lot.clone()),
         reason: Some(it.reason.clone()),
         ..Order::default()
-    };
-    let by = By {
-        who: it.by.clone(),
-        role: String::new(),
-        origin: "command line".into(),
     };
     Ok(lot_decision::write(db, &order, &by, decision)?)
 }
@@ -159,7 +152,7 @@ fn show(archive: &Archive, lot: &str, as_json: bool) -> anyhow::Result<()> {
         let outcome = if it.passed { "good" } else { "FAILED" };
         writeln!(
             out,
-            "golden check of run {} at {}: {outcome}, {}",
+            "reference check of run {} at {}: {outcome}, {}",
             it.run, it.at, it.text
         )?;
     }

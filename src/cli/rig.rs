@@ -1,4 +1,4 @@
-//! Which rig a command works on: the one at serial ports, or the simulated one.
+//! The rig of a command: at serial ports, or simulated.
 
 use anyhow::{Context, bail};
 use app::source::{LinePort, RigSource};
@@ -6,7 +6,7 @@ use app::source::{LinePort, RigSource};
 use app::source::{Simulated, SimulatedPace};
 use std::path::PathBuf;
 
-/// How rig time passes on the simulated rig.
+/// Clock of the simulated rig.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum PaceArg {
     /// As fast as the machine can: in-process streams, virtual time that starts at the wall clock
@@ -21,13 +21,13 @@ pub struct RigArgs {
     /// On the simulated rig
     #[arg(long)]
     pub sim: bool,
-    /// How time passes on the simulated rig
+    /// Clock of the simulated rig
     #[arg(long, value_enum, default_value = "virtual", requires = "sim")]
     pub pace: PaceArg,
     /// Virtual time, but at most X times as fast as the wall clock
     #[arg(long, value_name = "X", requires = "sim", value_parser = speed)]
     pub speed: Option<f64>,
-    /// Draws rig and parts of the simulated rig
+    /// Seed of the simulated rig and its parts
     #[arg(long, value_name = "N", default_value_t = 1, requires = "sim")]
     pub seed: u64,
     /// World of the simulated rig instead of config/sim.toml
@@ -42,10 +42,10 @@ pub struct RigArgs {
 }
 
 impl RigArgs {
-    /// The rig of these arguments; true values of a simulated one go to `truth`.
+    /// Returns the rig of these arguments; a simulated one writes its true values to `truth`.
     ///
     /// # Errors
-    /// What does not go together, a line without its port, or no simulated rig in this build.
+    /// Options that exclude each other, a line without its port, or a build without the simulated rig.
     pub fn source(&self, truth: Option<PathBuf>) -> anyhow::Result<RigSource> {
         if self.speed.is_some() && !(self.sim && self.pace == PaceArg::Virtual) {
             bail!("--speed: found with --pace real, expected --pace virtual");
@@ -89,14 +89,14 @@ fn port(text: &String) -> anyhow::Result<LinePort> {
     })
 }
 
-/// No speed that a person can follow and a machine keep up with.
+/// The text is no speed in the accepted range.
 #[derive(Debug, thiserror::Error)]
 #[error("found {0}, expected a number from 0.1 to 100")]
-pub struct NoSpeed(String);
+pub struct SpeedError(String);
 
-/// How often the wall clock.
-pub fn speed(text: &str) -> Result<f64, NoSpeed> {
+/// Reads a speed, in multiples of the wall clock.
+pub fn speed(text: &str) -> Result<f64, SpeedError> {
     let found = text.parse().ok();
     let sensible = found.filter(|it| (0.1..=100.0).contains(it));
-    sensible.ok_or_else(|| NoSpeed(text.to_owned()))
+    sensible.ok_or_else(|| SpeedError(text.to_owned()))
 }

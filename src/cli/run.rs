@@ -1,15 +1,16 @@
 //! `relayrig run`: a lot on a rig, or on the simulated rig in real or virtual time.
 
+use super::output::{Fixed, Output, cells, headings};
 use super::rig::RigArgs;
 use super::terminal::{Rows, Terminal};
 use anyhow::Context;
 use app::exit::Exit;
+use app::gauge_study::{self, Figure};
 use app::lot::Purpose;
 use app::order::{Files, LotOrder};
-use app::{gauge_study, run_lot};
+use app::run_lot;
 use quality::gauge_rr::GaugeRr;
 use serde_json::json;
-use std::io::Write;
 use std::path::PathBuf;
 
 /// A lot to run.
@@ -21,7 +22,7 @@ use std::path::PathBuf;
   relayrig run --sim --study grr --lot G --recipe jzc-22f-012
   relayrig run --lot A --recipe jzc-22f-012 --line measure=/dev/ttyUSB0 --line motion=/dev/ttyUSB1")]
 pub struct RunArgs {
-    /// The rig it runs on.
+    /// The rig.
     #[command(flatten)]
     pub rig: RigArgs,
     /// Lot the parts belong to
@@ -39,10 +40,10 @@ pub struct RunArgs {
     /// One JSON object per part, then a summary
     #[arg(long)]
     pub json: bool,
-    /// Test parts of the lot again, to which NAME has agreed; the first results stay
+    /// Test parts of the lot a second time with the consent of NAME; the first results stay
     #[arg(long, value_name = "NAME")]
     pub retest: Option<String>,
-    /// Instead of one lot: ten parts (or --count) three times over three rigs, and what the gauge adds
+    /// Instead of one lot, ten parts (or --count) three times on three rigs, for the share of the gauge
     #[arg(long, value_enum, value_name = "NAME", requires = "sim")]
     pub study: Option<StudyArg>,
 }
@@ -66,7 +67,7 @@ pub fn run(files: &Files, args: &RunArgs) -> anyhow::Result<Exit> {
     if let Some(StudyArg::Grr) = args.study {
         let study = gauge_study::run(files, &source, &order, &mut Terminal::quiet())?;
         return match study {
-            Ok(figures) => tell(&figures, args.json).map(|()| Exit::Done),
+            Ok(figures) => print_study(&figures, args.json).map(|()| Exit::Done),
             Err(exit) => Ok(exit),
         };
     }
@@ -83,42 +84,42 @@ pub fn run(files: &Files, args: &RunArgs) -> anyhow::Result<Exit> {
     Ok(exit)
 }
 
-fn tell(figures: &[gauge_study::Figure], as_json: bool) -> anyhow::Result<()> {
-    let mut out = std::io::stdout().lock();
-    if !as_json {
-        writeln!(
-            out,
-            "{:<28} {:>12} {:>12} {:>12} {:>8} {:>6} {:>10}",
-            "parameter", "repeat sd", "rigs sd", "parts sd", "% grr", "ndc", "% by range"
-        )?;
-    }
-    for it in figures {
-        let key = it.characteristic.key();
-        match (&it.anova, as_json) {
-            (Ok(anova), true) => {
-                let it = json!({"type": "grr", "param": key, "anova": anova, "average_range": it.by_range});
-                writeln!(out, "{it}")?;
-            }
-            (Ok(anova), false) => writeln!(out, "{}", line(key, anova, it.by_range.as_ref()))?,
-            (Err(why), true) => {
-                let it = json!({"type": "grr", "param": key, "why_not": why.to_string()});
-                writeln!(out, "{it}")?;
-            }
-            (Err(why), false) => writeln!(out, "{key:<28} {why}")?,
-        }
-    }
-    Ok(())
+const COLUMNS: [Fixed<(&str, GaugeRr, Option<f64>)>; 7] = [
+    ("parameter", -28, |it| it.0.to_owned()),
+    ("repeat sd", 12, |it| format!("{:.6}", it.1.repeatability)),
+    ("rigs sd", 12, |it| format!("{:.6}", it.1.reproducibility)),
+    ("parts sd", 12, |it| format!("{:.6}", it.1.part)),
+    ("% grr", 8, |it| percent(it.1.pct_grr)),
+    ("ndc", 6, |it| {
+        it.1.ndc.map_or("-".to_owned(), |it| it.to_string())
+    }),
+    ("% by range", 10, |it| percent(it.2)),
+];
+
+fn percent(it: Option<f64>) -> String {
+    it.map_or("-".to_owned(), |it| format!("{it:.2}"))
 }
 
-fn line(key: &str, it: &GaugeRr, by_range: Option<&GaugeRr>) -> String {
-    let percent = |it: Option<f64>| it.map_or("-".to_owned(), |it| format!("{it:.2}"));
-    format!(
-        "{key:<28} {:>12.6} {:>12.6} {:>12.6} {:>8} {:>6} {:>10}",
-        it.repeatability,
-        it.reproducibility,
-        it.part,
-        percent(it.pct_grr),
-        it.ndc.map_or("-".to_owned(), |it| it.to_string()),
-        percent(by_range.and_then(|it| it.pct_grr)),
-    )
+fn print_study(figures: &[Figure], as_json: bool) -> anyhow::Result<()> {
+    let object = |it: &Figure| {
+        let key = it.characteristic.key();
+        match &it.anova {
+            Ok(anova) => {
+                json!({"type": "grr", "param": key, "anova": anova, "average_range": it.by_range})
+            }
+            Err(why) => json!({"type": "grr", "param": key, "why_not": why.to_string()}),
+        }
+    };
+    let row = |it: &Figure| {
+        let (key, by_range) = (it.characteristic.key(), it.by_range.as_ref());
+        match &it.anova {
+            Ok(anova) => cells(&(key, *anova, by_range.and_then(|it| it.pct_grr)), &COLUMNS),
+            Err(why) => format!("{key:<28} {why}"),
+        }
+    };
+    let mut out = Output::stdout();
+    if !as_json {
+        out.line(&headings(&COLUMNS))?;
+    }
+    Ok(out.lines(as_json, figures, object, row)?)
 }

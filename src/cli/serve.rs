@@ -1,4 +1,4 @@
-//! `relayrig serve`: the rig under one program for a whole day, see [`Service`].
+//! `relayrig serve`: runs lot after lot on the rig, as its page orders; see [`Service`].
 
 use super::rig::{PaceArg, RigArgs};
 use super::terminal::{Rows, Terminal};
@@ -8,7 +8,7 @@ use app::order::{Files, LotOrder};
 use app::service::Service;
 use std::net::SocketAddr;
 
-/// The rig under one program.
+/// Serves the page and runs the lots that it orders.
 #[derive(Debug, clap::Args)]
 #[command(
     mut_arg("pace", |pace| pace.default_value("real").hide(true)),
@@ -19,7 +19,7 @@ use std::net::SocketAddr;
 Exit status: 0 ended between lots, 2 bad input, 3 the rig has trouble, 4 a lot was stopped."
 )]
 pub struct ServeArgs {
-    /// Where the page listens
+    /// Address of the page
     #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:8080")]
     pub listen: SocketAddr,
     /// The rig.
@@ -27,20 +27,20 @@ pub struct ServeArgs {
     pub rig: RigArgs,
 }
 
-/// Runs the command; the day begins with `first`, if there is one.
+/// Runs the command, with `first` as its first lot.
 pub fn run(files: &Files, args: &ServeArgs, first: Option<LotOrder>) -> anyhow::Result<Exit> {
     let mut rig = args.rig.clone();
     if rig.speed.is_some() {
         rig.pace = PaceArg::Virtual;
     } else if rig.sim && rig.pace == PaceArg::Virtual {
         bail!(
-            "--pace virtual: found without --speed, expected both: nobody could follow a rig that waits"
+            "--pace virtual: found without --speed, expected both: an idle rig in virtual time runs ahead of the clock"
         );
     }
     let mut service = Service::open(files, rig.source(None)?, args.listen, first)?;
     if let Some(first) = service.take_first_login() {
         eprintln!(
-            "relayrig: log in as {} with {} (told this once; people are in {})",
+            "relayrig: log in as {} with {} (shown once; the register is {})",
             first.name,
             first.password,
             first.people.display()

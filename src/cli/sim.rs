@@ -22,9 +22,9 @@ use std::time::Duration;
   relayrig sim --fault port_lost=motion@20..23
   relayrig sim --faults
 
-A fault is NAME[=VALUE[@FROM[..UNTIL]]]: from and until when, in seconds of rig time. Several combine.")]
+A fault is NAME[=VALUE[@FROM[..UNTIL]]]: FROM and UNTIL in seconds of rig time. Several faults combine.")]
 pub struct SimArgs {
-    /// Draws rig and lot
+    /// Seed of rig and lot
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
     /// World instead of config/sim.toml
@@ -36,7 +36,7 @@ pub struct SimArgs {
     /// Fault by name
     #[arg(long, value_name = "NAME[=VALUE]")]
     pub fault: Vec<String>,
-    /// True values of every specimen go to this file: as parts land, at the end of those still inside
+    /// True values of every specimen go to this file: as parts land, and at the end for those still inside
     #[arg(long, value_name = "FILE")]
     pub truth: Option<PathBuf>,
     /// A symlink per line in this directory
@@ -48,7 +48,7 @@ pub struct SimArgs {
     /// A module hears only a client at its own rate, as on a wire. Without it a pseudo-terminal has no rate
     #[arg(long)]
     pub heed_baud: bool,
-    /// Tells every change of a digital output and every expired host watchdog, one object per line
+    /// Prints every change of a digital output and every expired host watchdog, one object per line
     #[arg(long)]
     pub journal: bool,
     /// Names of all faults with unit and default
@@ -67,8 +67,10 @@ pub fn run(config: &Path, args: &SimArgs) -> anyhow::Result<Exit> {
             )
         };
         let rows: String = faults.into_iter().map(row).collect();
-        let told = std::io::stdout().write_all(rows.as_bytes());
-        return super::unless_reader_left(told.map(|()| Exit::Done).context("writing the faults"));
+        let written = std::io::stdout().write_all(rows.as_bytes());
+        return super::unless_pipe_closed(
+            written.map(|()| Exit::Done).context("writing the faults"),
+        );
     }
     let rig = match &args.bench {
         Some(file) => rigsim::build_bench(file, &args.fault)?,
@@ -98,7 +100,7 @@ pub fn run(config: &Path, args: &SimArgs) -> anyhow::Result<Exit> {
         .collect();
     println!("{}", json!({ "lines": lines }));
     if args.journal {
-        tell(rig.journal());
+        print_journal(rig.journal());
     }
     let mut truth = args.truth.as_deref().map(TruthFile::create).transpose()?;
     wait(|| match &mut truth {
@@ -112,12 +114,12 @@ pub fn run(config: &Path, args: &SimArgs) -> anyhow::Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Prints what the outputs do, until the program ends.
-fn tell(journal: std::sync::mpsc::Receiver<rigsim::journal::Entry>) {
+/// Prints every change of an output until the program ends.
+fn print_journal(journal: std::sync::mpsc::Receiver<rigsim::journal::Entry>) {
     std::thread::spawn(move || {
         let mut out = std::io::stdout();
         for entry in journal {
-            // Nobody reads any more: nothing is lost.
+            // The reader has closed the pipe.
             if writeln!(out, "{}", json!(entry)).is_err() {
                 return;
             }
@@ -125,7 +127,7 @@ fn tell(journal: std::sync::mpsc::Receiver<rigsim::journal::Entry>) {
     });
 }
 
-/// Until Ctrl-C or a termination signal; `meanwhile` is called twice a second.
+/// Waits for Ctrl-C or a termination signal and calls `meanwhile` twice a second.
 fn wait(mut meanwhile: impl FnMut() -> anyhow::Result<()>) -> anyhow::Result<()> {
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
@@ -144,11 +146,11 @@ fn wait(mut meanwhile: impl FnMut() -> anyhow::Result<()>) -> anyhow::Result<()>
     })
 }
 
-/// The file of `--truth`: a row per part, in the order in which parts land, whole after each.
+/// The file of `--truth`: a row per part, in the order of landing. Each write leaves whole rows.
 struct TruthFile<'a> {
     path: &'a Path,
     file: std::fs::File,
-    /// Numbers of the parts that are written.
+    /// `seq` of the parts in the file.
     written: BTreeSet<u64>,
 }
 

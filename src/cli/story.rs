@@ -1,6 +1,6 @@
-//! `relayrig story`: a script of troubles and orders on the simulated rig, and what happened, line by line.
+//! `relayrig story`: plays a script of troubles and orders on the simulated rig and prints the events, line by line.
 //!
-//! Exit status: 0 the script was played and the lot completed, 1 something in it never came.
+//! Exit status: 0 the script was played and the lot completed, 1 an event of the script did not come.
 
 use super::terminal::Terminal;
 use anyhow::Context;
@@ -25,12 +25,12 @@ A script: the first comment is its title, then
   after state Aborted +5 order clear    or an order, as a person at a screen gives it
 Events: lot, state NAME, alarm CODE, judged N, left N, landed N. The last line is followed by the end of the lot.
 
-Exit status: 0 played and the lot complete, 1 something never came, 2 bad input.")]
+Exit status: 0 played and the lot complete, 1 an event did not come, 2 bad input.")]
 pub struct StoryArgs {
     /// The script
     #[arg(value_name = "FILE")]
     pub script: PathBuf,
-    /// Draws rig and parts
+    /// Seed of rig and parts
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
     /// Recipe in config/recipes
@@ -80,7 +80,7 @@ pub fn run(files: &Files, args: &StoryArgs) -> anyhow::Result<Exit> {
         &mut Terminal::quiet(),
     )?;
     if let Some(told) = told {
-        // A reader that has gone away ends nothing.
+        // A closed pipe is no error.
         std::io::stdout().write_all(told.text.as_bytes()).ok();
     }
     Ok(exit)

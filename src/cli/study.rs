@@ -1,4 +1,4 @@
-//! `relayrig study`: figures that anyone can reprint, see [`studies`].
+//! `relayrig study`: reproducible figures, see [`studies`].
 //!
 //! Exit status: 0 every bar is kept, 1 a bar is missed, 2 bad input or a lot that did not start.
 
@@ -119,7 +119,7 @@ fn collisions(args: &StudyArgs) -> anyhow::Result<Exit> {
     published(&report, args)
 }
 
-/// Writes the files that were asked for, prints, and turns the bars into the exit status.
+/// Writes the files of `--out`, prints the report and returns the exit status of its bars.
 fn published(report: &Report, args: &StudyArgs) -> anyhow::Result<Exit> {
     if let Some(folder) = &args.out {
         made(folder)?;
@@ -157,16 +157,16 @@ fn transients(args: &StudyArgs) -> anyhow::Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// No tolerance that the method and the arithmetic can keep.
+/// The tolerance is outside the range of the method.
 #[derive(Debug, thiserror::Error)]
 #[error("expected a number from 1e-14 to 1e-2")]
-struct NoTolerance;
+struct ToleranceError;
 
-/// `--rtol`.
-fn tolerance(text: &str) -> Result<f64, NoTolerance> {
+/// Reads `--rtol`.
+fn tolerance(text: &str) -> Result<f64, ToleranceError> {
     match text.parse::<f64>() {
         Ok(value) if (1e-14..=1e-2).contains(&value) => Ok(value),
-        Ok(_) | Err(_) => Err(NoTolerance),
+        Ok(_) | Err(_) => Err(ToleranceError),
     }
 }
 
@@ -196,7 +196,7 @@ fn written(path: &Path, text: &str) -> anyhow::Result<()> {
     std::fs::write(path, text).with_context(|| format!("writing {}", path.display()))
 }
 
-/// A reader that has seen enough and closed the pipe is no error.
+/// Prints; a closed pipe is no error.
 fn print(text: &str) -> anyhow::Result<()> {
     match std::io::stdout().lock().write_all(text.as_bytes()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {

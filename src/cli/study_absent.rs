@@ -1,10 +1,10 @@
-//! `relayrig study` of a program that was built without the studies: names the feature.
+//! `relayrig study` in a build without the studies: names the feature.
 
 use anyhow::bail;
 use app::exit::Exit;
 use std::path::Path;
 
-/// Whatever follows `study`.
+/// Every argument after `study`.
 #[derive(Debug, Clone, clap::Args)]
 pub struct StudyArgs {
     /// Name and options of a study
@@ -12,10 +12,10 @@ pub struct StudyArgs {
     pub words: Vec<String>,
 }
 
-/// Refuses.
+/// Refuses the command.
 ///
 /// # Errors
-/// Always: there is no study in this program.
+/// Always.
 pub fn run(_config: &Path, _args: &StudyArgs) -> anyhow::Result<Exit> {
     bail!(
         "study: this program was built without the studies; build it with `cargo build --release --features study`"

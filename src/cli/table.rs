@@ -1,11 +1,25 @@
-//! Results and bins at the end of a run, for a person.
+//! The table at the end of a run: statistics of each parameter, verdicts, bins.
 
+use super::output::{Fixed, bins, cells, headings};
 use app::lot::Summary;
 use machine::dut::{Characteristic, Kind};
 use machine::handling::output::Judged;
 use quality::Spread;
 use std::collections::BTreeMap;
 use std::fmt::Write;
+
+const COLUMNS: [Fixed<(&str, Spread)>; 6] = [
+    ("parameter", -30, |it| it.0.to_owned()),
+    ("n", 6, |it| it.1.n().to_string()),
+    ("mean", 12, |it| number(it.1.mean())),
+    ("sd", 12, |it| number(it.1.sd().or(Some(0.0)))),
+    ("min", 12, |it| number(it.1.min())),
+    ("max", 12, |it| number(it.1.max())),
+];
+
+fn number(value: Option<f64>) -> String {
+    format!("{:.4}", value.unwrap_or(f64::NAN))
+}
 
 /// Values of the lot by characteristic.
 #[derive(Debug, Default)]
@@ -14,7 +28,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Takes in one part of this kind.
+    /// Adds the usable values of one part.
     pub fn add(&mut self, kind: Kind, judged: &Judged) {
         for characteristic in kind.characteristics() {
             if let Some(reading) = judged.record.usable(characteristic) {
@@ -24,34 +38,13 @@ impl Table {
         }
     }
 
-    /// The table.
+    /// Returns the table.
     pub fn text(&self, summary: &Summary) -> String {
-        let mut text = String::new();
-        let _ = writeln!(
-            text,
-            "{:<30} {:>6} {:>12} {:>12} {:>12} {:>12}",
-            "parameter", "n", "mean", "sd", "min", "max"
-        );
+        let mut text = headings(&COLUMNS) + "\n";
         for (characteristic, values) in &self.values {
-            let spread = Spread::of(values);
-            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            let _ = writeln!(
-                text,
-                "{:<30} {:>6} {:>12.4} {:>12.4} {:>12.4} {:>12.4}",
-                characteristic.key(),
-                values.len(),
-                spread.mean().unwrap_or(f64::NAN),
-                spread.sd().unwrap_or(0.0),
-                low,
-                high
-            );
+            text += &cells(&(characteristic.key(), Spread::of(values)), &COLUMNS);
+            text.push('\n');
         }
-        let bins: Vec<String> = summary
-            .bins
-            .iter()
-            .map(|(bin, n)| format!("{bin} {n}"))
-            .collect();
         let _ = writeln!(
             text,
             "\n{} parts: {} pass, {} fail, {} void   bins: {}",
@@ -59,7 +52,7 @@ impl Table {
             summary.pass,
             summary.fail,
             summary.void,
-            bins.join(", ")
+            bins(&summary.bins)
         );
         let bodies = match summary.bodies_watched {
             Some(false) => ", bodies: not watched",

@@ -1,4 +1,4 @@
-//! What a person or a program at the terminal sees of a run: progress bar, alarms, rows, and what it came to.
+//! A run at the terminal: progress bar and alarms on stderr; rows, table or summary on stdout.
 
 use super::table::Table;
 use app::cycle::Event;
@@ -11,7 +11,7 @@ use machine::handling::output::Judged;
 use std::io::Write;
 use texts::Lang;
 
-/// What goes to stdout.
+/// Output on stdout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rows {
     /// Nothing.
@@ -22,17 +22,17 @@ pub enum Rows {
     Json,
 }
 
-/// The terminal, from run to run.
+/// Prints run after run.
 pub struct Terminal {
     rows: Rows,
     bar: ProgressBar,
     table: Table,
-    /// The summary of the run has been printed.
+    /// True once the summary of the run is printed.
     summed_up: bool,
 }
 
 impl Terminal {
-    /// Alarms are logged, progress is shown where somebody looks, and `rows` go to stdout.
+    /// Logs alarms, shows progress on a terminal and prints `rows`.
     pub fn new(rows: Rows) -> Self {
         Self {
             rows,
@@ -42,7 +42,7 @@ impl Terminal {
         }
     }
 
-    /// A run that ended in trouble without a summary says so in JSON all the same.
+    /// Prints the cause of a trouble that ended the run without a summary, in JSON only.
     pub fn ended(&self, exit: &Exit) {
         if let (Rows::Json, false, Some(cause)) = (self.rows, self.summed_up, exit.cause()) {
             let it = serde_json::json!({"type": "trouble", "cause": cause});
@@ -50,7 +50,7 @@ impl Terminal {
         }
     }
 
-    /// Nothing goes to stdout.
+    /// Prints nothing on stdout.
     pub fn quiet() -> Self {
         Self::new(Rows::None)
     }
@@ -72,7 +72,7 @@ impl Terminal {
         }
     }
 
-    /// A reader that has gone away does not stop the line.
+    /// Prints beside the bar; a closed pipe does not stop the line.
     fn print(&self, text: &str) {
         self.bar
             .suspend(|| std::io::stdout().write_all(text.as_bytes()).ok());

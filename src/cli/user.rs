@@ -1,4 +1,4 @@
-//! `relayrig user`: who may order what at the screen.
+//! `relayrig user`: names, roles and passwords of the people who may log in at the screen.
 
 use anyhow::Context;
 use app::exit::Exit;
@@ -14,7 +14,7 @@ use std::path::Path;
   relayrig user password li --stdin < new-password.txt
   relayrig user remove li
 
-Without --stdin a random password is made and told once. People are kept beside the history (--db).")]
+Without --stdin the program makes a random password and prints it once. The register lies beside the history (--db).")]
 pub struct UserArgs {
     #[command(subcommand)]
     action: Action,
@@ -22,9 +22,9 @@ pub struct UserArgs {
 
 #[derive(Debug, clap::Subcommand)]
 enum Action {
-    /// Names and roles
+    /// List names and roles
     List,
-    /// Add somebody
+    /// Add a person
     Add {
         /// Letters, digits, `.`, `-`, `_`
         name: String,
@@ -37,15 +37,15 @@ enum Action {
     },
     /// Give a new password and end the person's sessions
     Password {
-        /// Whose
+        /// Name of the person
         name: String,
         /// Read the password from the first line of stdin
         #[arg(long)]
         stdin: bool,
     },
-    /// Remove somebody
+    /// Remove a person
     Remove {
-        /// Whom
+        /// Name of the person
         name: String,
     },
 }
@@ -55,21 +55,20 @@ pub fn run(db: &Path, args: UserArgs) -> anyhow::Result<Exit> {
     let mut register = Register::open(&access_path(db))?;
     match args.action {
         Action::List => {
-            let mut out = std::io::stdout().lock();
             for person in register.people()? {
-                writeln!(out, "{:<12}{}", person.role, person.name)?;
+                writeln!(std::io::stdout(), "{:<12}{}", person.role, person.name)?;
             }
         }
         Action::Add { name, role, stdin } => {
             let password = password(stdin)?;
             let now_us = jiff::Timestamp::now().as_microsecond();
             register.add(&name, role, &password, now_us)?;
-            tell(&name, &password, stdin);
+            print_login(&name, &password, stdin);
         }
         Action::Password { name, stdin } => {
             let password = password(stdin)?;
             register.set_password(&name, &password)?;
-            tell(&name, &password, stdin);
+            print_login(&name, &password, stdin);
         }
         Action::Remove { name } => register.remove(&name)?,
     }
@@ -88,8 +87,8 @@ fn password(from_stdin: bool) -> anyhow::Result<String> {
     Ok(line.trim_end_matches(['\r', '\n']).to_owned())
 }
 
-/// A password of the person's own choice is not repeated.
-fn tell(name: &str, password: &str, chosen: bool) {
+/// Prints a random password; a chosen one is known.
+fn print_login(name: &str, password: &str, chosen: bool) {
     if !chosen {
         println!("{name} logs in with {password}");
     }

@@ -1,19 +1,19 @@
-//! `relayrig wear`: how often probes and jaws were used since they were replaced.
+//! `relayrig wear`: uses of probes and jaws since their last replacement.
 
-use anyhow::ensure;
+use super::output::Output;
+use super::person;
 use app::exit::Exit;
-use history::{Identity, Store};
+use history::{Identity, Store, Wear};
 use serde_json::json;
-use std::io::Write;
 use std::path::Path;
 
-/// What is asked of the counters.
+/// Lists or resets the counters.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   relayrig wear list
   relayrig wear replaced probe_touches --by li
 
-Limits are [wear] of lot.toml; at a limit the line goes on and says so.")]
+Limits are [wear] of lot.toml; at a limit the line goes on and warns.")]
 pub struct WearArgs {
     /// Counters of the simulated rig
     #[arg(long, global = true)]
@@ -24,19 +24,19 @@ pub struct WearArgs {
 
 #[derive(Debug, clap::Subcommand)]
 enum Action {
-    /// Every counter
+    /// List every counter
     #[command(after_help = "Example: relayrig wear list --json")]
     List {
         /// One JSON object per counter
         #[arg(long)]
         json: bool,
     },
-    /// What wears was replaced: its counter begins anew
+    /// Reset the counter of a replaced part
     #[command(after_help = "Example: relayrig wear replaced probe_touches --by li")]
     Replaced {
         /// Name of the counter
         name: String,
-        /// Who replaced it
+        /// Person who replaced it
         #[arg(long, value_name = "NAME")]
         by: String,
     },
@@ -48,12 +48,9 @@ pub fn run(db: &Path, args: &WearArgs) -> anyhow::Result<Exit> {
     match &args.action {
         Action::List { json } => list(&store, args.sim, *json)?,
         Action::Replaced { name, by } => {
-            ensure!(
-                !by.trim().is_empty(),
-                "--by: found nothing, expected a name"
-            );
+            let by = person(by)?.who;
             let at_us = jiff::Timestamp::now().as_microsecond();
-            if !store.replaced(args.sim, name, by, at_us)? {
+            if !store.replaced(args.sim, name, &by, at_us)? {
                 let known = store.wear(args.sim)?;
                 let known: Vec<&str> = known.iter().map(|it| it.name.as_str()).collect();
                 eprintln!(
@@ -68,17 +65,12 @@ pub fn run(db: &Path, args: &WearArgs) -> anyhow::Result<Exit> {
 }
 
 fn list(store: &Store, sim: bool, as_json: bool) -> anyhow::Result<()> {
-    let mut out = std::io::stdout().lock();
-    for it in store.wear(sim)? {
-        if as_json {
-            writeln!(out, "{}", json!(it))?;
-            continue;
-        }
-        let replaced = match (it.replaced, it.replaced_by) {
+    let row = |it: &Wear| {
+        let replaced = match (&it.replaced, &it.replaced_by) {
             (Some(at), Some(by)) => format!("replaced {at} by {by}"),
             (_, _) => "never replaced".to_owned(),
         };
-        writeln!(out, "{:<16}{:>10}  {replaced}", it.name, it.count)?;
-    }
-    Ok(())
+        format!("{:<16}{:>10}  {replaced}", it.name, it.count)
+    };
+    Ok(Output::stdout().lines(as_json, &store.wear(sim)?, |it| json!(it), row)?)
 }

@@ -15,13 +15,17 @@
 //! | `story` | a script that strikes the simulated rig and orders as a person does |
 
 pub mod admission;
+pub mod alarm_order;
 pub mod calibration;
+pub mod collision;
 pub mod controls;
+pub mod copies;
 pub mod cycle;
 pub mod exit;
 pub mod follower;
 pub mod gauge_study;
 pub mod generate;
+pub mod import;
 pub mod links;
 pub mod lot;
 pub mod lot_decision;

@@ -74,6 +74,18 @@ pub(super) fn reference_part() -> String {
 }
 
 impl Filter {
+    /// Returns true when the filter takes every part of its runs, reference parts included.
+    pub fn takes_whole_runs(&self) -> bool {
+        let runs = Self {
+            lot: self.lot.clone(),
+            run: self.run,
+            recipe: self.recipe.clone(),
+            kind: Some("all".to_owned()),
+            ..Self::default()
+        };
+        *self == runs
+    }
+
     /// Returns the names of the members that are set, without `suspect`.
     pub fn members(&self) -> Vec<&'static str> {
         let set = [

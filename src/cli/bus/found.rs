@@ -1,10 +1,11 @@
-//! What a scan has found, as a table or as objects.
+//! Modules that a scan has found, as a table or as JSON.
 
+use crate::cli::output::{Fixed, cells, headings};
 use bus::{LineLog, ModuleHealth};
 use dcon::{Address, Config};
 use serde_json::json;
 
-/// A module that has answered.
+/// A module that answered.
 pub(super) struct Found {
     pub(super) asked: Address,
     pub(super) stored: Address,
@@ -21,38 +22,42 @@ impl Found {
         let health = self.log.health();
         health.module(self.asked).cloned().unwrap_or_default()
     }
-}
 
-/// A row or an object per module.
-pub(super) fn told(found: &[Found], as_json: bool) -> String {
-    let rows = found.iter().map(|module| match as_json {
-        true => object(module),
-        false => row(module),
-    });
-    let head = format!(
-        "{:<4} {:>6} {:<8} {:<6} {:<8} {:<4} {:<6} {:>7} {:>7} {:>5} {:>4}  remarks",
-        "addr",
-        "baud",
-        "checksum",
-        "name",
-        "firmware",
-        "type",
-        "format",
-        "p50 ms",
-        "p99 ms",
-        "asked",
-        "bad"
-    );
-    match (found.is_empty(), as_json) {
-        (true, true) => String::new(),
-        (true, false) => "nobody answered\n".to_owned(),
-        (false, true) => rows.map(|row| row + "\n").collect(),
-        (false, false) => std::iter::once(head)
-            .chain(rows)
-            .map(|row| row + "\n")
-            .collect(),
+    /// Transactions without a good reply.
+    fn bad(&self) -> u64 {
+        let counts = self.counts();
+        counts.time_outs + counts.checksum_errors + counts.other_errors
     }
 }
+
+/// Returns a row or an object per module.
+pub(super) fn listing(found: &[Found], as_json: bool) -> String {
+    let rows = found.iter().map(|module| match as_json {
+        true => object(module),
+        false => cells(module, &COLUMNS),
+    });
+    let head = match (found.is_empty(), as_json) {
+        (true, false) => Some("no module answered".to_owned()),
+        (false, false) => Some(headings(&COLUMNS)),
+        (_, true) => None,
+    };
+    head.into_iter().chain(rows).map(|row| row + "\n").collect()
+}
+
+const COLUMNS: [Fixed<Found>; 12] = [
+    ("addr", -4, |it| it.asked.to_string()),
+    ("baud", 6, |it| it.baud.to_string()),
+    ("checksum", -8, |it| on_off(it.checksum).to_owned()),
+    ("name", -6, |it| it.name.clone()),
+    ("firmware", -8, |it| it.firmware.clone()),
+    ("type", -4, |it| format!("{:02X}", it.config.type_code.0)),
+    ("format", -6, |it| format!("{:02X}", it.config.format.0)),
+    ("p50 ms", 7, |it| latency(it, 0.5)),
+    ("p99 ms", 7, |it| latency(it, 0.99)),
+    ("asked", 5, |it| it.counts().transactions.to_string()),
+    ("bad", 4, |it| it.bad().to_string()),
+    (" remarks", 0, |it| format!(" {}", remarks(it).join("; "))),
+];
 
 fn object(module: &Found) -> String {
     let (counts, config) = (module.counts(), module.config);
@@ -68,33 +73,21 @@ fn object(module: &Found) -> String {
     object.to_string()
 }
 
-fn row(module: &Found) -> String {
-    let (counts, config) = (module.counts(), module.config);
-    let bad = counts.time_outs + counts.checksum_errors + counts.other_errors;
-    format!(
-        "{:<4} {:>6} {:<8} {:<6} {:<8} {:<4} {:<6} {:>7.2} {:>7.2} {:>5} {:>4}  {}",
-        module.asked.to_string(),
-        module.baud,
-        if module.checksum { "on" } else { "off" },
-        module.name,
-        module.firmware,
-        format!("{:02X}", config.type_code.0),
-        format!("{:02X}", config.format.0),
-        ms(&counts, 0.5).unwrap_or(0.0),
-        ms(&counts, 0.99).unwrap_or(0.0),
-        counts.transactions,
-        bad,
-        remarks(module).join("; ")
-    )
+fn on_off(on: bool) -> &'static str {
+    if on { "on" } else { "off" }
 }
 
-/// Latency that this share of the answers did not exceed.
+fn latency(module: &Found, share: f64) -> String {
+    format!("{:.2}", ms(&module.counts(), share).unwrap_or(0.0))
+}
+
+/// Returns the latency that this share of the replies did not exceed, milliseconds.
 fn ms(counts: &ModuleHealth, share: f64) -> Option<f64> {
     let span = counts.latency.percentile(share)?;
     Some(span.as_seconds() * 1e3)
 }
 
-/// What differs between how the module was found and what it has stored.
+/// Names the settings that differ between the scan and the memory of the module.
 fn remarks(module: &Found) -> Vec<String> {
     let mut remarks = Vec::new();
     if module.stored != module.asked {
@@ -109,11 +102,7 @@ fn remarks(module: &Found) -> Vec<String> {
         remarks.push(format!("has {stored} baud stored"));
     }
     if module.config.format.checksum() != module.checksum {
-        let stored = if module.config.format.checksum() {
-            "on"
-        } else {
-            "off"
-        };
+        let stored = on_off(module.config.format.checksum());
         remarks.push(format!("has checksum {stored} stored"));
     }
     if !module.checksum {

@@ -1,7 +1,8 @@
-//! `relayrig bus monitor`: what passes on a line, from a port that is only listened to, from a running controller, or from
-//! the trace of an alarm.
+//! `relayrig bus monitor`: shows the traffic of a line, from a port that it only listens to, from a running controller, or
+//! from the trace of an alarm.
 
 use super::{PortArgs, print};
+use crate::cli::output::input;
 use anyhow::{Context, bail};
 use app::exit::Exit;
 use app::follower::{self, News, What};
@@ -18,9 +19,9 @@ use tokio::io::AsyncReadExt;
   relayrig bus monitor --trace relayrig.alarm-1-motion.trace
   relayrig bus monitor --trace relayrig.alarm-1-motion.trace --level bytes
 
-On a port both directions are heard as one: a frame with # $ % @ ~ counts as a question, one with ! > ? as the reply to \
-the question before it. Nothing is ever sent. A running controller has its ports for itself; it is asked over the address \
-of its page, and tells what it kept of every line. Ctrl-C ends it.")]
+A port does not tell the directions apart: a frame with # $ % @ ~ counts as a request, one with ! > ? as the reply to \
+the request before it. The monitor sends nothing. A running controller owns its ports; the monitor reads the traffic that it \
+keeps of every line over the address of its page. Ctrl-C ends it.")]
 pub struct MonitorArgs {
     /// Serial port to listen to
     #[arg(long, value_name = "PATH", required_unless_present_any = ["trace", "from"])]
@@ -31,7 +32,7 @@ pub struct MonitorArgs {
     /// Only this line of the controller
     #[arg(long, value_name = "NAME", requires = "from")]
     line: Option<String>,
-    /// Trace that an alarm has left, - for stdin
+    /// Trace of an alarm, - for stdin
     #[arg(long, value_name = "FILE", conflicts_with = "port")]
     trace: Option<PathBuf>,
     /// Bits per second of the port
@@ -40,10 +41,10 @@ pub struct MonitorArgs {
     /// Frames on the port carry checksums
     #[arg(long)]
     checksum: bool,
-    /// How much is said
+    /// Detail of a row
     #[arg(long, value_enum, default_value = "meaning")]
     level: Level,
-    /// Ends after this many seconds
+    /// Ends after S seconds
     #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(1..=86_400))]
     seconds: Option<u64>,
 }
@@ -54,22 +55,18 @@ pub(super) enum Level {
     Bytes,
     /// Frames as text
     Frames,
-    /// Frames, and what question and reply mean together
+    /// Frames with the meaning of request and reply
     Meaning,
 }
 
 pub(super) async fn run(args: &MonitorArgs) -> anyhow::Result<Exit> {
     if let Some(path) = &args.trace {
-        let text = if path.as_os_str() == "-" {
-            std::io::read_to_string(std::io::stdin()).context("reading stdin")?
-        } else {
-            std::fs::read_to_string(path).with_context(|| format!("--trace {}", path.display()))?
-        };
-        let recorded =
-            Recorded::parse(&text).with_context(|| format!("--trace {}", path.display()))?;
-        let mut teller = Teller::new(args.level, recorded.checksum);
+        let named = || format!("--trace {}", path.display());
+        let text = input(path).and_then(std::io::read_to_string);
+        let recorded = Recorded::parse(&text.with_context(named)?).with_context(named)?;
+        let mut writer = RowWriter::new(args.level, recorded.checksum);
         for entry in &recorded.entries {
-            print(&teller.tell(entry))?;
+            print(&writer.row(entry))?;
         }
         return Ok(Exit::Done);
     }
@@ -82,7 +79,7 @@ pub(super) async fn run(args: &MonitorArgs) -> anyhow::Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// For as long as there is something to watch.
+/// Watches until the controller or the port goes away.
 async fn watch(args: &MonitorArgs) -> anyhow::Result<()> {
     if let Some(page) = &args.from {
         return follower::follow(page, |news| {
@@ -100,13 +97,13 @@ async fn watch(args: &MonitorArgs) -> anyhow::Result<()> {
     listen(args, &PortArgs { port: path.clone() }).await
 }
 
-/// One row of a running controller, its end left off.
+/// Returns the row of a message of a running controller, without line end.
 fn row(news: &News, level: Level) -> String {
     let (seconds, line) = (news.at_us as f64 / 1e6, &news.line);
     let What::Message(message) = &news.what else {
-        return format!("{seconds:>14.6} {line} - more has passed than could be seen");
+        return format!("{seconds:>14.6} {line} - messages were lost here");
     };
-    let said = match level {
+    let shown = match level {
         Level::Bytes => unescaped(&message.text)
             .unwrap_or_default()
             .iter()
@@ -115,16 +112,16 @@ fn row(news: &News, level: Level) -> String {
         Level::Frames => message.text.clone(),
         Level::Meaning => format!("{:<24} {}", message.text, message.meaning),
     };
-    let row = format!("{seconds:>14.6} {line} {} {said}", message.way);
+    let row = format!("{seconds:>14.6} {line} {} {shown}", message.way);
     row.trim_end().to_owned()
 }
 
-/// Until the port goes away.
+/// Shows frames until the port goes away.
 async fn listen(args: &MonitorArgs, port: &PortArgs) -> anyhow::Result<()> {
     let path = port.port.to_string_lossy();
     let mut stream = open_serial(&path, args.baud).with_context(|| format!("--port {path}"))?;
     let pace = Pace::real();
-    let mut teller = Teller::new(args.level, args.checksum);
+    let mut writer = RowWriter::new(args.level, args.checksum);
     let mut frame: Vec<u8> = Vec::new();
     let mut piece = [0; 256];
     loop {
@@ -138,7 +135,7 @@ async fn listen(args: &MonitorArgs, port: &PortArgs) -> anyhow::Result<()> {
             frame.push(*byte);
             if *byte == b'\r' || frame.len() == dcon::FRAME_LIMIT {
                 if let Some(entry) = Entry::new(now, direction(&frame), &frame) {
-                    print(&teller.tell(&entry))?;
+                    print(&writer.row(&entry))?;
                 }
                 frame.clear();
             }
@@ -154,13 +151,13 @@ fn direction(frame: &[u8]) -> Direction {
     }
 }
 
-/// Puts entries into words.
-struct Teller {
+/// Turns entries into rows.
+struct RowWriter {
     level: Level,
     meaning: Meaning,
 }
 
-impl Teller {
+impl RowWriter {
     fn new(level: Level, checksum: bool) -> Self {
         Self {
             level,
@@ -168,10 +165,10 @@ impl Teller {
         }
     }
 
-    /// One line, with its end.
-    fn tell(&mut self, entry: &Entry) -> String {
+    /// Returns one row with its line end.
+    fn row(&mut self, entry: &Entry) -> String {
         let seconds = entry.at.0 as f64 / 1e6;
-        let said = match self.level {
+        let shown = match self.level {
             Level::Bytes => entry
                 .bytes()
                 .iter()
@@ -183,7 +180,7 @@ impl Teller {
         format!(
             "{seconds:>14.6} {} {}\n",
             arrow(entry.direction),
-            said.trim_end()
+            shown.trim_end()
         )
     }
 }
@@ -194,7 +191,7 @@ mod tests {
     use app::follower::Message;
 
     #[test]
-    fn a_level_says_how_much_of_a_message_is_shown() {
+    fn a_level_sets_the_detail_of_a_message() {
         let news = |what| News {
             at_us: 4,
             line: "motion".to_owned(),
@@ -212,6 +209,6 @@ mod tests {
         assert_eq!(frames, "      0.000004 motion < >3E\\r");
         assert!(row(&message, Level::Meaning).ends_with("accepted"));
         let gap = row(&news(What::Gap), Level::Meaning);
-        assert!(gap.ends_with("motion - more has passed than could be seen"));
+        assert!(gap.ends_with("motion - messages were lost here"));
     }
 }

@@ -1,6 +1,6 @@
-//! `relayrig bus scan`: who is on the line.
+//! `relayrig bus scan`: finds the modules of a line.
 
-use super::found::{Found, told};
+use super::found::{Found, listing};
 use super::{PortArgs, print};
 use anyhow::{Context, anyhow, bail};
 use app::exit::Exit;
@@ -17,8 +17,8 @@ use tokio::task::JoinHandle;
   relayrig bus scan --port /dev/ttyUSB0
   relayrig bus scan --port /dev/ttyUSB0 --baud 115200 --baud 9600 --addresses 01-20 --checksum on
 
-A module is asked for its configuration word ($AA2), which changes nothing. All addresses at all rates with and without \
-checksum take about ten minutes, at 115200 and 9600 one and a half; Ctrl-C ends it and prints what was found. Exit status 1 when nobody answers, 4 after \
+The scan reads the configuration word of each module ($AA2), which changes nothing. All addresses at all rates with and without \
+checksum take about ten minutes, at 115200 and 9600 one and a half; Ctrl-C ends it and prints what was found. Exit status 1 when no module answers, 4 after \
 Ctrl-C.")]
 pub struct ScanArgs {
     #[command(flatten)]
@@ -29,10 +29,10 @@ pub struct ScanArgs {
     /// Addresses, hexadecimal, FIRST-LAST
     #[arg(long, value_name = "RANGE", default_value = "00-FF", value_parser = addresses)]
     addresses: (u8, u8),
-    /// With checksum, without, or both
+    /// Checksum on, off, or both
     #[arg(long, value_enum, default_value = "both")]
     checksum: Checksums,
-    /// Milliseconds that a module may think; more for slow modules, converters in a network, a busy computer
+    /// Milliseconds until a reply; more for slow modules, converters in a network, a busy computer
     #[arg(long, value_name = "MS", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=1_000))]
     allowance: u64,
     /// One JSON object per module
@@ -57,48 +57,48 @@ impl Checksums {
     }
 }
 
-/// An argument that does not say what to ask.
+/// Why a rate or an address range is refused.
 #[derive(Debug, Error)]
-pub(super) enum NotAskable {
-    /// No rate of the protocol.
+pub(super) enum ScanArgError {
+    /// The protocol has no such rate.
     #[error("found \"{0}\", expected 1200 2400 4800 9600 19200 38400 57600 or 115200")]
     Rate(String),
-    /// No range of addresses.
+    /// The text is no range of addresses.
     #[error("found \"{0}\", expected hexadecimal addresses as 01-20")]
     Addresses(String),
 }
 
-/// A rate of the protocol.
-pub(super) fn baud(text: &str) -> Result<u32, NotAskable> {
+/// Reads a rate of the protocol, bits per second.
+pub(super) fn baud(text: &str) -> Result<u32, ScanArgError> {
     text.parse()
         .ok()
         .filter(|rate| BaudCode::of(*rate).is_some())
-        .ok_or_else(|| NotAskable::Rate(text.to_owned()))
+        .ok_or_else(|| ScanArgError::Rate(text.to_owned()))
 }
 
-fn addresses(text: &str) -> Result<(u8, u8), NotAskable> {
+fn addresses(text: &str) -> Result<(u8, u8), ScanArgError> {
     let number = |part: &str| u8::from_str_radix(part, 16).ok();
     let (first, last) = text.split_once('-').unwrap_or((text, text));
     match (number(first), number(last)) {
         (Some(first), Some(last)) if first <= last => Ok((first, last)),
-        _ => Err(NotAskable::Addresses(text.to_owned())),
+        _ => Err(ScanArgError::Addresses(text.to_owned())),
     }
 }
 
 /// Most likely rates first.
 const RATES: [u32; 8] = [115_200, 9_600, 19_200, 38_400, 57_600, 4_800, 2_400, 1_200];
 
-/// Times each found module is asked again for the spread of its latency.
-const ASKED_AGAIN: usize = 16;
+/// Repeated transactions with each found module, for the spread of its latency.
+const REPETITIONS: usize = 16;
 
 pub(super) async fn run(args: &ScanArgs) -> anyhow::Result<Exit> {
     let mut found: Vec<Found> = Vec::new();
     let interrupted = tokio::select! {
-        asked = ask_all(args, &mut found) => asked.map(|()| false)?,
+        asked = scan_all(args, &mut found) => asked.map(|()| false)?,
         pressed = tokio::signal::ctrl_c() => pressed.map(|()| true)?,
     };
     found.sort_by_key(|module| module.asked);
-    print(&told(&found, args.json))?;
+    print(&listing(&found, args.json))?;
     Ok(match (interrupted, found.is_empty()) {
         (true, _) => Exit::Stopped,
         (false, true) => Exit::AnswerIsNo,
@@ -106,8 +106,8 @@ pub(super) async fn run(args: &ScanArgs) -> anyhow::Result<Exit> {
     })
 }
 
-/// Every address at every rate, with checksum and without.
-async fn ask_all(args: &ScanArgs, found: &mut Vec<Found>) -> anyhow::Result<()> {
+/// Tries every address at every rate, with checksum and without.
+async fn scan_all(args: &ScanArgs, found: &mut Vec<Found>) -> anyhow::Result<()> {
     let rates = if args.baud.is_empty() {
         &RATES[..]
     } else {
@@ -124,12 +124,12 @@ async fn ask_all(args: &ScanArgs, found: &mut Vec<Found>) -> anyhow::Result<()> 
     {
         let with = if checksum { "with" } else { "no" };
         bar.set_message(format!("{rate} baud, {with} checksum"));
-        let mut line = Asking::open(args, rate, checksum)?;
+        let mut line = OpenLine::open(args, rate, checksum)?;
         for address in (first..=last).map(Address) {
             bar.inc(1);
             // A module listens at one rate only; a terminal without a rate would show it at each.
             if found.iter().all(|module| module.asked != address)
-                && let Some(module) = line.who(address, rate, checksum).await?
+                && let Some(module) = line.identify(address, rate, checksum).await?
             {
                 found.push(module);
             }
@@ -140,15 +140,15 @@ async fn ask_all(args: &ScanArgs, found: &mut Vec<Found>) -> anyhow::Result<()> 
     Ok(())
 }
 
-/// A line that is asked one thing after the other.
-struct Asking {
+/// An open line with one transaction at a time.
+struct OpenLine {
     requests: mpsc::Sender<Request>,
     answers: mpsc::Receiver<Answer>,
     log: LineLog,
     task: JoinHandle<()>,
 }
 
-impl Asking {
+impl OpenLine {
     fn open(args: &ScanArgs, rate: u32, checksum: bool) -> anyhow::Result<Self> {
         let port = args.port.open(rate)?;
         let mut settings = args.port.settings(rate, checksum);
@@ -165,7 +165,7 @@ impl Asking {
         })
     }
 
-    /// Gives the port back, so that it can be opened at another rate.
+    /// Closes the port, so that it can be opened at another rate.
     async fn close(self) -> anyhow::Result<()> {
         let Self { requests, task, .. } = self;
         drop(requests);
@@ -187,7 +187,7 @@ impl Asking {
         Ok(answer)
     }
 
-    async fn who(
+    async fn identify(
         &mut self,
         asked: Address,
         baud: u32,
@@ -203,8 +203,8 @@ impl Asking {
         };
         let name = self.text(Common::ReadName.to(asked), stored).await?;
         let firmware = self.text(Common::ReadFirmware.to(asked), stored).await?;
-        // A reply in INIT* mode names the stored address; it is no answer of the one that was asked.
-        let again = if stored == asked { ASKED_AGAIN } else { 0 };
+        // A reply in INIT* mode names the stored address, which `bus` refuses as the reply of another module.
+        let again = if stored == asked { REPETITIONS } else { 0 };
         for _ in 0..again {
             self.ask(Common::ReadConfig.to(asked), 1).await?;
         }
@@ -221,7 +221,7 @@ impl Asking {
         }))
     }
 
-    /// What a module says of itself, under its stored address; a module in INIT* mode has no checksum.
+    /// Returns the text of a reply under the stored address; a module in INIT* mode sends no checksum.
     async fn text(&mut self, command: Command, stored: Address) -> anyhow::Result<String> {
         let is_init = command.address() != Some(stored);
         let answer = self.ask(command, if is_init { 1 } else { 3 }).await?;

@@ -1,4 +1,4 @@
-//! `relayrig bus send`: one command as typed, and what the reply means.
+//! `relayrig bus send`: sends one command as typed and decodes the reply.
 
 use super::{PortArgs, print};
 use anyhow::bail;
@@ -15,21 +15,20 @@ use tokio_serial::SerialStream;
   relayrig bus send --port /dev/ttyUSB0 --checksum '#01' --model 7017F
 
 Exit status: 0 a reply that can be read, 1 refused, silent or garbled, 2 bad input. Factory calibration and trim are \
-never sent. A setting that stands already is not written again; --model says which setting it is where the same characters \
-mean several.")]
+never sent. A setting that is in effect already is not written again; --model tells settings with the same characters apart.")]
 pub struct SendArgs {
     #[command(flatten)]
     port: PortArgs,
     /// Bits per second
     #[arg(long, default_value_t = 115_200, value_parser = super::scan::baud)]
     baud: u32,
-    /// The line has checksums: add one, and check the reply's
+    /// Add a checksum, and check that of the reply
     #[arg(long)]
     checksum: bool,
-    /// Milliseconds that a module may think
+    /// Milliseconds until the reply
     #[arg(long, value_name = "MS", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=1_000))]
     allowance: u64,
-    /// Model of the module, where the same reply could mean several things
+    /// Model of the module, where a reply has several meanings
     #[arg(long, value_name = "NAME")]
     model: Option<String>,
     /// One JSON object
@@ -50,10 +49,10 @@ pub(super) async fn run(args: &SendArgs) -> anyhow::Result<Exit> {
     let mut port = args.port.open(args.baud)?;
     let mut settings = args.port.settings(args.baud, args.checksum);
     settings.store_allowance_ms = args.allowance;
-    if let Some(command) = lone_reading(text, family)
-        && let Some(found) = stands(&mut port, &settings, &command).await?
+    if let Some(command) = unambiguous(text, family)
+        && let Some(found) = in_effect(&mut port, &settings, &command).await?
     {
-        return told_standing(args, &found);
+        return print_unchanged(args, &found);
     }
     let reply = send_raw(&mut port, &settings, Pace::real(), &request).await?;
     let mut meanings = dcon::understand(&request, &reply.bytes, args.checksum);
@@ -75,7 +74,7 @@ pub(super) async fn run(args: &SendArgs) -> anyhow::Result<Exit> {
         });
         format!("{object}\n")
     } else {
-        told(&request, &reply, &words, broadcast)
+        transcript(&request, &reply, &words, broadcast)
     })?;
     Ok(if good || broadcast {
         Exit::Done
@@ -84,16 +83,16 @@ pub(super) async fn run(args: &SendArgs) -> anyhow::Result<Exit> {
     })
 }
 
-/// Request, reply and its meanings.
-fn told(request: &[u8], reply: &RawReply, words: &[String], broadcast: bool) -> String {
+/// Returns request, reply and its meanings, a line each.
+fn transcript(request: &[u8], reply: &RawReply, words: &[String], broadcast: bool) -> String {
     let taken_ms = reply.taken.as_seconds() * 1e3;
     let mut rows = vec![format!("> {}", escaped(request))];
     if reply.bytes.is_empty() {
         rows.push(if broadcast {
-            "  sent to all; nobody answers".to_owned()
+            "  sent to all; no module answers".to_owned()
         } else {
             format!(
-                "  no reply within {taken_ms:.1} ms: nobody there knows this address, rate, checksum and command"
+                "  no reply within {taken_ms:.1} ms: no module with this address, rate and checksum knows this command"
             )
         });
     } else {
@@ -110,8 +109,8 @@ fn told(request: &[u8], reply: &RawReply, words: &[String], broadcast: bool) -> 
     rows.join("\n") + "\n"
 }
 
-/// What the text means, if that is one thing only.
-fn lone_reading(text: &[u8], family: Option<Family>) -> Option<Command> {
+/// Returns the command of an unambiguous text.
+fn unambiguous(text: &[u8], family: Option<Family>) -> Option<Command> {
     let mut readings = dcon::readings(text);
     readings.retain(|command| family.is_none_or(|family| family.knows(command)));
     match readings[..] {
@@ -120,8 +119,8 @@ fn lone_reading(text: &[u8], family: Option<Family>) -> Option<Command> {
     }
 }
 
-/// What the module says when `command` writes a setting that stands already; none where it has to be written.
-async fn stands(
+/// Reads the setting that `command` writes; returns the reply if the setting is in effect already.
+async fn in_effect(
     port: &mut SerialStream,
     settings: &LineSettings,
     command: &Command,
@@ -138,17 +137,17 @@ async fn stands(
         .then(|| escaped(&said.bytes)))
 }
 
-fn told_standing(args: &SendArgs, found: &str) -> anyhow::Result<Exit> {
+fn print_unchanged(args: &SendArgs, found: &str) -> anyhow::Result<Exit> {
     print(&if args.json {
         let object = json!({ "request": args.command, "written": false, "found": found });
         format!("{object}\n")
     } else {
-        format!("  stands already, {found}: not written again, an EEPROM wears\n")
+        format!("  in effect already, {found}: not written again, an EEPROM wears\n")
     })?;
     Ok(Exit::Done)
 }
 
-/// A command that can be a request of the protocol and is none that spoils a module.
+/// Refuses a text that is no request of the protocol, and factory commands, which spoil a module.
 fn checked(command: &str) -> anyhow::Result<&[u8]> {
     let text = command.as_bytes();
     let plain = text.iter().all(|byte| (0x20..0x7F).contains(byte));

@@ -4,7 +4,7 @@ use clap::Args;
 use history::inquiry::{self, checks};
 use history::{Filter, Moment};
 
-/// Which runs.
+/// Selects runs.
 #[derive(Debug, Args)]
 pub(super) struct RunArgs {
     /// Only this lot
@@ -18,7 +18,7 @@ pub(super) struct RunArgs {
     pub recipe: Option<String>,
 }
 
-/// Which parts of them.
+/// Selects parts of the runs.
 #[derive(Debug, Args)]
 pub(super) struct PartArgs {
     #[command(flatten)]
@@ -35,16 +35,16 @@ pub(super) struct PartArgs {
     /// Only parts for this bin
     #[arg(long)]
     pub bin: Option<String>,
-    /// Production parts, golden parts, or both
+    /// Production parts, reference parts (golden), or both
     #[arg(long, value_parser = checks::KINDS, default_value = "lot")]
     pub kind: String,
-    /// Only parts between a good golden check and one that failed
+    /// Only parts between a passed and a failed reference check
     #[arg(long)]
     pub suspect: bool,
-    /// Most parts to show, the first ones in order of judgement
+    /// At most N parts, the first in order of judgement
     #[arg(long, value_name = "N")]
     pub limit: Option<u64>,
-    /// Number of parts to skip first: the next page
+    /// Skip N parts first
     #[arg(long, value_name = "N")]
     pub offset: Option<u64>,
 }
@@ -89,7 +89,7 @@ impl PartArgs {
         }
     }
 
-    /// With a range; refuses one that nothing can lie in.
+    /// Returns the filter with a range; refuses an empty range.
     pub fn within(&self, range: &RangeArgs) -> inquiry::Result<Filter> {
         let filter = Filter {
             param: range.param.clone(),

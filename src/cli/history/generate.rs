@@ -1,4 +1,4 @@
-//! `history generate`: a made-up history as large as a plant fills in weeks, see [`app::generate`].
+//! `history generate`: a random history as large as weeks of a plant, see [`app::generate`].
 
 use app::exit::Exit;
 use app::generate::{BATCH, Wanted, generate};
@@ -10,7 +10,7 @@ use std::path::Path;
 /// Arguments of `history generate`.
 #[derive(Debug, Clone, Args)]
 pub(super) struct GenerateArgs {
-    /// How many parts
+    /// Number of parts
     #[arg(long, value_name = "N", default_value_t = 1_000_000,
         value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
     parts: u64,

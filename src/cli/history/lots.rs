@@ -1,10 +1,9 @@
 //! `history list`.
 
 use super::filter::RunArgs;
-use super::output::{Format, FormatArgs, Output, Table, text};
+use crate::cli::output::{Column, FormatArgs, Output, text};
 use clap::Args;
-use history::{Archive, LotSummary, csv};
-use std::io::Write;
+use history::{Archive, LotSummary};
 
 #[derive(Debug, Args)]
 pub(super) struct ListArgs {
@@ -14,68 +13,30 @@ pub(super) struct ListArgs {
     format: FormatArgs,
 }
 
-const HEADER: [&str; 16] = [
-    "lot",
-    "run",
-    "recipe",
-    "source",
-    "seed",
-    "opened",
-    "closed",
-    "parts",
-    "pass",
-    "fail",
-    "void",
-    "yield_percent",
-    "golden",
-    "alarms",
-    "ended",
-    "cause",
+pub(super) const COLUMNS: [Column<LotSummary>; 16] = [
+    ("lot", |it| it.lot.clone()),
+    ("run", |it| it.run.to_string()),
+    ("recipe", |it| it.recipe.clone()),
+    ("source", |it| it.source.clone()),
+    ("seed", |it| text(it.seed.as_ref())),
+    ("opened", |it| it.opened.to_string()),
+    ("closed", |it| text(it.closed)),
+    ("parts", |it| it.counts.parts.to_string()),
+    ("pass", |it| it.counts.pass.to_string()),
+    ("fail", |it| it.counts.fail.to_string()),
+    ("void", |it| it.counts.void.to_string()),
+    ("yield_percent", |it| {
+        text(it.counts.percent().map(|it| format!("{it:.2}")))
+    }),
+    ("golden", |it| it.golden.to_string()),
+    ("alarms", |it| it.alarms.to_string()),
+    ("ended", |it| text(it.ended.as_ref())),
+    ("cause", |it| text(it.cause.as_ref())),
 ];
 
 pub(super) fn run(archive: &Archive, args: &ListArgs) -> anyhow::Result<()> {
     let filter = args.runs.filter();
-    super::query::remark_unknown(archive, &filter);
+    super::query::warn_unknown(archive, &filter);
     let lots = archive.lots(&filter)?;
-    write(&lots, args.format.format(), &mut Output::stdout())
-}
-
-pub(super) fn write(lots: &[LotSummary], format: Format, out: &mut Output) -> anyhow::Result<()> {
-    match format {
-        Format::Json => lots.iter().try_for_each(|lot| out.json(lot))?,
-        Format::Csv => {
-            csv::write(out, HEADER)?;
-            for lot in lots {
-                csv::write(out, cells(lot).iter().map(|cell| csv::escape_formula(cell)))?;
-            }
-        }
-        Format::Table => {
-            let mut table = Table::new(&HEADER);
-            lots.iter().try_for_each(|lot| table.row(out, cells(lot)))?;
-            table.finish(out)?;
-        }
-    }
-    Ok(out.flush()?)
-}
-
-fn cells(lot: &LotSummary) -> Vec<String> {
-    let counts = &lot.counts;
-    vec![
-        lot.lot.clone(),
-        lot.run.to_string(),
-        lot.recipe.clone(),
-        lot.source.clone(),
-        text(lot.seed.as_ref()),
-        lot.opened.to_string(),
-        text(lot.closed),
-        counts.parts.to_string(),
-        counts.pass.to_string(),
-        counts.fail.to_string(),
-        counts.void.to_string(),
-        text(counts.percent().map(|it| format!("{it:.2}"))),
-        lot.golden.to_string(),
-        lot.alarms.to_string(),
-        text(lot.ended.as_ref()),
-        text(lot.cause.as_ref()),
-    ]
+    Output::stdout().list(args.format.format(), &lots, &COLUMNS)
 }

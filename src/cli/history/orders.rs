@@ -1,19 +1,18 @@
-//! `history orders`: who ordered what, and whether it was taken.
+//! `history orders`: orders with person, place and answer.
 
 use super::filter::RunArgs;
-use super::output::{Format, FormatArgs, Output, Table, text};
+use crate::cli::output::{Column, FormatArgs, Output, text};
 use clap::Args;
-use history::{Archive, Filter, Moment, OrderEntry, csv};
-use std::io::Write;
+use history::{Archive, Filter, Moment, OrderEntry};
 
 #[derive(Debug, Args)]
 pub(super) struct OrdersArgs {
     #[command(flatten)]
     runs: RunArgs,
-    /// AnsweredOrder at this time or later (RFC 3339)
+    /// Answered at this time or later (RFC 3339)
     #[arg(long, value_name = "TIME")]
     since: Option<Moment>,
-    /// AnsweredOrder before this time (RFC 3339)
+    /// Answered before this time (RFC 3339)
     #[arg(long, value_name = "TIME")]
     until: Option<Moment>,
     /// Only this person
@@ -26,8 +25,15 @@ pub(super) struct OrdersArgs {
     format: FormatArgs,
 }
 
-const HEADER: [&str; 8] = [
-    "time", "lot", "run", "who", "role", "from", "order", "refused",
+pub(super) const COLUMNS: [Column<OrderEntry>; 8] = [
+    ("time", |it| it.at.to_string()),
+    ("lot", |it| text(it.lot.as_ref())),
+    ("run", |it| text(it.run)),
+    ("who", |it| it.who.clone()),
+    ("role", |it| it.role.clone()),
+    ("from", |it| it.origin.clone()),
+    ("order", |it| it.what.to_string()),
+    ("refused", |it| text(it.refused.as_ref())),
 ];
 
 pub(super) fn run(archive: &Archive, args: &OrdersArgs) -> anyhow::Result<()> {
@@ -38,36 +44,5 @@ pub(super) fn run(archive: &Archive, args: &OrdersArgs) -> anyhow::Result<()> {
     };
     let mut orders = archive.orders(&filter, args.who.as_deref())?;
     orders.retain(|it| !args.refused || it.refused.is_some());
-    write(&orders, args.format.format(), &mut Output::stdout())
-}
-
-pub(super) fn write(orders: &[OrderEntry], format: Format, out: &mut Output) -> anyhow::Result<()> {
-    match format {
-        Format::Json => orders.iter().try_for_each(|it| out.json(it))?,
-        Format::Csv => {
-            csv::write(out, HEADER)?;
-            for it in orders {
-                csv::write(out, cells(it).iter().map(|cell| csv::escape_formula(cell)))?;
-            }
-        }
-        Format::Table => {
-            let mut table = Table::new(&HEADER);
-            orders.iter().try_for_each(|it| table.row(out, cells(it)))?;
-            table.finish(out)?;
-        }
-    }
-    Ok(out.flush()?)
-}
-
-fn cells(it: &OrderEntry) -> Vec<String> {
-    vec![
-        it.at.to_string(),
-        text(it.lot.as_ref()),
-        text(it.run),
-        it.who.clone(),
-        it.role.clone(),
-        it.origin.clone(),
-        it.what.to_string(),
-        text(it.refused.as_ref()),
-    ]
+    Output::stdout().list(args.format.format(), &orders, &COLUMNS)
 }

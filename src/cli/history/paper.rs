@@ -1,6 +1,6 @@
-//! Options of everything that is printed: language, file.
+//! Options of pages for print: language and file.
 
-use super::output::Output;
+use crate::cli::output::Output;
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use history::inquiry;
@@ -10,25 +10,25 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum Tongue {
+pub(in crate::cli) enum LangArg {
     /// English
     En,
     /// Simplified Chinese
     Zh,
 }
 
-/// Where the page goes, and in which language.
+/// File and language of a page.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct PaperArgs {
-    /// Lang of the page
+    /// Language of the page
     #[arg(long, value_enum, default_value = "zh")]
-    lang: Tongue,
+    lang: LangArg,
     /// HTML file to write, for A4 (print it from a browser); - is stdout
     #[arg(long, default_value = "-")]
     out: PathBuf,
 }
 
-impl Tongue {
+impl LangArg {
     pub fn language(self) -> Lang {
         match self {
             Self::En => Lang::En,
@@ -38,7 +38,7 @@ impl Tongue {
 }
 
 impl PaperArgs {
-    /// Paper of this language, made now.
+    /// Returns paper of this language, made now.
     pub fn paper(&self) -> Paper {
         inquiry::paper::paper(self.lang.language())
     }
@@ -51,7 +51,7 @@ impl PaperArgs {
     }
 }
 
-/// The file, or stdout for `-`.
+/// Creates the file, or opens stdout for `-`.
 pub(super) fn sink(file: &Path) -> anyhow::Result<Output> {
     if file.as_os_str() == "-" {
         return Ok(Output::stdout());

@@ -1,16 +1,15 @@
-//! `history prune`: old runs that were copied whole lose their parts here; without `--yes` it only says which.
+//! `history prune`: deletes the parts of old runs that were copied whole; lists them without `--yes`.
 
-use super::output::{Output, Table};
+use crate::cli::output::{Column, Output};
 use app::exit::Exit;
 use app::progress::{PIECES, progress};
 use clap::Args;
 use history::{Identity, Pruned, Store};
-use std::io::Write;
 use std::path::Path;
 
 #[derive(Debug, Args)]
 pub(super) struct PruneArgs {
-    /// Age of the runs: days since they ended, at least
+    /// Runs that ended at least N days ago
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=36_500))]
     older_than_days: u32,
     /// Delete them; without it they are only listed
@@ -26,27 +25,13 @@ pub(super) fn run(db: &Path, args: &PruneArgs) -> anyhow::Result<Exit> {
     let now_us = jiff::Timestamp::now().as_microsecond();
     let before = now_us - DAY_US * i64::from(args.older_than_days);
     let runs = store.prunable(before)?;
-    let mut out = Output::stdout();
-    let mut table = Table::new(&["lot", "run", "parts", "copy"]);
-    for Pruned {
-        lot,
-        run,
-        parts,
-        file,
-    } in &runs
-    {
-        table.row(
-            &mut out,
-            vec![
-                lot.clone(),
-                run.to_string(),
-                parts.to_string(),
-                file.clone(),
-            ],
-        )?;
-    }
-    table.finish(&mut out)?;
-    out.flush()?;
+    let columns: [Column<Pruned>; 4] = [
+        ("lot", |it| it.lot.clone()),
+        ("run", |it| it.run.to_string()),
+        ("parts", |it| it.parts.to_string()),
+        ("copy", |it| it.file.clone()),
+    ];
+    Output::stdout().table(&runs, &columns)?;
     if !args.yes {
         eprintln!(
             "{} runs could go; nothing was deleted (say --yes)",

@@ -1,14 +1,14 @@
 //! `quality`: figures from a file of readings, no history needed.
 
-use super::output::{Output, Table, figure};
+use crate::cli::output::{Column, Output, figure, input};
 use anyhow::Context;
 use app::exit::Exit;
+use app::gauge_study::read_csv;
 use clap::{Args, Subcommand};
-use history::csv;
 use quality::average_range::average_and_range;
-use quality::gauge_rr::{GaugeRr, Reading, anova};
-use std::io::{Read, Write};
-use std::path::{Path, PathBuf};
+use quality::gauge_rr::{GaugeRr, anova};
+use std::io::{self, Write};
+use std::path::PathBuf;
 
 /// Arguments of `quality`.
 #[derive(Debug, Args)]
@@ -30,23 +30,24 @@ enum Command {
     },
 }
 
-/// Runs the command; gives the exit status. An error is bad input: status 2.
+/// Runs the command. An error is bad input: exit status 2.
 pub fn run_quality(args: QualityArgs) -> anyhow::Result<Exit> {
-    super::super::unless_reader_left(dispatch(&args.command))
+    super::super::unless_pipe_closed(dispatch(&args.command))
 }
 
 fn dispatch(command: &Command) -> anyhow::Result<Exit> {
     let Command::Grr { file, json } = command;
     let name = file.display().to_string();
-    let text = read(file).with_context(|| format!("reading {name}"))?;
-    let readings = readings(&text).with_context(|| name.clone())?;
+    let text = input(file).and_then(io::read_to_string);
+    let text = text.with_context(|| format!("reading {name}"))?;
+    let readings = read_csv(&text).with_context(|| name.clone())?;
     let result = anova(&readings).context(name)?;
     let mut out = Output::stdout();
     if *json {
         out.json(&result)?;
     } else {
         table(&result, &mut out)?;
-        // Beyond its published factors there is no second opinion.
+        // The method has no published factors for larger studies.
         if let Ok(by_ranges) = average_and_range(&readings) {
             writeln!(out)?;
             table(&by_ranges, &mut out)?;
@@ -56,56 +57,8 @@ fn dispatch(command: &Command) -> anyhow::Result<Exit> {
     Ok(Exit::Done)
 }
 
-fn read(file: &Path) -> std::io::Result<String> {
-    let mut text = String::new();
-    if file.as_os_str() == "-" {
-        std::io::stdin().read_to_string(&mut text)?;
-    } else {
-        text = std::fs::read_to_string(file)?;
-    }
-    Ok(text)
-}
-
-fn readings(text: &str) -> anyhow::Result<Vec<Reading>> {
-    let records = csv::read(text)?;
-    let (header, rows) = records.split_first().context("line 1: expected a header")?;
-    let column = |name: &str| {
-        header
-            .fields
-            .iter()
-            .position(|field| field.trim().eq_ignore_ascii_case(name))
-            .with_context(|| {
-                format!("line 1: column {name} is missing; expected part, operator, trial, value")
-            })
-    };
-    let [part, operator, trial, value] = [
-        column("part")?,
-        column("operator")?,
-        column("trial")?,
-        column("value")?,
-    ];
-    rows.iter()
-        .map(|row| {
-            let cell = |column: usize| row.fields[column].trim();
-            let number = cell(value).parse().ok().filter(|it: &f64| it.is_finite());
-            Ok(Reading {
-                part: cell(part).to_owned(),
-                operator: cell(operator).to_owned(),
-                trial: cell(trial).to_owned(),
-                value: number.with_context(|| {
-                    format!(
-                        "line {}, column value: found {:?}, expected a finite number",
-                        row.line,
-                        cell(value)
-                    )
-                })?,
-            })
-        })
-        .collect()
-}
-
 fn table(it: &GaugeRr, out: &mut Output) -> anyhow::Result<()> {
-    let mut table = Table::new(&[it.method, "sd", "percent of total"]);
+    let share = |sd: f64| (it.total > 0.0).then(|| format!("{:.2}", 100.0 * sd / it.total));
     let sources = [
         ("repeatability", it.repeatability),
         ("reproducibility", it.reproducibility),
@@ -113,19 +66,14 @@ fn table(it: &GaugeRr, out: &mut Output) -> anyhow::Result<()> {
         ("gauge r&r", it.grr),
         ("part", it.part),
         ("total", it.total),
+    ]
+    .map(|(source, sd)| (source, sd, share(sd).unwrap_or_default()));
+    let columns: [Column<(&str, f64, String)>; 3] = [
+        (it.method, |it| it.0.to_owned()),
+        ("sd", |it| figure(Some(it.1))),
+        ("percent of total", |it| it.2.clone()),
     ];
-    for (source, sd) in sources {
-        let percent = (it.total > 0.0).then(|| format!("{:.2}", 100.0 * sd / it.total));
-        table.row(
-            out,
-            vec![
-                source.to_owned(),
-                figure(Some(sd)),
-                percent.unwrap_or_default(),
-            ],
-        )?;
-    }
-    table.finish(out)?;
+    out.table(&sources, &columns)?;
     let ndc = it.ndc.map_or("unlimited".to_owned(), |ndc| ndc.to_string());
     Ok(writeln!(out, "distinct categories: {ndc}")?)
 }

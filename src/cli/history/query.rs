@@ -1,7 +1,7 @@
-//! `history query`: parts that a filter leaves, one at a time from file to stdout.
+//! `history query`: parts that match a filter, one at a time from file to stdout.
 
 use super::filter::{PartArgs, RangeArgs};
-use super::output::{Format, FormatArgs, Output, Table, figure, text};
+use crate::cli::output::{Format, FormatArgs, Output, Table, figure, text};
 use clap::Args;
 use history::inquiry::{checks, export};
 use history::{Archive, Filter};
@@ -19,7 +19,7 @@ pub(super) struct QueryArgs {
 
 pub(super) fn run(archive: &Archive, args: &QueryArgs) -> anyhow::Result<()> {
     let filter = args.parts.within(&args.range)?;
-    remark_unknown(archive, &filter);
+    warn_unknown(archive, &filter);
     let parameters = checks::parameters(archive, filter.param.as_deref())?;
     let mut out = Output::stdout();
     match args.format.format() {
@@ -30,14 +30,14 @@ pub(super) fn run(archive: &Archive, args: &QueryArgs) -> anyhow::Result<()> {
     Ok(out.flush()?)
 }
 
-/// No parts of a lot that never was are an answer, too; a misspelt name shall be seen.
-pub(super) fn remark_unknown(archive: &Archive, filter: &Filter) {
+/// Warns of an unknown lot, run or recipe; the empty answer stays valid.
+pub(super) fn warn_unknown(archive: &Archive, filter: &Filter) {
     if let Err(unknown) = checks::known_runs(archive, filter) {
         eprintln!("{unknown}");
     }
 }
 
-/// As many columns as a person reads: those parameters that the first parts have.
+/// Writes a table with the parameters of the first parts as columns.
 fn write_table(
     archive: &Archive,
     filter: &Filter,
@@ -56,11 +56,10 @@ fn write_table(
             .map(String::as_str)
             .collect(),
     };
-    let header: Vec<&str> = ["time", "lot", "run", "seq", "verdict", "bin"]
-        .into_iter()
-        .chain(shown.clone())
-        .collect();
-    let mut table = Table::new(&[header, vec!["reasons"]].concat());
+    let mut headings = vec!["time", "lot", "run", "seq", "verdict", "bin"];
+    headings.extend(&shown);
+    headings.push("reasons");
+    let mut table = Table::new(&headings);
     archive.each(filter, |part| {
         let mut row = vec![
             part.time.to_string(),

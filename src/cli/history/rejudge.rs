@@ -1,6 +1,6 @@
-//! `history rejudge`: what another recipe would have said. The history stays as it is.
+//! `history rejudge`: verdicts of another recipe. The history does not change.
 
-use super::output::{Output, Table};
+use crate::cli::output::{Output, Table};
 use clap::Args;
 use config::load_recipe;
 use history::Archive;
@@ -16,7 +16,7 @@ pub(super) struct RejudgeArgs {
     /// Only this run of the lot (1, 2, ...)
     #[arg(long, value_name = "N")]
     run: Option<u32>,
-    /// Recipe in config/recipes to judge by
+    /// Recipe in config/recipes
     #[arg(long, value_name = "NAME")]
     recipe: String,
     /// One JSON object per part, then a summary

@@ -10,13 +10,13 @@ use history::inquiry::paper;
 pub(super) struct ReportArgs {
     #[command(flatten)]
     runs: RunArgs,
-    /// The certificate of this part of the lot instead
+    /// Certificate of this part instead of the lot report
     #[arg(long, value_name = "SEQ", requires = "lot", conflicts_with = "alarms")]
     part: Option<u64>,
     /// Only the list of alarms; without --lot, of all lots
     #[arg(long)]
     alarms: bool,
-    /// Shortest cycle the line can keep, for the use of the time; the quickest 5 % when absent
+    /// Shortest cycle of the line for the OEE; the quickest 5 % of the lot when absent
     #[arg(long, value_name = "S")]
     ideal_cycle_s: Option<f64>,
     #[command(flatten)]

@@ -1,12 +1,12 @@
-//! `history show`: a lot with its runs, or a part with everything that was measured on it.
+//! `history show`: a lot with its runs, or a part with its measurements.
 
-use super::output::{Format, FormatArgs, Output, Table, figure, text};
 use super::{lots, orders};
+use crate::cli::output::{Column, Format, FormatArgs, Output, bins, figure, text};
 use clap::Args;
-use history::{Archive, Filter, LotSummary, Moment, Part};
+use history::{Archive, Filter, LotSummary, Measurement, Moment, Part, Sample};
 use machine::dut;
 use machine::instrument::curve::Curve;
-use std::io::Write;
+use std::io::{self, Write};
 
 #[derive(Debug, Args)]
 pub(super) struct ShowArgs {
@@ -17,7 +17,7 @@ pub(super) struct ShowArgs {
     /// Only this run of the lot (1, 2, ...)
     #[arg(long, value_name = "N")]
     run: Option<u32>,
-    /// The golden part of that number
+    /// The reference part of that number
     #[arg(long)]
     golden: bool,
     #[command(flatten)]
@@ -39,36 +39,28 @@ pub(super) fn run(archive: &Archive, args: &ShowArgs) -> anyhow::Result<()> {
     );
     match args.seq {
         None => {
-            whole_lot(&lots, args.format.format(), &mut out)?;
-            if args.format.format() == Format::Table {
+            let format = args.format.format();
+            out.list(format, &lots, &lots::COLUMNS)?;
+            if format == Format::Table {
+                for LotSummary {
+                    run, bins: counts, ..
+                } in &lots
+                {
+                    let all = bins(counts);
+                    writeln!(
+                        out,
+                        "bins of run {run}: {}",
+                        if all.is_empty() { "none" } else { &all }
+                    )?;
+                }
                 let ordered = archive.orders(&filter, None)?;
                 writeln!(out, "{} orders", ordered.len())?;
-                orders::write(&ordered, Format::Table, &mut out)?;
+                out.table(&ordered, &orders::COLUMNS)?;
             }
         }
         Some(seq) => one_part(archive, args, seq, &mut out)?,
     }
     Ok(out.flush()?)
-}
-
-fn whole_lot(lots: &[LotSummary], format: Format, out: &mut Output) -> anyhow::Result<()> {
-    lots::write(lots, format, out)?;
-    if format == Format::Table {
-        for lot in lots {
-            let bins: Vec<String> = lot
-                .bins
-                .iter()
-                .map(|(bin, n)| format!("{bin} {n}"))
-                .collect();
-            let bins = if bins.is_empty() {
-                "none".to_owned()
-            } else {
-                bins.join(", ")
-            };
-            writeln!(out, "bins of run {}: {bins}", lot.run)?;
-        }
-    }
-    Ok(())
 }
 
 fn one_part(archive: &Archive, args: &ShowArgs, seq: u64, out: &mut Output) -> anyhow::Result<()> {
@@ -87,7 +79,7 @@ fn one_part(archive: &Archive, args: &ShowArgs, seq: u64, out: &mut Output) -> a
         })
 }
 
-/// For a person; CSV has no form for a part with its replies, so it gets this page too.
+/// Writes a part as text; CSV has no form for a part with its replies, so it gets this text too.
 fn page(part: &Part, out: &mut Output) -> anyhow::Result<()> {
     let Part {
         lot,
@@ -124,16 +116,16 @@ fn page(part: &Part, out: &mut Output) -> anyhow::Result<()> {
         seconds(part.cycle_s)
     )?;
     writeln!(out)?;
-    measurements(part, out)?;
+    out.table(&part.measurements, &MEASUREMENTS)?;
     writeln!(out)?;
     samples(part, out)?;
     part.curves.iter().try_for_each(|it| curve(it, out))
 }
 
-/// Samples on a line: milliseconds since the first one, and the value.
+/// Samples on a line, each with its time since the first, milliseconds.
 const ON_A_LINE: usize = 6;
 
-/// A sample that gave no number is a dash.
+/// Writes a curve; a dash is a sample without a number.
 fn curve(it: &Curve, out: &mut Output) -> anyhow::Result<()> {
     let Curve {
         signal,
@@ -167,51 +159,30 @@ fn curve(it: &Curve, out: &mut Output) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn measurements(part: &Part, out: &mut Output) -> anyhow::Result<()> {
-    let header = [
-        "parameter",
-        "attempt",
-        "value",
-        "+- (k=2)",
-        "low",
-        "high",
-        "verdict",
-    ];
-    let mut table = Table::new(&header);
-    for it in &part.measurements {
-        let mut row = vec![it.parameter.clone(), it.attempt.to_string()];
-        row.extend([it.value, it.uncertainty, it.low, it.high].map(figure));
-        row.push(it.verdict.clone());
-        table.row(out, row)?;
-    }
-    Ok(table.finish(out)?)
-}
+const MEASUREMENTS: [Column<Measurement>; 7] = [
+    ("parameter", |it| it.parameter.clone()),
+    ("attempt", |it| it.attempt.to_string()),
+    ("value", |it| figure(it.value)),
+    ("+- (k=2)", |it| figure(it.uncertainty)),
+    ("low", |it| figure(it.low)),
+    ("high", |it| figure(it.high)),
+    ("verdict", |it| it.verdict.clone()),
+];
 
-fn samples(part: &Part, out: &mut Output) -> anyhow::Result<()> {
-    let mut table = Table::new(&[
-        "parameter",
-        "attempt",
-        "line",
-        "module",
-        "channel",
-        "command",
-        "reply",
-        "at",
-    ]);
-    for it in &part.measurements {
-        for sample in &it.samples {
-            let row = vec![
-                it.parameter.clone(),
-                it.attempt.to_string(),
-                sample.line.clone(),
-                sample.module.clone(),
-                sample.channel.clone(),
-                sample.command.clone(),
-                sample.raw.clone(),
-                sample.at.to_string(),
-            ];
-            table.row(out, row)?;
-        }
-    }
-    Ok(table.finish(out)?)
+fn samples(part: &Part, out: &mut Output) -> io::Result<()> {
+    let samples = part
+        .measurements
+        .iter()
+        .flat_map(|it| it.samples.iter().map(move |sample| (it, sample)));
+    let columns: [Column<(&Measurement, &Sample)>; 8] = [
+        ("parameter", |it| it.0.parameter.clone()),
+        ("attempt", |it| it.0.attempt.to_string()),
+        ("line", |it| it.1.line.clone()),
+        ("module", |it| it.1.module.clone()),
+        ("channel", |it| it.1.channel.clone()),
+        ("command", |it| it.1.command.clone()),
+        ("reply", |it| it.1.raw.clone()),
+        ("at", |it| it.1.at.to_string()),
+    ];
+    out.table(&samples.collect::<Vec<_>>(), &columns)
 }

@@ -1,8 +1,8 @@
 //! `history spc`: control charts of a parameter, or of the share of each bin from lot to lot.
 
 use super::filter::PartArgs;
-use super::output::{Output, Table, figure};
 use super::paper::PaperArgs;
+use crate::cli::output::{Column, Output, figure};
 use clap::{Args, ValueEnum};
 use history::Archive;
 use history::inquiry::charts::{self, Charted, SUBGROUPS};
@@ -28,10 +28,10 @@ pub(super) struct SpcArgs {
     #[arg(long, value_name = "N", default_value_t = 1, requires = "param",
         value_parser = clap::value_parser!(u8).range(i64::from(*SUBGROUPS.start())..=i64::from(*SUBGROUPS.end())))]
     subgroup: u8,
-    /// Rules of runs
+    /// Run rules
     #[arg(long, value_enum, default_value = "nelson")]
     rules: RuleSet,
-    /// How many of the last points are drawn; limits come from all
+    /// Draw the last N points; limits come from all
     #[arg(long, value_name = "N", default_value_t = 200)]
     last: usize,
     /// One JSON object per chart
@@ -63,33 +63,27 @@ pub(super) fn run(archive: &Archive, args: &SpcArgs) -> anyhow::Result<()> {
             .paper
             .write(&charts::page(&paper, &about, &charts, args.last));
     }
-    told(&charts, args)
+    print(&charts, args)
 }
 
-fn told(charts: &[Charted], args: &SpcArgs) -> anyhow::Result<()> {
+fn print(charts: &[Charted], args: &SpcArgs) -> anyhow::Result<()> {
     let mut out = Output::stdout();
     if args.json {
         charts.iter().try_for_each(|chart| out.json(chart))?;
         return Ok(out.flush()?);
     }
-    let header = [
-        "chart", "kind", "points", "centre", "low", "high", "signals",
+    let columns: [Column<Charted>; 7] = [
+        ("chart", |it| it.of.clone()),
+        ("kind", |it| it.chart.kind.to_owned()),
+        ("points", |it| it.chart.points.len().to_string()),
+        ("centre", |it| figure(Some(it.chart.centre))),
+        ("low", |it| figure(it.chart.points.last().map(|it| it.low))),
+        ("high", |it| {
+            figure(it.chart.points.last().map(|it| it.high))
+        }),
+        ("signals", |it| it.chart.signals.len().to_string()),
     ];
-    let mut table = Table::new(&header);
-    for Charted { of, chart, .. } in charts {
-        let last = chart.points.last();
-        let row = vec![
-            of.clone(),
-            chart.kind.to_owned(),
-            chart.points.len().to_string(),
-            figure(Some(chart.centre)),
-            figure(last.map(|it| it.low)),
-            figure(last.map(|it| it.high)),
-            chart.signals.len().to_string(),
-        ];
-        table.row(&mut out, row)?;
-    }
-    table.finish(&mut out)?;
+    out.table(charts, &columns)?;
     for Charted { of, chart, .. } in charts {
         for signal in &chart.signals {
             let value = chart.points.get(signal.at).map(|it| it.value);

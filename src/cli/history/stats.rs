@@ -1,7 +1,7 @@
 //! `history stats`.
 
 use super::filter::PartArgs;
-use super::output::{Output, Table, figure};
+use crate::cli::output::{Column, Output, figure};
 use clap::Args;
 use history::Archive;
 use history::inquiry::figures;
@@ -41,7 +41,7 @@ pub(super) fn run(archive: &Archive, args: &StatsArgs) -> anyhow::Result<()> {
     Ok(out.flush()?)
 }
 
-/// Those of the command line, if there are any.
+/// Returns the limits of the command line, if given.
 fn limits(args: &StatsArgs) -> anyhow::Result<Option<Limits>> {
     let (low, high) = (args.low, args.high);
     if low.is_none() && high.is_none() {
@@ -56,8 +56,6 @@ fn limits(args: &StatsArgs) -> anyhow::Result<Option<Limits>> {
 }
 
 fn table(it: &Summary, out: &mut Output) -> anyhow::Result<()> {
-    let mut table = Table::new(&["param", &it.param]);
-    table.row(out, vec!["n".to_owned(), it.n.to_string()])?;
     let figures = [
         ("mean", it.mean),
         ("sd", it.sd),
@@ -70,14 +68,12 @@ fn table(it: &Summary, out: &mut Output) -> anyhow::Result<()> {
         ("cpk_low95", it.cpk_low95),
         ("ppk", it.ppk),
     ];
-    for (name, value) in figures {
-        table.row(
-            out,
-            vec![
-                name.to_owned(),
-                value.map_or("-".to_owned(), |it| figure(Some(it))),
-            ],
-        )?;
-    }
-    Ok(table.finish(out)?)
+    let shown = |value: Option<f64>| value.map_or("-".to_owned(), |it| figure(Some(it)));
+    let mut rows = vec![("n", it.n.to_string())];
+    rows.extend(figures.map(|(name, value)| (name, shown(value))));
+    let columns: [Column<(&str, String)>; 2] = [
+        ("param", |it| it.0.to_owned()),
+        (&it.param, |it| it.1.clone()),
+    ];
+    Ok(out.table(&rows, &columns)?)
 }

@@ -1,5 +1,6 @@
 //! Rows of a run beside its parts: the state of its lot, alarms and what becomes of them, golden checks, wear.
 
+use crate::alarm_order;
 use crate::exit::Exit;
 use history::{
     AlarmChange, AlarmChangeRecord, AlarmRecord, InsideRecord, LotState, LotStateRecord,
@@ -9,7 +10,6 @@ use machine::handling::inside::Inside;
 use machine::handling::wear::Uses;
 use machine::station::annunciator::ListedAlarm;
 use machine::station::catalogue::AlarmCode;
-use machine::station::orders::shelf_minutes;
 use machine::station::trouble::Alarm;
 use machine::station::turn::{Checked, Ending};
 use machine::view::AnsweredOrder;
@@ -128,24 +128,8 @@ impl Journal {
             what: serde_json::to_string(&it.order).unwrap_or_else(|_| "null".into()),
             refused: it.refused.clone(),
         })];
-        let minutes = i64::from(shelf_minutes(it.order.minutes));
-        let who = by.who.clone();
-        let change = match it.order.order.as_str() {
-            "acknowledge" => AlarmChange::Acknowledged { by: who },
-            "shelve" => AlarmChange::Shelved {
-                until_us: at_us + minutes * 60_000_000,
-                by: who,
-                reason: it.order.reason.clone().unwrap_or_default(),
-            },
-            _other => return rows,
-        };
         if it.refused.is_none() {
-            rows.push(Row::AlarmChange(AlarmChangeRecord {
-                simulated: self.simulated,
-                code: it.order.alarm.clone(),
-                at_us,
-                change,
-            }));
+            rows.extend(alarm_order::change(self.simulated, &it.order, by, at_us));
         }
         rows
     }

@@ -8,6 +8,7 @@ mod reading;
 mod rejudging;
 mod safety;
 mod side_by_side;
+mod spreadsheet;
 mod writing;
 
 use super::*;

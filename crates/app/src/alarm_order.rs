@@ -1,0 +1,58 @@
+//! A person acknowledges or shelves alarms of runs that have ended: an order like those of a screen, in the audit with the
+//! name.
+
+use anyhow::bail;
+use history::{AlarmChange, AlarmChangeRecord, OrderRecord, Row, Store};
+use machine::station::orders::shelf_minutes;
+use machine::view::{By, Order};
+use serde_json::json;
+
+/// Writes an order about alarms, and the change that it makes to them.
+///
+/// # Errors
+/// No unacknowledged alarm has this code, or the history cannot be written.
+pub fn write(store: &mut Store, simulated: bool, order: &Order, by: &By) -> anyhow::Result<()> {
+    let left = store.unacknowledged_alarms(simulated)?;
+    let code = order.alarm.as_ref();
+    if let Some(code) = code.filter(|code| left.iter().all(|it| it.code != **code)) {
+        let known: Vec<&str> = left.iter().map(|it| it.code.as_str()).collect();
+        bail!(
+            "found no unacknowledged alarm {code:?}, expected one of {}",
+            known.join(", ")
+        );
+    }
+    let at_us = jiff::Timestamp::now().as_microsecond();
+    let mut what = json!(order);
+    what["alarm"] = json!(order.alarm);
+    let audit = OrderRecord {
+        at_us,
+        who: by.who.clone(),
+        origin: by.origin.clone(),
+        what: what.to_string(),
+        ..OrderRecord::default()
+    };
+    let change = change(simulated, order, by, at_us);
+    let rows: Vec<Row> = [Row::Order(audit)].into_iter().chain(change).collect();
+    Ok(store.record(&rows)?)
+}
+
+/// Returns the row of the change that an order makes to alarms; `None` for other orders.
+pub fn change(simulated: bool, order: &Order, by: &By, at_us: i64) -> Option<Row> {
+    let minutes = i64::from(shelf_minutes(order.minutes));
+    let by = by.who.clone();
+    let change = match order.order.as_str() {
+        "acknowledge" => AlarmChange::Acknowledged { by },
+        "shelve" => AlarmChange::Shelved {
+            until_us: at_us + minutes * 60_000_000,
+            by,
+            reason: order.reason.clone().unwrap_or_default(),
+        },
+        _other => return None,
+    };
+    Some(Row::AlarmChange(AlarmChangeRecord {
+        simulated,
+        code: order.alarm.clone(),
+        at_us,
+        change,
+    }))
+}

@@ -1,0 +1,123 @@
+//! Import of a file of an older system: all of it or nothing, and the same file into the same lot only once. CSV, or a
+//! spreadsheet by the end of its name.
+
+mod sheet;
+#[cfg(test)]
+mod tests;
+
+use anyhow::Context;
+use history::{
+    Archive, Filter, Identity, ImportRow, LotRecord, PartRecord, Store, csv, parse_records,
+    snapshot_hash,
+};
+use std::path::Path;
+
+/// A file to import.
+#[derive(Debug)]
+pub struct Source<'a> {
+    /// Its name, by which it is a spreadsheet or not.
+    pub file: &'a Path,
+    /// Its content.
+    pub bytes: &'a [u8],
+    /// Sheet of the spreadsheet; the first when absent.
+    pub sheet: Option<&'a str>,
+    /// Columns of the file with the keys that they stand for.
+    pub maps: &'a [(String, String)],
+}
+
+/// The run that holds the parts of a file.
+#[derive(Debug)]
+pub struct Imported {
+    /// Number of parts.
+    pub parts: usize,
+    /// Number of the run within its lot.
+    pub run: u32,
+}
+
+/// Puts the parts of a file into a new run of `lot`.
+///
+/// # Errors
+/// A file that cannot be read as records, is in the lot already, or has an unknown column or a cell that does not fit.
+pub fn import(db: &Path, source: &Source, lot: &str) -> anyhow::Result<Imported> {
+    let name = || source.file.display().to_string();
+    let records = records(source).with_context(name)?;
+    let mut store = Store::open(db, &Identity::of_this_program())?;
+    let archive = Archive::open(db)?;
+    let snapshot = format!(
+        "# imported from a file with SHA-256 {}\n",
+        snapshot_hash(source.bytes)
+    );
+    let now_us = jiff::Timestamp::now().as_microsecond();
+    let record = lot_record(lot, snapshot, now_us);
+    refuse_second_import(&archive, &record).with_context(name)?;
+    let rows = parse_records(&records, source.maps, &archive.parameters()?).with_context(name)?;
+    let parts = numbered(rows, lot, now_us);
+    Ok(Imported {
+        parts: parts.len(),
+        run: store.import(&record, parts)?,
+    })
+}
+
+fn records(source: &Source) -> anyhow::Result<Vec<csv::Record>> {
+    if sheet::is_spreadsheet(source.file) {
+        let zone = jiff::tz::TimeZone::system();
+        return sheet::records(source.file, source.sheet, &zone);
+    }
+    Ok(csv::read(text(source.bytes)?)?)
+}
+
+/// Numbers the parts in order of the file; a row without a time gets that of the import.
+fn numbered(rows: Vec<ImportRow>, lot: &str, now_us: i64) -> Vec<PartRecord> {
+    let part = |(seq, row): (u64, ImportRow)| {
+        let judged_at_us = if row.timed {
+            row.part.judged_at_us
+        } else {
+            now_us
+        };
+        PartRecord {
+            lot: lot.to_owned(),
+            seq,
+            judged_at_us,
+            ..row.part
+        }
+    };
+    (1..).zip(rows).map(part).collect()
+}
+
+fn text(bytes: &[u8]) -> anyhow::Result<&str> {
+    std::str::from_utf8(bytes).map_err(|cause| {
+        let good = &bytes[..cause.valid_up_to()];
+        let line = 1 + good.iter().filter(|&&it| it == b'\n').count();
+        anyhow::anyhow!("line {line}: expected UTF-8 (save the file as \"CSV UTF-8\")")
+    })
+}
+
+fn lot_record(lot: &str, recipe_snapshot: String, opened_at_us: i64) -> LotRecord {
+    LotRecord {
+        lot: lot.to_owned(),
+        recipe: "imported".to_owned(),
+        recipe_hash: snapshot_hash(&recipe_snapshot),
+        recipe_snapshot,
+        opened_at_us,
+        ..LotRecord::default()
+    }
+}
+
+fn refuse_second_import(archive: &Archive, lot: &LotRecord) -> anyhow::Result<()> {
+    let filter = Filter {
+        lot: Some(lot.lot.clone()),
+        ..Filter::default()
+    };
+    match archive
+        .lots(&filter)?
+        .iter()
+        .find(|it| it.recipe_hash == lot.recipe_hash)
+    {
+        None => Ok(()),
+        Some(before) => anyhow::bail!(
+            "this very file is in lot {:?} already, as run {}; nothing was imported",
+            before.lot,
+            before.run
+        ),
+    }
+}

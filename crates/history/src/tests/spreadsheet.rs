@@ -1,0 +1,45 @@
+//! Facts about spreadsheets, read back by another crate.
+#![allow(clippy::unwrap_used)]
+
+use crate::Part;
+use crate::report::Lang;
+use crate::report::sheet::Sheet;
+use calamine::{Data, Reader, Xlsx};
+use jiff::tz::TimeZone;
+use std::io::Cursor;
+
+const LOT: &str = "<b>批次\"1\"</b>";
+
+fn part(operate_v: f64) -> Part {
+    let mut part = Part::fixture(LOT, 7, "pass");
+    part.values
+        .insert("operate_voltage_v".into(), operate_v.into());
+    part.serial = Some("=1+1".into());
+    part
+}
+
+#[test]
+fn a_spreadsheet_reads_back_as_it_was_written_with_its_charts_and_no_formula() {
+    let keys = ["operate_voltage_v".to_owned()];
+    let mut sheet = Sheet::new(Lang::En, TimeZone::UTC, &keys).unwrap();
+    for _ in 0..3 {
+        sheet.part(&part(7.704_22)).unwrap();
+    }
+    sheet.part(&part(9.5)).unwrap();
+    let bytes = sheet.finish().unwrap().save_to_buffer().unwrap();
+    let chart = b"xl/charts/chart2.xml";
+    assert!(bytes.windows(chart.len()).any(|it| it == chart));
+    let mut book: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).unwrap();
+    assert_eq!(book.sheet_names(), ["Summary", "Parts"]);
+    let parts = book.worksheet_range("Parts").unwrap();
+    assert_eq!(parts.height(), 5);
+    assert_eq!(parts[(1, 1)], Data::String(LOT.into()));
+    assert_eq!(parts[(1, 6)], Data::String("=1+1".into()));
+    assert_eq!(parts[(1, 13)], Data::Float(7.704_22));
+    assert!(book.worksheet_formula("Parts").unwrap().is_empty());
+    let summary = book.worksheet_range("Summary").unwrap();
+    assert_eq!(
+        (&summary[(1, 1)], &summary[(1, 5)]),
+        (&Data::Float(4.0), &Data::Float(9.5))
+    );
+}

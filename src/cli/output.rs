@@ -1,0 +1,273 @@
+//! Answers on stdout or in a file: lists as text table, CSV or JSON from the same columns.
+
+use clap::{Args, ValueEnum};
+use history::csv;
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::fs::File;
+use std::io::{self, BufWriter, Read, Write};
+use std::path::Path;
+use unicode_width::UnicodeWidthStr;
+
+/// Form of an answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Format {
+    /// Aligned columns
+    Table,
+    /// Comma-separated values
+    Csv,
+    /// One JSON object per line
+    Json,
+}
+
+/// `--format` and `--json`.
+#[derive(Debug, Args)]
+pub(super) struct FormatArgs {
+    /// Form of the answer
+    #[arg(long, value_enum, default_value = "table")]
+    format: Format,
+    /// Same as --format json
+    #[arg(long, conflicts_with = "format")]
+    json: bool,
+}
+
+impl FormatArgs {
+    pub fn format(&self) -> Format {
+        if self.json { Format::Json } else { self.format }
+    }
+}
+
+/// Heading and cell of a column of rows `T`.
+pub(super) type Column<'a, T> = (&'a str, fn(&T) -> String);
+
+/// Heading, width and cell of a column that keeps its width; a negative width sets the cells to the left.
+pub(super) type Fixed<T> = (&'static str, isize, fn(&T) -> String);
+
+/// Returns the headings.
+pub(super) fn headings<T>(columns: &[Fixed<T>]) -> String {
+    padded(columns.iter().map(|it| (it.1, it.0.to_owned())))
+}
+
+/// Returns the cells of a row.
+pub(super) fn cells<T>(row: &T, columns: &[Fixed<T>]) -> String {
+    padded(columns.iter().map(|it| (it.1, (it.2)(row))))
+}
+
+fn padded(cells: impl Iterator<Item = (isize, String)>) -> String {
+    let pad = |(width, cell): (isize, String)| match (width < 0, width.unsigned_abs()) {
+        (true, width) => format!("{cell:<width$}"),
+        (false, width) => format!("{cell:>width$}"),
+    };
+    cells.map(pad).collect::<Vec<_>>().join(" ")
+}
+
+/// Opens a file to read, or stdin for `-`.
+pub(super) fn input(file: &Path) -> io::Result<Box<dyn Read>> {
+    Ok(match file.as_os_str() == "-" {
+        true => Box::new(io::stdin()),
+        false => Box::new(File::open(file)?),
+    })
+}
+
+/// A buffered sink that ends lines itself.
+pub(super) struct Output(BufWriter<Box<dyn Write>>);
+
+impl Output {
+    pub fn stdout() -> Self {
+        Self::to(io::stdout())
+    }
+    pub fn to(sink: impl Write + 'static) -> Self {
+        Self(BufWriter::with_capacity(1 << 16, Box::new(sink)))
+    }
+    /// Writes one line and flushes.
+    pub fn line(&mut self, text: &str) -> io::Result<()> {
+        writeln!(self.0, "{text}")?;
+        self.0.flush()
+    }
+    /// Writes one object and the end of the line.
+    pub fn json(&mut self, object: &impl Serialize) -> anyhow::Result<()> {
+        serde_json::to_writer(&mut self.0, object).map_err(io::Error::from)?;
+        Ok(self.0.write_all(b"\n")?)
+    }
+
+    /// Writes the rows in this form; JSON shows every field of a row, not only the columns.
+    pub fn list<T: Serialize>(
+        &mut self,
+        format: Format,
+        rows: &[T],
+        columns: &[Column<T>],
+    ) -> anyhow::Result<()> {
+        match format {
+            Format::Json => rows.iter().try_for_each(|row| self.json(row))?,
+            Format::Csv => {
+                csv::write(self, columns.iter().map(|(heading, _)| heading))?;
+                for row in rows {
+                    let cells = columns.iter().map(|(_, cell)| cell(row));
+                    csv::write(self, cells.map(|it| csv::escape_formula(&it).into_owned()))?;
+                }
+            }
+            Format::Table => self.table(rows, columns)?,
+        }
+        Ok(self.flush()?)
+    }
+
+    /// Writes the rows as a text table.
+    pub fn table<T>(&mut self, rows: &[T], columns: &[Column<T>]) -> io::Result<()> {
+        let headings: Vec<&str> = columns.iter().map(|(heading, _)| *heading).collect();
+        let mut table = Table::new(&headings);
+        for row in rows {
+            table.row(self, columns.iter().map(|(_, cell)| cell(row)).collect())?;
+        }
+        table.finish(self)
+    }
+
+    /// Writes a line per row, JSON or text.
+    pub fn lines<T>(
+        &mut self,
+        as_json: bool,
+        rows: &[T],
+        object: impl Fn(&T) -> Value,
+        text: impl Fn(&T) -> String,
+    ) -> io::Result<()> {
+        for row in rows {
+            match as_json {
+                true => writeln!(self, "{}", object(row))?,
+                false => writeln!(self, "{}", text(row))?,
+            }
+        }
+        self.flush()
+    }
+}
+
+impl Write for Output {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.write(bytes)
+    }
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
+
+/// A text table with aligned columns. Widths grow page by page, so that a long answer needs little memory.
+pub(super) struct Table {
+    widths: Vec<usize>,
+    page: Vec<Vec<String>>,
+}
+
+/// Rows of a page.
+const PAGE: usize = 500;
+
+impl Table {
+    pub fn new(headings: &[&str]) -> Self {
+        Self {
+            widths: vec![0; headings.len()],
+            page: vec![headings.iter().map(ToString::to_string).collect()],
+        }
+    }
+
+    /// Adds a row; writes a page when it is full.
+    pub fn row(&mut self, out: &mut impl Write, cells: Vec<String>) -> io::Result<()> {
+        self.page.push(cells);
+        match self.page.len() < PAGE {
+            true => Ok(()),
+            false => self.finish(out),
+        }
+    }
+
+    /// Writes the rest.
+    pub fn finish(&mut self, out: &mut impl Write) -> io::Result<()> {
+        for row in &self.page {
+            for (widest, cell) in self.widths.iter_mut().zip(row) {
+                *widest = (*widest).max(cell.width());
+            }
+        }
+        for row in self.page.drain(..) {
+            let mut line = String::new();
+            for (cell, widest) in row.iter().zip(&self.widths) {
+                line.push_str(cell);
+                line.extend(std::iter::repeat_n(' ', widest - cell.width() + 2));
+            }
+            writeln!(out, "{}", line.trim_end())?;
+        }
+        out.flush()
+    }
+}
+
+/// Returns every bin with its count.
+pub(super) fn bins(counts: &BTreeMap<impl Display, u64>) -> String {
+    let bins = counts.iter().map(|(bin, n)| format!("{bin} {n}"));
+    bins.collect::<Vec<_>>().join(", ")
+}
+
+/// Returns a text, empty for `None`.
+pub(super) fn text(value: Option<impl ToString>) -> String {
+    value.map(|it| it.to_string()).unwrap_or_default()
+}
+
+/// Returns six significant digits without trailing zeros; empty for `None`.
+pub(super) fn figure(value: Option<f64>) -> String {
+    let Some(value) = value else {
+        return String::new();
+    };
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let before = value.abs().log10().floor();
+    if !(-5.0..9.0).contains(&before) {
+        return format!("{value:.5e}");
+    }
+    let decimals = (5.0 - before).max(0.0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn figures_have_six_digits() {
+        let shown = [
+            7.88,
+            400.123_456,
+            0.000_012_345_67,
+            1_234_567.0,
+            0.0,
+            -1.5e-9,
+        ]
+        .map(|it| figure(Some(it)));
+        assert_eq!(
+            shown,
+            [
+                "7.88",
+                "400.123",
+                "0.0000123457",
+                "1234567",
+                "0",
+                "-1.50000e-9"
+            ]
+        );
+    }
+
+    #[test]
+    fn columns_align_with_chinese_text() {
+        let mut table = Table::new(&["lot", "n"]);
+        let mut out = Vec::new();
+        table
+            .row(&mut out, vec!["批次".into(), "1".into()])
+            .unwrap();
+        table.row(&mut out, vec!["A".into(), "2".into()]).unwrap();
+        table.finish(&mut out).unwrap();
+        assert_eq!(
+            String::from_utf8(out).unwrap(),
+            "lot   n\n批次  1\nA     2\n"
+        );
+    }
+}
