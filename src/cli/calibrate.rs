@@ -60,11 +60,12 @@ fn stored(found: &Calibration, as_json: bool) -> anyhow::Result<Exit> {
         let (value, u) = (it.factor.value, K * it.factor.u);
         format!("{:<18} {value:>14.6} +- {u:<10.6} {}", it.name, it.unit)
     };
-    let (made, due) = (date(found.made_at_us())?, date(found.due_at_us())?);
-    let whole = json!({"type": "calibration", "made_at": made, "due_at": due, "simulated": found.is_simulated(), "nominal_v": found.nominal_v(), "k": K});
+    let facts = found.facts();
+    let (made, due) = (date(facts.made_at_us)?, date(facts.due_at_us)?);
+    let whole = json!({"type": "calibration", "made_at": made, "due_at": due, "simulated": facts.is_simulated, "nominal_v": facts.nominal_v, "k": K});
     let end = format!("made {made}, due {due}; +- is U (k = {K})");
     let mut out = Output::stdout();
-    out.lines(as_json, &found.factors(), factor, row)?;
+    out.lines(as_json, &facts.factors, factor, row)?;
     out.line(&if as_json { whole.to_string() } else { end })?;
     Ok(Exit::Done)
 }

@@ -108,7 +108,9 @@ fn describe_recipe(dir: &Path, plant: &Plant, name: &str) -> anyhow::Result<Stri
     plant.admit(&recipe)?;
     let file = dir.join("recipes").join(format!("{name}.toml"));
     let reference = match recipe
-        .rated_v()
+        .device
+        .part()
+        .nominal_v
         .map(|volts| plant.golden.of_nominal(volts).count())
     {
         None => "no reference parts needed".to_owned(),
