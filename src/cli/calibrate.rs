@@ -2,7 +2,7 @@
 
 use super::rig::RigArgs;
 use super::terminal::Terminal;
-use app::calibration::{Calibrated, Compared, K, K_OF_ALL, calibrate, date};
+use app::calibration::{Calibrated, FactorComparison, K, K_JOINT, calibrate, date};
 use app::exit::Exit;
 use app::order::Files;
 use machine::dut::Calibration;
@@ -42,7 +42,7 @@ pub fn run(files: &Files, args: &CalibrateArgs) -> anyhow::Result<Exit> {
             compared,
             due_at_us,
         } => verified(&compared, &date(due_at_us)?, args.json),
-        Calibrated::Not(exit) => {
+        Calibrated::Ended(exit) => {
             if let (true, Some(cause)) = (args.json, exit.cause()) {
                 let it = json!({"type": "trouble", "cause": cause});
                 writeln!(std::io::stdout().lock(), "{it}")?;
@@ -77,12 +77,12 @@ fn stored(found: &Calibration, as_json: bool) -> anyhow::Result<Exit> {
     Ok(Exit::Done)
 }
 
-fn verified(compared: &[Compared], due: &str, as_json: bool) -> anyhow::Result<Exit> {
-    let verified = compared.iter().all(Compared::holds);
+fn verified(compared: &[FactorComparison], due: &str, as_json: bool) -> anyhow::Result<Exit> {
+    let verified = compared.iter().all(FactorComparison::agrees);
     let mut out = std::io::stdout().lock();
     for it in compared {
         if as_json {
-            let it = json!({"type": "factor", "factor": it.name, "unit": it.unit, "found": it.found, "expected": it.expected, "expanded_u": it.expanded_u, "holds": it.holds()});
+            let it = json!({"type": "factor", "factor": it.name, "unit": it.unit, "found": it.found, "expected": it.expected, "expanded_u": it.expanded_u, "holds": it.agrees()});
             writeln!(out, "{it}")?;
         } else {
             writeln!(out, "{it}")?;
@@ -93,13 +93,12 @@ fn verified(compared: &[Compared], due: &str, as_json: bool) -> anyhow::Result<E
         false => "verification failed",
     };
     if as_json {
-        let it =
-            json!({"type": "verification", "verified": verified, "due_at": due, "k": K_OF_ALL});
+        let it = json!({"type": "verification", "verified": verified, "due_at": due, "k": K_JOINT});
         writeln!(out, "{it}")?;
     } else {
         writeln!(
             out,
-            "{outcome}, due {due}; +- is the combined U (k = {K_OF_ALL})"
+            "{outcome}, due {due}; +- is the combined U (k = {K_JOINT})"
         )?;
     }
     Ok(match verified {

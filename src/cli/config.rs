@@ -74,9 +74,9 @@ fn check(dir: &Path) -> anyhow::Result<String> {
         plant.scene.elements.len()
     ));
     if let Some(file) = &plant.calibration.golden {
-        let count = plant.golden.parts.len();
+        let count = plant.reference_parts.parts.len();
         lines.push(format!(
-            "{}: {count} golden parts",
+            "{}: {count} reference parts",
             dir.join(file).display()
         ));
     }
@@ -109,13 +109,13 @@ fn describe_recipe(dir: &Path, plant: &Plant, name: &str) -> anyhow::Result<Stri
     let recipe = load_recipe(dir, name)?;
     plant.admit(&recipe)?;
     let file = dir.join("recipes").join(format!("{name}.toml"));
-    let golden = match recipe
+    let reference_parts = match recipe
         .rated_v()
-        .map(|volts| plant.golden.of_nominal(volts).count())
+        .map(|volts| plant.reference_parts.of_nominal(volts).count())
     {
-        None => "no golden parts needed".to_owned(),
+        None => "no reference parts needed".to_owned(),
         Some(0) => "NO GOLDEN PARTS of its coil voltage: a lot cannot be calibrated".to_owned(),
-        Some(count) => format!("{count} golden parts"),
+        Some(count) => format!("{count} reference parts"),
     };
     let all = recipe.kind().characteristics().len();
     let judged = recipe
@@ -123,7 +123,7 @@ fn describe_recipe(dir: &Path, plant: &Plant, name: &str) -> anyhow::Result<Stri
         .filter(|(_, limit)| limit.low.is_some() || limit.high.is_some())
         .count();
     Ok(format!(
-        "{}: {judged} of {all} parameters judged, {golden}, sha256 {}",
+        "{}: {judged} of {all} parameters judged, {reference_parts}, sha256 {}",
         file.display(),
         &recipe.hash[..12]
     ))

@@ -2,7 +2,7 @@
 //!
 //! Every rig is calibrated once and verified on other days: its errors stay, noise, operations and the temperatures of
 //! the golden parts are drawn anew (fault `noise_seed`). A verification asks of every factor that it lies within
-//! [`K_OF_ALL`] standard uncertainties of both measurements together; if those were independent and exact, so many
+//! [`K_JOINT`] standard uncertainties of both measurements together; if those were independent and exact, so many
 //! factors at once would fail once in some thirty times. That is the bar, with three standard deviations of a count.
 //! Beside it stands each factor's own scatter against what was stated, as a ratio: above 1 its uncertainty would be too
 //! small.
@@ -12,7 +12,7 @@ use super::figure::{Bar, Figure};
 use super::fleet::{Folder, Order};
 use super::output::Report;
 use anyhow::{Context, bail};
-use app::calibration::K_OF_ALL;
+use app::calibration::K_JOINT;
 use app::progress::{PIECES, progress};
 use serde_json::Value;
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -70,7 +70,7 @@ fn read(told: &str) -> anyhow::Result<Day> {
         let it: Value = serde_json::from_str(line)?;
         if it["type"] == "factor" {
             let number = |key: &str| it[key].as_f64().with_context(|| key.to_string());
-            let u = number("expanded_u")? / K_OF_ALL;
+            let u = number("expanded_u")? / K_JOINT;
             let name = it["factor"].as_str().context("factor")?;
             day.insert(name.into(), (number("found")? - number("expected")?) / u);
         }
@@ -80,13 +80,13 @@ fn read(told: &str) -> anyhow::Result<Day> {
 
 /// Share of verifications that fail when so many factors are normal, independent and as uncertain as stated.
 fn chosen(factors: usize) -> f64 {
-    let inside = 2.0 * Normal::standard().cdf(K_OF_ALL) - 1.0;
+    let inside = 2.0 * Normal::standard().cdf(K_JOINT) - 1.0;
     1.0 - inside.powi(factors as i32)
 }
 
 fn report(order: &Order, days: &[Day]) -> Report {
     let n = days.len() as f64;
-    let fails = |day: &&Day| day.values().any(|off| off.abs() > K_OF_ALL);
+    let fails = |day: &&Day| day.values().any(|off| off.abs() > K_JOINT);
     let failed = days.iter().filter(fails).count() as f64;
     let chosen = chosen(days.first().map_or(0, Day::len));
     let allowed = chosen + 3.0 * (chosen * (1.0 - chosen) / n).sqrt();

@@ -56,8 +56,8 @@ pub(super) async fn run(args: &SendArgs) -> anyhow::Result<Exit> {
         return told_standing(args, &found);
     }
     let reply = send_raw(&mut port, &settings, Pace::real(), &request).await?;
-    let mut meanings = dcon::understand(&request, &reply.bytes, args.checksum);
-    meanings.retain(|(command, _)| family.is_none_or(|family| family.knows(command)));
+    let mut meanings = dcon::interpret(&request, &reply.bytes, args.checksum);
+    meanings.retain(|(command, _)| family.is_none_or(|family| family.has_command(command)));
     let broadcast = text.ends_with(b"**");
     let good = !reply.more && meanings.iter().any(|(_, reply)| reply.is_ok());
     let mut words: Vec<String> = meanings
@@ -93,7 +93,7 @@ fn told(request: &[u8], reply: &RawReply, words: &[String], broadcast: bool) -> 
             "  sent to all; nobody answers".to_owned()
         } else {
             format!(
-                "  no reply within {taken_ms:.1} ms: nobody there knows this address, rate, checksum and command"
+                "  no reply within {taken_ms:.1} ms: no module has this address, rate, checksum and command"
             )
         });
     } else {
@@ -112,9 +112,9 @@ fn told(request: &[u8], reply: &RawReply, words: &[String], broadcast: bool) -> 
 
 /// What the text means, if that is one thing only.
 fn lone_reading(text: &[u8], family: Option<Family>) -> Option<Command> {
-    let mut readings = dcon::readings(text);
-    readings.retain(|command| family.is_none_or(|family| family.knows(command)));
-    match readings[..] {
+    let mut commands = dcon::decode_request(text);
+    commands.retain(|command| family.is_none_or(|family| family.has_command(command)));
+    match commands[..] {
         [command] => Some(command),
         _ => None,
     }
@@ -163,7 +163,7 @@ fn checked(command: &str) -> anyhow::Result<&[u8]> {
             "COMMAND: found \"{command}\", expected two hexadecimal digits in capitals behind its first character, or **"
         );
     }
-    if let Some(what) = dcon::factory(text) {
+    if let Some(what) = dcon::factory_command(text) {
         bail!("COMMAND: \"{command}\" is {what}: only the factory may do that, it is never sent");
     }
     Ok(text)

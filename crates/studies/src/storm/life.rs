@@ -75,7 +75,7 @@ impl Shop<'_> {
                 epoch_us: EPOCH_US + began_us,
                 calibration,
             })),
-            ..Simulated::drawn_by(1)
+            ..Simulated::with_seed(1)
         })
     }
 
