@@ -141,7 +141,7 @@ pub fn done(address: u8) -> Answer {
 }
 
 /// Builds `!AA` followed by data.
-pub fn done_with(address: u8, data: &str) -> Answer {
+pub fn done_data(address: u8, data: &str) -> Answer {
     let mut text = headed('!', address);
     text.push_str(data);
     Answer::Reply(text)

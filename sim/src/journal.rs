@@ -168,8 +168,8 @@ impl WorldRecord for JournaledWorld {
         self.scene.crashes()
     }
 
-    fn strike(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
-        self.scene.strike(fault, value)
+    fn inject(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
+        self.scene.inject(fault, value)
     }
 
     fn bodies(&mut self) -> Vec<BodyTruth> {

@@ -120,7 +120,7 @@ impl Drop for Ptys {
         self.stop.store(true, Ordering::Release);
         for port in &mut self.ports {
             port.socket.wake_reader();
-            port.socket.free_writer();
+            port.socket.unblock_writer();
             if let Some(thread) = port.thread.take() {
                 // The panic message of the thread is already on stderr.
                 let _ = thread.join();

@@ -34,7 +34,7 @@ pub trait WorldRecord {
     ///
     /// # Errors
     /// Fails when the world has no such fault, or the fault applies only to the start.
-    fn strike(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
+    fn inject(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
         let _ = value;
         Err(SimError::UnknownFault { name: fault.into() })
     }
@@ -110,7 +110,7 @@ impl Rig {
         for place in 0..rig.modules.len() {
             let module = &mut rig.modules[place];
             if rig.faults.is_wrong_type(module.id()) {
-                module.base_mut().pose_as("7000");
+                module.base_mut().replace_product("7000");
             }
             module.energise(&mut rig.scene, 0);
             rig.due_us[place] = module.next_us();
@@ -166,7 +166,7 @@ impl Rig {
         let mut last = None;
         for place in 0..self.modules.len() {
             let module = &self.modules[place];
-            if module.line() != name || !module.hears(address, host_baud) {
+            if module.line() != name || !module.is_reached_by(address, host_baud) {
                 continue;
             }
             let answer = self.answer(place, text);
@@ -177,7 +177,7 @@ impl Rig {
             };
         }
         let (latency_us, bytes) = reply?;
-        let (extra_us, bytes) = self.faults.strike(text, bytes, now_us)?;
+        let (extra_us, bytes) = self.faults.apply(text, bytes, now_us)?;
         let at_us = now_us + latency_us + extra_us + wire_us(bytes.len(), baud);
         if let Some(place) = last
             && (extra_us > 0 || self.serving_us[place].0 > now_us)
@@ -200,7 +200,7 @@ impl Rig {
             apply_event(module, event, &mut self.scene, now_us);
         }
         let silent = self.faults.silent(module.id(), now_us);
-        let heard = module.hear(text, &mut self.scene, now_us);
+        let heard = module.serve(text, &mut self.scene, now_us);
         self.due_us[place] = module.next_us();
         let mut bytes = heard.filter(|_| !silent)?;
         let begin_us = now_us.max(free_us);
@@ -247,7 +247,7 @@ impl Rig {
     ///
     /// # Errors
     /// Fails when the fault is unknown, its value is unfit, or it applies only to the start.
-    pub fn strike(&mut self, text: &str) -> Result<(), SimError> {
+    pub fn inject(&mut self, text: &str) -> Result<(), SimError> {
         let (name, value) = shared::split(text);
         self.scene.record_fault(text);
         if self.faults.add_from(self.now_us, name, value)? {
@@ -258,7 +258,7 @@ impl Rig {
             return shared::check_targets(&self.faults, known);
         }
         let number = value.map(|text| shared::number(name, text)).transpose()?;
-        self.scene.strike(name, number)
+        self.scene.inject(name, number)
     }
 
     /// See [`WorldRecord::truth`].

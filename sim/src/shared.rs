@@ -192,8 +192,8 @@ impl WorldRecord for World {
         World::crashes(self)
     }
 
-    fn strike(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
-        World::strike(self, fault, value)
+    fn inject(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
+        World::inject(self, fault, value)
     }
 
     fn bodies(&mut self) -> Vec<BodyTruth> {
@@ -280,8 +280,8 @@ impl SharedRig {
     ///
     /// # Errors
     /// Fails when the fault is unknown, its value is unfit, or it applies only to the start.
-    pub fn strike(&self, fault: &str) -> Result<(), SimError> {
-        self.rig().strike(fault)
+    pub fn inject(&self, fault: &str) -> Result<(), SimError> {
+        self.rig().inject(fault)
     }
 
     /// Returns the truth of every lot part that has entered the nest, in order.

@@ -46,7 +46,7 @@ pub(crate) fn superposed(first: &[u8], second: &[u8], apart: i64) -> Vec<u8> {
 }
 
 /// Returns the characters that a receiver gets from a transmitter `times` slower than its own rate.
-pub(crate) fn heard_faster(bytes: &[u8], times: usize) -> Vec<u8> {
+pub(crate) fn sampled_too_fast(bytes: &[u8], times: usize) -> Vec<u8> {
     let sent = bits_of(bytes);
     let slow: Vec<bool> = sent
         .into_iter()
@@ -64,7 +64,7 @@ mod tests {
         let every: Vec<u8> = (0..=255).collect();
         assert_eq!(characters_of(&bits_of(&every)), every);
         assert_eq!(superposed(&every, &[], 7), every);
-        assert_eq!(heard_faster(&every, 1), every);
+        assert_eq!(sampled_too_fast(&every, 1), every);
     }
 
     #[test]
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn a_slower_transmitter_gives_more_and_other_characters() {
-        let heard = heard_faster(b">+05.123\r", 2);
+        let heard = sampled_too_fast(b">+05.123\r", 2);
         assert!(heard.len() > 9 && !heard.contains(&b'>'));
     }
 }

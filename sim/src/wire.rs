@@ -102,8 +102,8 @@ impl Line {
             if !self.plug.is_held() {
                 return;
             }
-            if let Some(back_us) = self.rig.port_back_us(self.number, self.now_us()) {
-                sleep_until(self.at(back_us)).await;
+            if let Some(restored_us) = self.rig.port_back_us(self.number, self.now_us()) {
+                sleep_until(self.at(restored_us)).await;
             }
             self.receiver = Receiver::new(self.baud);
             self.arrivals.clear();

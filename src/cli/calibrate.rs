@@ -3,7 +3,7 @@
 use super::output::Output;
 use super::rig::RigArgs;
 use super::terminal::Terminal;
-use app::calibration::{Calibrated, Compared, K, K_OF_ALL, calibrate, date};
+use app::calibration::{Calibrated, FactorComparison, K, K_JOINT, calibrate, date};
 use app::exit::Exit;
 use app::order::Files;
 use machine::dut::Calibration;
@@ -44,7 +44,7 @@ pub fn run(files: &Files, args: &CalibrateArgs) -> anyhow::Result<Exit> {
             compared,
             due_at_us,
         } => verified(&compared, &date(due_at_us)?, args.json),
-        Calibrated::Not(exit) => {
+        Calibrated::Ended(exit) => {
             if let (true, Some(cause)) = (args.json, exit.cause()) {
                 let it = json!({"type": "trouble", "cause": cause});
                 writeln!(std::io::stdout().lock(), "{it}")?;
@@ -70,16 +70,32 @@ fn stored(found: &Calibration, as_json: bool) -> anyhow::Result<Exit> {
     Ok(Exit::Done)
 }
 
-fn verified(compared: &[Compared], due: &str, as_json: bool) -> anyhow::Result<Exit> {
-    let factor = |it: &Compared| json!({"type": "factor", "factor": it.name, "unit": it.unit, "found": it.found, "expected": it.expected, "expanded_u": it.expanded_u, "holds": it.holds()});
-    let (verified, outcome, exit) = match compared.iter().all(Compared::holds) {
-        true => (true, "verified", Exit::Done),
-        false => (false, "verification failed", Exit::AnswerIsNo),
+fn verified(compared: &[FactorComparison], due: &str, as_json: bool) -> anyhow::Result<Exit> {
+    let verified = compared.iter().all(FactorComparison::agrees);
+    let mut out = std::io::stdout().lock();
+    for it in compared {
+        if as_json {
+            let it = json!({"type": "factor", "factor": it.name, "unit": it.unit, "found": it.found, "expected": it.expected, "expanded_u": it.expanded_u, "holds": it.agrees()});
+            writeln!(out, "{it}")?;
+        } else {
+            writeln!(out, "{it}")?;
+        }
+    }
+    let outcome = match verified {
+        true => "verified",
+        false => "verification failed",
     };
-    let whole = json!({"type": "verification", "verified": verified, "due_at": due, "k": K_OF_ALL});
-    let end = format!("{outcome}, due {due}; +- is the combined U (k = {K_OF_ALL})");
-    let mut out = Output::stdout();
-    out.lines(as_json, compared, factor, Compared::to_string)?;
-    out.line(&if as_json { whole.to_string() } else { end })?;
-    Ok(exit)
+    if as_json {
+        let it = json!({"type": "verification", "verified": verified, "due_at": due, "k": K_JOINT});
+        writeln!(out, "{it}")?;
+    } else {
+        writeln!(
+            out,
+            "{outcome}, due {due}; +- is the combined U (k = {K_JOINT})"
+        )?;
+    }
+    Ok(match verified {
+        true => Exit::Done,
+        false => Exit::AnswerIsNo,
+    })
 }

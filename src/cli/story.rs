@@ -7,7 +7,7 @@ use anyhow::Context;
 use app::exit::Exit;
 use app::order::{Files, LotOrder};
 use app::source::Simulated;
-use app::story::{script, tell};
+use app::story::{self, script};
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -70,9 +70,9 @@ pub fn run(files: &Files, args: &StoryArgs) -> anyhow::Result<Exit> {
     let rig = Simulated {
         faults: script.faults.clone(),
         truth: args.truth.clone(),
-        ..Simulated::drawn_by(args.seed)
+        ..Simulated::with_seed(args.seed)
     };
-    let (told, exit) = tell(
+    let (told, exit) = story::run(
         files,
         rig,
         &order,

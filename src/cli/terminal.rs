@@ -67,7 +67,7 @@ impl Terminal {
         self.table.add(lot.context.recipe.device.kind(), judged);
         if !lot.context.purpose.is_between_lots() {
             self.bar.set_position(lot.counts.parts());
-            let pace = lot.counts.in_short(lot.per_hour(judged.at));
+            let pace = lot.counts.pace_and_yield(lot.per_hour(judged.at));
             self.bar.set_message(pace);
         }
     }
@@ -80,7 +80,7 @@ impl Terminal {
 }
 
 impl Subscriber for Terminal {
-    fn hear(&mut self, event: &LotEvent, lot: &LotProgress<'_>) {
+    fn receive(&mut self, event: &LotEvent, lot: &LotProgress<'_>) {
         let rows = match lot.context.purpose.is_between_lots() {
             true => Rows::None,
             false => self.rows,

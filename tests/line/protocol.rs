@@ -4,7 +4,7 @@
 use bus::{Answer, LineSettings, Pace, PortError, Ports, Request};
 use dcon::{
     Address, AnalogIn, BaudCode, Command, Common, Config, Counter, Family, FormatByte, ModuleName,
-    Reply, ReplyError, TypeCode, UpTo, factory, readings,
+    Reply, ReplyError, TypeCode, UpTo, decode_request, factory_command,
 };
 use rigsim::{SharedRig, bench, wire};
 use std::collections::BTreeSet;
@@ -35,8 +35,8 @@ fn models() -> BTreeSet<&'static str> {
 /// Returns the commands that `request` may be for this model.
 fn meant(model: &str, request: &str) -> Vec<Command> {
     let family = Family::of_name(model).unwrap();
-    let mut meant = readings(request.as_bytes());
-    meant.retain(|command| family.knows(command));
+    let mut meant = decode_request(request.as_bytes());
+    meant.retain(|command| family.has_command(command));
     meant
 }
 
@@ -71,7 +71,7 @@ fn every_module_answers_every_command() {
 #[test]
 fn the_table_holds_every_command_that_can_be_written() {
     let mut named = BTreeSet::new();
-    for command in table().flat_map(|(request, _)| readings(request.as_bytes())) {
+    for command in table().flat_map(|(request, _)| decode_request(request.as_bytes())) {
         let (family, ask) = match command {
             Command::HostOk | Command::SampleAll => continue,
             Command::Common(_, ask) => ("Common", format!("{ask:?}")),
@@ -120,9 +120,10 @@ fn the_table_holds_every_command_that_can_be_written() {
 fn no_factory_command_can_be_written() {
     for (request, models) in table() {
         let never = models == [NEVER];
-        assert_eq!(factory(request.as_bytes()).is_some(), never, "{request}");
+        let found = factory_command(request.as_bytes()).is_some();
+        assert_eq!(found, never, "{request}");
         assert!(
-            !never || readings(request.as_bytes()).is_empty(),
+            !never || decode_request(request.as_bytes()).is_empty(),
             "{request}"
         );
     }

@@ -1,4 +1,4 @@
-//! Whether a lot may be run at all, looked at before anything is opened or moved.
+//! Checks that a lot may be run, before anything is opened or moved.
 
 use super::calibration;
 use super::exit::Cause;
@@ -17,132 +17,132 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use texts::{Lang, Message};
 
-/// Why a lot is not run. The text is that of the command line, where it names the option.
+/// Reason why a lot is refused. The text is that of the command line and names the option at fault.
 #[derive(Debug, thiserror::Error)]
-pub enum NotAdmitted {
-    /// A name that no row may have.
+pub enum AdmissionError {
+    /// The lot's name has characters or a length that the history does not allow.
     #[error("--lot: found {found:?}, expected {LOT_NAME}")]
     Name {
-        /// The name.
+        /// Name as given.
         found: String,
     },
-    /// A lot without parts.
+    /// The lot has a count of zero.
     #[error("--count: found 0, expected at least 1")]
     NoParts,
-    /// There is no such recipe, it is wrong, or this plant cannot measure it.
+    /// The recipe is missing or invalid, or this plant cannot measure it.
     #[error(transparent)]
     Recipe(#[from] ConfigError),
-    /// Golden checks are asked for and nothing is certified for this coil voltage.
+    /// `lot.toml` asks for reference checks and no reference part has this coil voltage.
     #[error(
-        "{}: [golden_check]: found a check and no golden part of {nominal_v} V, expected one in {golden}",
+        "{}: [golden_check]: found a check and no reference part of {nominal_v} V, expected one in {file_of_parts}",
         file.display()
     )]
     NoReferencePart {
-        /// Where the check is asked for.
+        /// `lot.toml`, which asks for the check.
         file: PathBuf,
-        /// Nominal coil voltage of the recipe.
+        /// Nominal coil voltage of the recipe, volts.
         nominal_v: f64,
-        /// Where golden parts stand.
-        golden: String,
+        /// Path of the file of reference parts; empty where `rig.toml` names none.
+        file_of_parts: String,
     },
-    /// A retest of a lot that nobody has run.
-    #[error("--retest: found no run of lot \"{lot}\", expected one whose parts are tested again")]
+    /// The order is a retest of a lot that never ran.
+    #[error("--retest: found no run of lot \"{lot}\", expected a lot to test again")]
     NothingToRetest {
-        /// The lot.
+        /// Name of the lot.
         lot: String,
     },
-    /// Somebody has to release it first.
+    /// The lot is on hold until a person releases it.
     #[error(
         "--lot: \"{lot}\" is held since {}: {}; expected a lot that may be run (relayrig lot release)",
         standing.since,
         standing.why.as_deref().unwrap_or_default()
     )]
     Held {
-        /// The lot.
+        /// Name of the lot.
         lot: String,
-        /// Since when, and why.
+        /// State of the lot, with the instant and the reason of the hold.
         standing: Box<LotStatus>,
     },
-    /// A lot that is not complete goes on with its own recipe.
+    /// The lot is not complete and began with another recipe.
     #[error(
-        "--recipe: found {found}, expected {} {}, by which lot \"{lot}\" was begun (relayrig lot close ends it)",
+        "--recipe: found {found}, expected {} {}, with which lot \"{lot}\" began (relayrig lot close ends it)",
         standing.recipe,
         standing.recipe_hash.get(..12).unwrap_or_default()
     )]
     OtherRecipe {
-        /// The lot.
+        /// Name of the lot.
         lot: String,
-        /// Name and hash of the recipe given.
+        /// Name and hash of the recipe as ordered.
         found: String,
-        /// What it was begun with.
+        /// State of the lot, with the recipe that it began with.
         standing: Box<LotStatus>,
     },
-    /// The history cannot be read.
+    /// The history is unreadable.
     #[error(transparent)]
     History(#[from] HistoryError),
 }
 
-impl NotAdmitted {
-    /// The same for a person at a screen.
-    pub fn at_the_screen(&self) -> Message {
-        let of = |code| Message::new("refusal", code);
+impl AdmissionError {
+    /// Returns the refusal for a person at a screen.
+    pub fn screen_message(&self) -> Message {
+        let refusal = |code| Message::new("refusal", code);
         match self {
-            Self::Name { .. } => of("lot_name"),
-            Self::NoParts => of("lot_without_parts"),
-            Self::Held { lot, standing } => of("lot_held")
+            Self::Name { .. } => refusal("lot_name"),
+            Self::NoParts => refusal("lot_without_parts"),
+            Self::Held { lot, standing } => refusal("lot_held")
                 .with("lot", lot)
                 .with("why", standing.why.as_deref().unwrap_or_default()),
-            Self::OtherRecipe { lot, standing, .. } => of("other_recipe")
+            Self::OtherRecipe { lot, standing, .. } => refusal("other_recipe")
                 .with("lot", lot)
                 .with("recipe", &standing.recipe),
-            Self::NothingToRetest { lot } => of("nothing_to_retest").with("lot", lot),
+            Self::NothingToRetest { lot } => refusal("nothing_to_retest").with("lot", lot),
             Self::Recipe(_) | Self::NoReferencePart { .. } | Self::History(_) => {
-                of("lot_not_begun").with("detail", self)
+                refusal("lot_not_begun").with("detail", self)
             }
         }
     }
 }
 
-/// The recipe of a lot that may be run.
+/// Returns the recipe of a lot that may be run.
 ///
 /// # Errors
-/// The lot is held, was begun with another recipe and is not complete, there is nothing to test again, a golden
-/// check without golden parts, or a recipe that this plant cannot measure.
+/// Fails when the lot is held, when it is not complete and began with another recipe, when a retest has no earlier run,
+/// when a reference check has no reference part, or when this plant cannot measure the recipe.
 pub fn admit(
     db: &Path,
     plant: &Plant,
     order: &LotOrder,
     purpose: Purpose,
-) -> Result<Arc<Recipe>, NotAdmitted> {
+) -> Result<Arc<Recipe>, AdmissionError> {
     if !is_lot_name(&order.lot) {
         let found = order.lot.clone();
-        return Err(NotAdmitted::Name { found });
+        return Err(AdmissionError::Name { found });
     }
     if order.count == Some(0) && purpose == Purpose::Lot {
-        return Err(NotAdmitted::NoParts);
+        return Err(AdmissionError::NoParts);
     }
     let recipe = load_recipe(&plant.dir, &order.recipe)?;
     plant.admit(&recipe)?;
     if purpose == Purpose::Lot {
-        pass_gates(db, plant, &recipe, order)?;
+        check_lot_state(db, plant, &recipe, order)?;
     }
     Ok(Arc::new(recipe))
 }
 
-fn pass_gates(
+fn check_lot_state(
     db: &Path,
     plant: &Plant,
     recipe: &Recipe,
     order: &LotOrder,
-) -> Result<(), NotAdmitted> {
-    if let Some(nominal_v) = recipe.device.part().nominal_v
-        && plant.lot.reference_check.any()
-        && plant.golden.of_nominal(nominal_v).next().is_none()
+) -> Result<(), AdmissionError> {
+    if let Some(nominal_v) = recipe.rated_v()
+        && plant.lot.golden_check.any()
+        && plant.reference_parts.of_nominal(nominal_v).next().is_none()
     {
-        return Err(NotAdmitted::NoReferencePart {
+        return Err(AdmissionError::NoReferencePart {
             file: plant.dir.join("lot.toml"),
             nominal_v,
-            golden: plant.calibration.reference_file.clone().unwrap_or_default(),
+            file_of_parts: plant.calibration.golden.clone().unwrap_or_default(),
         });
     }
     let standing = match db.exists() {
@@ -152,14 +152,14 @@ fn pass_gates(
     let lot = order.lot.clone();
     let Some(standing) = standing.map(Box::new) else {
         return match order.retest {
-            Some(_) => Err(NotAdmitted::NothingToRetest { lot }),
+            Some(_) => Err(AdmissionError::NothingToRetest { lot }),
             None => Ok(()),
         };
     };
     match standing.state {
-        LotState::Held => Err(NotAdmitted::Held { lot, standing }),
+        LotState::Held => Err(AdmissionError::Held { lot, standing }),
         LotState::Open | LotState::Running if standing.recipe_hash != recipe.hash => {
-            Err(NotAdmitted::OtherRecipe {
+            Err(AdmissionError::OtherRecipe {
                 lot,
                 found: format!("{} {}", recipe.name, &recipe.hash[..12]),
                 standing,
@@ -169,12 +169,12 @@ fn pass_gates(
     }
 }
 
-/// Why the rig takes no lot of this recipe before it was calibrated again; nothing to say of the simulated one, which
-/// is calibrated before every lot.
+/// Returns why the rig must be calibrated before a lot of this recipe; `None` on a simulated rig, which calibrates
+/// before every lot.
 ///
 /// # Errors
-/// The history cannot be read.
-pub fn uncalibrated(
+/// Fails when the history cannot be read.
+pub fn calibration_refusal(
     db: &Path,
     recipe: &Recipe,
     source: &RigSource,
@@ -182,16 +182,16 @@ pub fn uncalibrated(
     if source.is_simulated() {
         return Ok(None);
     }
-    match recipe.device.part().nominal_v {
-        Some(nominal_v) => calibration::why_not(db, nominal_v),
+    match recipe.rated_v() {
+        Some(nominal_v) => calibration::refusal(db, nominal_v),
         None => Ok(None),
     }
 }
 
-/// The lot gets a run without parts, whose alarm says why.
+/// Records a run without parts, whose alarm says why the rig refused the lot.
 ///
 /// # Errors
-/// The history cannot be written.
+/// Fails when the history cannot be written.
 pub fn refuse(db: &Path, recipe: &Recipe, order: &LotOrder, cause: &Cause) -> anyhow::Result<()> {
     let mut store = Store::open(db, &Identity::of_this_program())?;
     let now_us = jiff::Timestamp::now().as_microsecond();

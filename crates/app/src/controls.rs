@@ -1,4 +1,4 @@
-//! Controls that the page, signals and scripts share with a run: flags, orders, view. They outlive the run.
+//! Controls that page, signals and scripts share with a run: stop flags and the view. They outlive the run.
 
 use super::traces::Traces;
 use machine::view::{LineTraffic, View};
@@ -6,23 +6,23 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::sync::watch;
 
-/// Controls of a run, shared with a page; copies are the same controls.
+/// Controls of a run; clones share the same flags and view.
 #[derive(Debug, Clone)]
 pub struct Controls {
-    /// Ends the lot after the parts inside.
+    /// Ends the lot once the parts inside are finished.
     pub stop: Arc<AtomicBool>,
-    /// Ends it at once.
+    /// Ends the lot at once.
     pub abort: Arc<AtomicBool>,
     /// A person is at a screen: alarms and stops do not end the run.
     pub attended: bool,
-    /// What screens see.
+    /// Sends the view to the screens.
     pub view: watch::Sender<View>,
-    /// Traffic of the run under way; none before its lines are open.
+    /// Traffic of the current run; `None` before its lines are open.
     traces: Arc<Mutex<Option<Traces>>>,
 }
 
 impl Controls {
-    /// Nothing ordered, nothing seen.
+    /// Creates controls without an order and with an empty view.
     pub fn new(attended: bool) -> Self {
         Self {
             stop: Arc::new(AtomicBool::new(false)),
@@ -33,13 +33,13 @@ impl Controls {
         }
     }
 
-    /// From now on Ctrl-C stops, and once more aborts. Inside of a runtime.
-    pub fn heed_signals(&self) {
+    /// Makes Ctrl-C stop the lot, and a second Ctrl-C abort it. Panics outside a runtime.
+    pub fn stop_on_signals(&self) {
         let flags = [Arc::clone(&self.stop), Arc::clone(&self.abort)];
-        tokio::spawn(interruptions(flags));
+        tokio::spawn(watch_signals(flags));
     }
 
-    /// A stop or an abort was ordered.
+    /// Returns true after a stop or an abort.
     pub fn is_stopping(&self) -> bool {
         let flags = [&self.stop, &self.abort];
         flags.iter().any(|flag| flag.load(Ordering::Acquire))
@@ -50,7 +50,7 @@ impl Controls {
         *held = Some(traces.clone());
     }
 
-    /// Gives the last messages of every line, at most as many as asked for.
+    /// Returns a function that gives the last messages of every line, at most as many as its argument.
     pub fn traffic(&self) -> impl Fn(usize) -> Vec<LineTraffic> + use<> {
         let traces = Arc::clone(&self.traces);
         move |last| {
@@ -61,9 +61,9 @@ impl Controls {
     }
 }
 
-/// Ctrl-C, or the signal that a service manager ends a program with: the first one finishes the parts inside, the
-/// second does not wait for them. One that comes while the one before is logged is not lost.
-async fn interruptions(flags: [Arc<AtomicBool>; 2]) -> std::io::Result<()> {
+/// Sets the first flag on Ctrl-C (or the signal of a service manager), which finishes the parts inside, and the second
+/// flag on the next one, which does not wait for them. A signal during logging is not lost.
+async fn watch_signals(flags: [Arc<AtomicBool>; 2]) -> std::io::Result<()> {
     use tokio::signal::unix::{SignalKind, signal};
     let mut pressed = signal(SignalKind::interrupt())?;
     let mut terminate = signal(SignalKind::terminate())?;

@@ -3,23 +3,23 @@
 //! ```text
 //! scan -> step -> clear -> apply -> record -> publish
 //! ```
-//! One task owns the process image, the outputs, the guard and the station; each line is a task of its
-//! own with a one-deep queue ([`traffic`]). A turn begins on an answer or at the instant that the last
-//! step asked for. Nothing here knows what a relay is: that is the station's.
+//! One task owns the process image, the outputs, the guard and the station; each line is a task of its own with a queue
+//! for one request ([`traffic`]). A turn begins on an answer or at the instant that the last step named. Only the
+//! station knows the kind of device.
 
 mod commission;
 mod event;
-mod foresight;
+mod jog_preview;
 pub mod mimic;
+mod open_job;
 mod orders;
 mod profile;
 mod publish;
 mod record;
 mod scan_schedule;
-mod still;
+mod standstill;
 mod timeouts;
 mod traffic;
-mod underway;
 
 pub use traffic::LineEnds;
 
@@ -53,27 +53,27 @@ use tokio::sync::{mpsc, watch};
 use traffic::{Purpose, Traffic};
 use units::{RigTime, Span};
 
-/// With nothing to wait for, a turn begins after this long all the same.
+/// Longest pause between two turns when the station waits for nothing.
 const IDLE: Span = Span::ms(50);
 
-/// What the cycle shares with the outside.
+/// Channels and flags between the cycle and the rest of the program.
 #[derive(Debug)]
 pub struct CycleLinks {
-    /// Where events go; bounded by the parts inside the machine.
+    /// Carries events to the history; the parts inside the machine bound its length.
     pub events: mpsc::UnboundedSender<Event>,
-    /// Ordinal up to which parts are durable; written by the history.
+    /// Ordinal up to which parts are durable; the history sets it.
     pub recorded: Arc<AtomicU64>,
-    /// Set by the operator's stop.
+    /// The operator's stop sets it.
     pub stop: Arc<AtomicBool>,
-    /// Set when the operator does not want to wait for the parts inside.
+    /// The operator sets it to end without waiting for the parts inside.
     pub abort: Arc<AtomicBool>,
-    /// Orders of screens, each with the way back for its answer.
+    /// Orders of screens, each with the channel for its answer.
     pub orders: mpsc::Receiver<OrderRequest>,
     /// Wall clock at rig time zero, microseconds since 1970 UTC.
     pub epoch_us: i64,
-    /// Set when the history can no longer be written: the rig must not go on.
+    /// The recorder sets it when the history fails; the rig must stop then.
     pub history_lost: Arc<AtomicBool>,
-    /// What screens see.
+    /// Sends the view to the screens.
     pub view: watch::Sender<View>,
 }
 
@@ -89,34 +89,31 @@ pub struct Cycle {
     timeouts: Timeouts,
     links: CycleLinks,
     job_done: Option<JobDone>,
-    /// The nest whose job is under way, or was last.
+    /// Nest of the current job, or of the last one.
     job_nest: NestId,
     bus_alarm: Option<Alarm>,
     profile: Profile,
-    /// When the last turn began.
     turned_at: RigTime,
-    /// Only safe values are written.
+    /// The cycle writes safe values only.
     making_safe: bool,
-    /// Orders of this turn, waiting for their answers.
-    asked: Vec<OrderRequest>,
-    /// Nobody can send orders any more.
+    pending_orders: Vec<OrderRequest>,
     orders_closed: bool,
     verified: bool,
     publish_at: RigTime,
-    /// State of the outer machine that was told last.
-    told: packml::State,
-    /// Why nobody knows whether a module of the measuring line has restarted.
+    /// State of the outer machine in the last event.
+    published_state: packml::State,
+    /// Trouble that hides whether a module of the measuring line has restarted.
     lost_status: Option<String>,
-    /// What the next run has to look for, as it was told last.
+    /// Contents of the machine in the last event, for the next run.
     inside: Inside,
-    /// Longest time that the emergency-stop input was not known anew.
+    /// Longest age of the emergency-stop input so far.
     worst_age: Span,
-    /// The motion that the guard refused last, until another one is driven.
+    /// Motion that the guard refused last; cleared when another one moves.
     refused: Option<view::MotionView>,
 }
 
 impl Cycle {
-    /// Takes over the lines. Nothing is written before [`Cycle::run`].
+    /// Takes over the lines; writes nothing before [`Cycle::run`].
     pub fn new(
         wiring: Arc<Wiring>,
         pace: Pace,
@@ -143,11 +140,11 @@ impl Cycle {
             profile: Profile::default(),
             turned_at: RigTime(0),
             making_safe: false,
-            asked: Vec::new(),
+            pending_orders: Vec::new(),
             orders_closed: false,
             verified: false,
             publish_at: RigTime(0),
-            told: packml::State::Stopped,
+            published_state: packml::State::Stopped,
             worst_age: Span(0),
             refused: None,
             lost_status: None,
@@ -161,7 +158,7 @@ impl Cycle {
             .bus_alarm
             .take_if(|_| !self.verified && !self.station.is_attended())
         {
-            self.tell(Event::Alarm(alarm, self.pace.now()));
+            self.send(Event::Alarm(alarm, self.pace.now()));
             return (Ending::Alarm, self.profile);
         }
         self.verified = false;
@@ -186,8 +183,8 @@ impl Cycle {
             if output.rig.verify {
                 self.verify().await;
             }
-            if let Some(ending) = output.record.ending.take() {
-                assert!(output.rig.safe, "a run ends and outputs are on");
+            if let Some(ending) = wants.record.ending.take() {
+                assert!(wants.rig.safe, "the run ends with outputs on");
                 self.make_safe().await;
                 return (ending, self.profile);
             }
@@ -197,9 +194,9 @@ impl Cycle {
         }
     }
 
-    /// Answers that have come in go into the process image.
+    /// Stores the answers that have arrived in the process image.
     fn scan(&mut self, now: RigTime) {
-        assert!(now >= self.turned_at, "the clock of the rig went back");
+        assert!(now >= self.turned_at, "rig time ran backwards");
         self.turned_at = now;
         while let Some((line, purpose, answer)) = self.traffic.next_answer() {
             self.take(line, purpose, answer);
@@ -221,8 +218,8 @@ impl Cycle {
             answer.answered_at >= answer.asked_at,
             "answered before it was asked"
         );
-        // Reading the reset status clears it, so that the line never repeats the query: when its reply is lost, a restart of
-        // the module during the test cannot be excluded, and the part is void.
+        // Reading the reset status clears it, so no reply can be repeated: after a lost reply a restart of the module
+        // under the part stays unknown, and the part is void.
         let is_status = matches!(
             answer.command,
             Command::Common(_, dcon::Common::ReadResetStatus)
@@ -247,7 +244,7 @@ impl Cycle {
                 self.timeouts.written(module);
                 self.finish_job(job, answer.answered_at, None);
             }
-            // A module that ignores writes has had its host watchdog trip: it stands at its safe value.
+            // A module that refuses writes has a tripped host watchdog: its outputs are at their safe values.
             (Purpose::Write { module, .. }, Some(_)) if self.making_safe && refused => {
                 self.outputs.confirmed(module);
             }
@@ -305,7 +302,7 @@ impl Cycle {
         let orders = self.orders(now);
         self.making_safe = packml::is_aborted(self.station.outer());
         if self.making_safe {
-            self.timeouts.forgive();
+            self.timeouts.reset_writes();
         }
         let inputs = Inputs {
             abort: self.links.abort.load(Ordering::Acquire),
@@ -324,11 +321,11 @@ impl Cycle {
         self.station.step(now, inputs)
     }
 
-    /// Each wanted motion passes the guard, one after the other, and is driven or refused.
-    fn clear(&mut self, now: RigTime, output: &mut TurnOutput) {
-        let moves = !output.rig.motions.is_empty() || output.rig.jog.is_some();
-        assert!(!(output.rig.safe && moves), "outputs go safe and one moves");
-        for movement in std::mem::take(&mut output.rig.motions) {
+    /// Passes each wanted motion through the guard in turn; drives or refuses it.
+    fn clear(&mut self, now: RigTime, wants: &mut Wants) {
+        let moves = !wants.rig.motions.is_empty() || wants.rig.jog.is_some();
+        assert!(!(wants.rig.safe && moves), "a motion while outputs go safe");
+        for movement in std::mem::take(&mut wants.rig.motions) {
             let situation = self.station.situation(now, &self.image);
             match self.guard.clear(&self.station.motion(movement), &situation) {
                 Ok(cleared) => {
@@ -341,7 +338,7 @@ impl Cycle {
                     self.refused = None;
                 }
                 Err(refusal) => {
-                    self.refused = Some(self.shown_refused(movement, &situation, &refusal));
+                    self.refused = Some(self.refused_motion(movement, &situation, &refusal));
                     self.station
                         .refused(movement, &refusal.to_string(), now, output);
                     return;
@@ -354,9 +351,9 @@ impl Cycle {
         }
     }
 
-    /// Outputs become commands; the measuring lines get their job.
-    fn apply(&mut self, now: RigTime, output: &mut TurnOutput) {
-        if output.rig.safe {
+    /// Turns outputs into commands and gives the measuring lines their job.
+    fn apply(&mut self, now: RigTime, wants: &mut Wants) {
+        if wants.rig.safe {
             self.outputs.everything_safe();
             for module in self.traffic.drop_all() {
                 self.outputs.confirmed(module);
@@ -369,11 +366,11 @@ impl Cycle {
         }
         self.traffic.check_restarts(output.rig.restart_check);
         self.traffic
-            .watch_beam(output.rig.beam.map(|beam| self.wiring.read_events(beam)));
-        let is_job = output.rig.job.is_some();
-        if let Some(NestJob { nest, job }) = output.rig.job.take() {
-            assert!(!output.rig.safe, "outputs go safe and a job begins");
-            assert!(self.job_done.is_none(), "the answer before was not heard");
+            .watch_beam(wants.rig.beam.map(|beam| self.wiring.read_events(beam)));
+        let is_job = wants.rig.job.is_some();
+        if let Some(NestJob { nest, job }) = wants.rig.job.take() {
+            assert!(!wants.rig.safe, "a job begins while outputs go safe");
+            assert!(self.job_done.is_none(), "the last answer is still pending");
             self.job_nest = nest;
             self.start(job);
         }
@@ -399,7 +396,7 @@ impl Cycle {
         self.traffic.measuring_lines().contains(&line)
     }
 
-    /// Outputs of the job are set, and written with those of the turn; readings are queued.
+    /// Sets and writes the outputs of the job with those of the turn; queues its readings.
     fn start(&mut self, job: Job) {
         self.traffic.begin_job();
         let commands = match job {
@@ -429,13 +426,13 @@ impl Cycle {
         }
     }
 
-    /// First instant at which the emergency-stop contact will not be known any more.
+    /// Returns the instant at which the state of the emergency-stop contact expires.
     fn contact_unknown(&self, now: RigTime) -> Option<RigTime> {
         let until = self.image.emergency_stop_known_until()?;
         (until >= now).then_some(until + Span(1))
     }
 
-    /// Until an answer, the station's own deadline, or the next scan.
+    /// Waits for an answer, the station's own deadline or the next scan.
     async fn wait(&mut self, now: RigTime, wake_at: Option<RigTime>) {
         assert!(wake_at.is_none_or(|at| at > now), "a deadline in the past");
         let until = wake_at
@@ -447,7 +444,7 @@ impl Cycle {
             () = self.traffic.answer() => {}
             asked = self.links.orders.recv(), if !self.orders_closed => {
                 self.orders_closed = asked.is_none();
-                self.asked.extend(asked);
+                self.pending_orders.extend(asked);
             }
             () = self.pace.sleep_until(until) => {}
         }

@@ -1,13 +1,10 @@
-//! Why a command ended, with its exit status.
-//!
-//! `lot/progress.rs` (alarm, abort) and `lot/mod.rs` (assertion, lost history) choose the cause of a status 3, table `run_end` of
-//! the history stores it, `relayrig lot` and the page Lots show it.
+//! Reasons why a command ends, with their exit status.
 
 use machine::station::trouble::Alarm;
 use serde::Serialize;
 use texts::Lang;
 
-/// Why a command ended.
+/// Reason why a command ends.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Exit {
     /// Everything finished, whatever the verdicts.
@@ -16,14 +13,14 @@ pub enum Exit {
     AnswerIsNo,
     /// Bad input or configuration.
     BadInput,
-    /// The rig has trouble.
+    /// The rig has trouble, or the program failed.
     Trouble(Cause),
-    /// The operator stopped it.
+    /// The operator stopped the run.
     Stopped,
 }
 
 impl Exit {
-    /// Status that the shell sees, 0 to 4.
+    /// Returns the exit status, 0 to 4.
     pub const fn code(&self) -> u8 {
         match self {
             Self::Done => 0,
@@ -34,7 +31,7 @@ impl Exit {
         }
     }
 
-    /// What the trouble is; none for every other end.
+    /// Returns the trouble; `None` for every other end.
     pub const fn cause(&self) -> Option<&Cause> {
         match self {
             Self::Trouble(cause) => Some(cause),
@@ -48,12 +45,12 @@ const ASSERTION: &str = "assertion";
 /// Code of [`Cause::history_lost`].
 const HISTORY_LOST: &str = "history_lost";
 
-/// What ended a run with status 3.
+/// Cause of exit status 3.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Cause {
-    /// Code of an alarm, or one of the codes of [`Cause`]'s constructors; it stays the same over versions.
+    /// Code of an alarm, or of one of the constructors below; stable over versions.
     pub code: String,
-    /// What happened, English.
+    /// Description in English.
     pub text: String,
 }
 
@@ -72,31 +69,30 @@ impl Cause {
         }
     }
 
-    /// `aborted`: a person ordered the abort and no alarm stood.
+    /// `aborted`: a person ordered the abort while no alarm was active.
     pub fn aborted() -> Self {
-        Self::new("aborted", "the run was aborted by order")
+        Self::new("aborted", "an order aborted the run")
     }
 
-    /// `assertion`: the control cycle found a mistake of this program.
+    /// `assertion`: an assertion of the control cycle failed.
     pub fn assertion() -> Self {
-        let text =
-            "the control cycle ended by an assertion; the modules' watchdogs make the outputs safe";
+        let text = "an assertion of the control cycle failed; the modules' watchdogs make the outputs safe";
         Self::new(ASSERTION, text)
     }
 
-    /// `history_lost`: rows could not be written, `why` says what the file answered.
+    /// `history_lost`: the history cannot be written; `why` is the error.
     pub fn history_lost(why: &str) -> Self {
         Self::new(HISTORY_LOST, why)
     }
 
-    /// `calibration_invalid`: the rig takes no lot before it is calibrated again.
+    /// `calibration_invalid`: the rig takes no lot before a new calibration.
     pub fn calibration_invalid(why: &str) -> Self {
         Self::new("calibration_invalid", why)
     }
 
-    /// `not_calibrated`: the golden parts ended without a calibration.
+    /// `not_calibrated`: the reference parts ended without a calibration.
     pub fn not_calibrated() -> Self {
-        let text = "the golden parts ended without a calibration";
+        let text = "the reference parts ended without a calibration";
         Self::new("not_calibrated", text)
     }
 
@@ -105,9 +101,9 @@ impl Cause {
         [ASSERTION, HISTORY_LOST].contains(&self.code.as_str())
     }
 
-    /// `script`: the player of a story ended by an assertion.
+    /// `script`: an assertion of the story's player failed.
     pub fn script() -> Self {
-        Self::new("script", "the player of the script ended by an assertion")
+        Self::new("script", "an assertion of the script's player failed")
     }
 }
 

@@ -1,9 +1,9 @@
-//! A follower of the bus: the live traffic of a running controller, as it tells it itself. The port stays the
-//! controller's alone, and nothing goes to a module that would not go otherwise.
+//! Follows the live traffic of a running controller through its page. The controller keeps the port for itself, and the
+//! follower sends nothing to a module.
 //!
-//! The page's server keeps the last messages of every line (`/api/trace`). They are fetched again and again; what was not
-//! there before is told, lines mixed in the order of time. Where more passed between two looks than the server keeps, the
-//! gap is told too. It ends with the controller.
+//! The page's server keeps the last messages of every line (`/api/trace`). The follower polls them and reports the new
+//! ones, all lines merged in order of time, with a gap where more messages passed between two polls than the server
+//! keeps. It ends with the controller.
 
 use anyhow::{Context, anyhow, bail};
 use serde::Deserialize;
@@ -13,25 +13,25 @@ use thiserror::Error;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 
-/// Between two looks: a line at 115200 baud makes some 130 messages in this time, and a thousand are kept.
-const BETWEEN_LOOKS: Duration = Duration::from_millis(200);
+/// Time between two polls: a line at 115200 baud carries some 130 messages meanwhile, and the server keeps a thousand.
+const POLL_INTERVAL: Duration = Duration::from_millis(200);
 /// Longest wait for an answer of the server.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// Where a page is served: host and port of `http://HOST:PORT`.
+/// Host and port of a page at `http://HOST:PORT`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Page(String);
 
-/// A text that is no address of a page.
+/// Error: the text is no address of a page.
 #[derive(Debug, PartialEq, Eq, Error)]
 #[error("found \"{0}\", expected http://HOST:PORT")]
-pub struct NoPage(String);
+pub struct InvalidPage(String);
 
-/// Reads the address of a page.
+/// Parses the address of a page.
 ///
 /// # Errors
-/// No `http://HOST:PORT`.
-pub fn page(text: &str) -> Result<Page, NoPage> {
+/// Fails on anything but `http://HOST:PORT`.
+pub fn page(text: &str) -> Result<Page, InvalidPage> {
     let rest = text.strip_prefix("http://");
     let host = rest.map(|rest| rest.strip_suffix('/').unwrap_or(rest));
     let fits = |host: &&str| {
@@ -40,106 +40,106 @@ pub fn page(text: &str) -> Result<Page, NoPage> {
     };
     match host.filter(fits) {
         Some(host) => Ok(Page(host.to_owned())),
-        None => Err(NoPage(text.to_owned())),
+        None => Err(InvalidPage(text.to_owned())),
     }
 }
 
-/// Of `/api/trace`, a line of the rig.
+/// A line of the rig in `/api/trace`.
 #[derive(Debug, Clone, Deserialize)]
 struct Line {
     line: String,
     entries: Vec<Message>,
 }
 
-/// A message as the controller shows it.
+/// A message as `/api/trace` gives it.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 pub struct Message {
-    /// When it passed, microseconds of rig time.
+    /// Instant of the message, microseconds of rig time.
     pub at_us: u64,
-    /// Sent, heard or stray, as one character.
+    /// Direction as one character: sent, received or stray.
     pub way: String,
-    /// The bytes, escaped.
+    /// Bytes of the message, escaped.
     pub text: String,
-    /// What they mean.
+    /// Decoded meaning.
     pub meaning: String,
 }
 
-/// Something to print.
+/// An entry to print.
 #[derive(Debug, PartialEq, Eq)]
-pub struct News {
-    /// When it passed, microseconds of rig time.
+pub struct Update {
+    /// Instant of the entry, microseconds of rig time.
     pub at_us: u64,
-    /// The line on which it passed.
+    /// Name of the line.
     pub line: String,
-    /// What passed.
-    pub what: What,
+    /// A message or a gap.
+    pub what: UpdateContent,
 }
 
-/// What passed on a line.
+/// Content of an entry.
 #[derive(Debug, PartialEq, Eq)]
-pub enum What {
-    /// More passed between two looks than is kept.
+pub enum UpdateContent {
+    /// More messages passed between two polls than the server keeps.
     Gap,
     /// One message.
     Message(Message),
 }
 
-/// The newest message handed over, by line.
+/// Last message reported, by line.
 #[derive(Debug, Default)]
 struct Delivered(BTreeMap<String, Message>);
 
 impl Delivered {
-    /// Returns the messages that came after those handed over before, oldest first.
-    fn news(&mut self, lines: Vec<Line>) -> Vec<News> {
+    /// Returns the messages after the last reported ones, oldest first.
+    fn news(&mut self, lines: Vec<Line>) -> Vec<Update> {
         let mut news = Vec::new();
         for Line { line, entries } in lines {
             let Some(newest) = entries.last().cloned() else {
                 continue;
             };
-            let told = self.0.insert(line.clone(), newest);
-            let known = told
+            let reported = self.0.insert(line.clone(), newest);
+            let known = reported
                 .as_ref()
-                .map(|told| entries.iter().rposition(|it| it == told));
-            let of = |at_us, what| News {
+                .map(|reported| entries.iter().rposition(|it| it == reported));
+            let of = |at_us, what| Update {
                 at_us,
                 line: line.clone(),
                 what,
             };
             if known == Some(None) {
-                news.push(of(entries[0].at_us, What::Gap));
+                news.push(of(entries[0].at_us, UpdateContent::Gap));
             }
             let from = known.flatten().map_or(0, |place| place + 1);
             let fresh = entries.into_iter().skip(from);
-            news.extend(fresh.map(|it| of(it.at_us, What::Message(it))));
+            news.extend(fresh.map(|it| of(it.at_us, UpdateContent::Message(it))));
         }
         news.sort_by_key(|it| it.at_us);
         news
     }
 }
 
-/// Hands over what is new until the controller ends.
+/// Reports new messages to `report` until the controller ends.
 pub async fn follow(
     page: &Page,
-    mut tell: impl FnMut(&News) -> anyhow::Result<()>,
+    mut report: impl FnMut(&Update) -> anyhow::Result<()>,
 ) -> anyhow::Result<()> {
     let mut delivered = Delivered::default();
-    let mut lines = look(page).await?;
+    let mut lines = poll(page).await?;
     loop {
         for news in delivered.news(lines) {
-            tell(&news)?;
+            report(&news)?;
         }
-        tokio::time::sleep(BETWEEN_LOOKS).await;
-        lines = match look(page).await {
+        tokio::time::sleep(POLL_INTERVAL).await;
+        lines = match poll(page).await {
             Ok(lines) => lines,
             Err(end) => {
-                tracing::warn!("the controller does not answer any more: {end:#}");
+                tracing::warn!("the controller stopped answering: {end:#}");
                 return Ok(());
             }
         };
     }
 }
 
-async fn look(page: &Page) -> anyhow::Result<Vec<Line>> {
+async fn poll(page: &Page) -> anyhow::Result<Vec<Line>> {
     let Page(host) = page;
     let body = tokio::time::timeout(ANSWER_TIMEOUT, get(host, "/api/trace?last=1000"));
     let body = body
@@ -151,7 +151,7 @@ async fn look(page: &Page) -> anyhow::Result<Vec<Line>> {
         .with_context(|| format!("--from http://{host}: expected the traffic of a relayrig"))
 }
 
-/// Body of a plain GET.
+/// Returns the body of a GET request; fails on a status other than 200.
 async fn get(host: &str, path: &str) -> anyhow::Result<Vec<u8>> {
     let mut stream = TcpStream::connect(host).await?;
     let request = format!("GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n");
@@ -161,7 +161,7 @@ async fn get(host: &str, path: &str) -> anyhow::Result<Vec<u8>> {
     let end = answer
         .windows(4)
         .position(|four| four == b"\r\n\r\n")
-        .context("the answer is no HTTP")?;
+        .context("the answer is not HTTP")?;
     let body = answer.split_off(end + 4);
     let head = String::from_utf8_lossy(&answer);
     let status = head.split_whitespace().nth(1).unwrap_or_default();
@@ -189,15 +189,15 @@ mod tests {
         }
     }
 
-    fn seen(news: &[News]) -> Vec<(u64, &str, bool)> {
-        let seen = |it: &'_ News| matches!(it.what, What::Message(_));
+    fn seen(news: &[Update]) -> Vec<(u64, &str, bool)> {
+        let seen = |it: &'_ Update| matches!(it.what, UpdateContent::Message(_));
         news.iter()
             .map(|it| (it.at_us, it.line.as_str(), seen(it)))
             .collect()
     }
 
     #[test]
-    fn what_was_seen_comes_once_and_in_order_of_time() {
+    fn messages_come_once_in_order_of_time() {
         let mut delivered = Delivered::default();
         let news = delivered.news(vec![line("motion", &[1, 4]), line("measure", &[2])]);
         let expected = [
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn where_more_passed_than_is_kept_there_is_a_gap() {
+    fn lost_messages_leave_a_gap() {
         let mut delivered = Delivered::default();
         delivered.news(vec![line("motion", &[1, 4])]);
         let news = delivered.news(vec![line("motion", &[7, 9])]);
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn a_page_is_named_by_host_and_port() {
+    fn a_page_address_is_host_and_port() {
         let host = |text: &str| page(text).map(|Page(host)| host);
         assert_eq!(host("http://127.0.0.1:8080/").unwrap(), "127.0.0.1:8080");
         assert_eq!(host("http://[::1]:80").unwrap(), "[::1]:80");

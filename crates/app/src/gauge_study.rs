@@ -1,9 +1,9 @@
-//! Gauge repeatability and reproducibility of the rig itself, on parts that are fed again.
+//! Gauge repeatability and reproducibility of the rig itself, on parts that it measures several times.
 //!
-//! Ten parts go through three times, on three rigs: each "operator" is a rig with errors of its own,
-//! calibrated and set by its golden parts as before any lot. The parts are the same ones (fault `parts_seed`
-//! of the simulated rig), fed again in the same order (`refeed`), and operate a little differently every
-//! time, as real ones do. Each rig's readings stay in the history as a lot of its own.
+//! Ten parts go three times through each of three rigs: each "operator" is a rig with errors of its own, calibrated by
+//! its reference parts as before any lot. The parts are the same (fault `parts_seed` of the simulated rig), come in the
+//! same order (`refeed`), and operate a little differently each time, as real ones do. The history keeps each rig's
+//! readings as a lot of its own.
 
 use super::exit::Exit;
 use super::lot::{Purpose, Subscriber};
@@ -16,25 +16,25 @@ use machine::dut::Characteristic;
 use quality::average_range::average_and_range;
 use quality::gauge_rr::{GaugeRr, GaugeRrError, Reading, anova};
 
-/// Rigs that take the place of operators; AIAG's customary number, as the two below.
+/// Number of rigs, which take the place of operators; AIAG's customary number, like the two below.
 const OPERATORS: u64 = 3;
-/// How often each rig sees each part.
+/// Number of times that each rig measures each part.
 const TRIALS: u64 = 3;
-/// Parts of the study unless `--count` says otherwise.
+/// Number of parts unless `--count` gives another.
 const PARTS: u64 = 10;
 
-/// What the gauge adds to one parameter.
+/// Measurement-system figures of one characteristic.
 #[derive(Debug)]
 pub struct Figure {
-    /// The parameter.
+    /// The characteristic.
     pub characteristic: Characteristic,
-    /// By analysis of variance, or why there is no answer.
+    /// Result of the analysis of variance, or why it fails.
     pub anova: Result<GaugeRr, GaugeRrError>,
-    /// By average and range, where that has an answer.
+    /// Result of the average and range method; `None` where it fails.
     pub by_range: Option<GaugeRr>,
 }
 
-/// The rig of one operator: its own errors, the same parts fed again and again.
+/// Returns the rig of one operator: errors of its own, the same parts fed repeatedly.
 fn refed(source: &RigSource, operator: u64, parts: u64) -> RigSource {
     let _ = (operator, parts);
     match source.clone() {
@@ -49,11 +49,11 @@ fn refed(source: &RigSource, operator: u64, parts: u64) -> RigSource {
     }
 }
 
-/// Runs the lots named after `order`, and returns the figures of every parameter, or how the first lot ended that did
-/// not end well.
+/// Runs one lot per operator, named after `order`; returns the figures of every characteristic, or the end of the first
+/// lot that did not complete.
 ///
 /// # Errors
-/// Bad input, as of any lot.
+/// Fails on bad input, as any lot does.
 pub fn run(
     files: &Files,
     source: &RigSource,
@@ -94,7 +94,7 @@ fn name(order: &LotOrder, operator: u64) -> String {
     format!("{}/{operator}", order.lot)
 }
 
-/// Readings of one parameter; a part that could not be measured leaves the study incomplete.
+/// Returns the readings of one characteristic; a part without a value leaves the study incomplete.
 fn readings(
     archive: &Archive,
     order: &LotOrder,

@@ -1,18 +1,18 @@
-//! What a lot, a day of service, a story, a calibration and a follower of the traffic *are*, in types of their own.
+//! The application layer: a lot, a day of service, a story, a calibration and a follower of the traffic as types.
 //!
-//! The command line turns arguments into these types and answers into text. Nothing here reads an argument. Only
+//! The command line turns arguments into these types and results into text; nothing here reads an argument. Only
 //! [`progress`] writes to the terminal; log messages go through `tracing`.
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`order`], [`source`] | which lot on which rig |
-//! | [`admission`] | whether the lot may be run at all |
+//! | [`order`], [`source`] | the lot ordered, and its rig |
+//! | [`admission`] | checks before a lot may run |
 //! | [`lot`] | a run: one stream of events and its subscribers |
-//! | [`exit`] | why it ended |
+//! | [`exit`] | reasons why a run ends |
 //! | [`cycle`] | one turn of the rig: scan, step, clear, apply, record, publish |
-//! | [`service`] | lot after lot under one program, ordered at a page |
+//! | [`service`] | one lot after another, ordered at a page |
 //! | [`calibration`], [`gauge_study`] | runs that measure the rig itself |
-//! | `story` | a script that strikes the simulated rig and orders as a person does |
+//! | `story` | scripted faults and operator orders on the simulated rig |
 
 pub mod admission;
 pub mod alarm_order;
@@ -56,7 +56,7 @@ use std::time::Duration;
 /// Runs one unattended lot; Ctrl-C stops it. `outer` receives every event.
 ///
 /// # Errors
-/// Bad input: a configuration, a lot or a rig that is refused before anything moves.
+/// Fails on bad input: a configuration, lot or rig that is refused before anything moves.
 pub fn run_lot(
     files: &Files,
     source: &RigSource,
@@ -67,7 +67,7 @@ pub fn run_lot(
     let plant = Plant::load(&files.config)?;
     let recipe = admit(&files.db, &plant, order, purpose)?;
     if purpose == Purpose::Lot
-        && let Some(why) = admission::uncalibrated(&files.db, &recipe, source)?
+        && let Some(why) = admission::calibration_refusal(&files.db, &recipe, source)?
     {
         let cause = Cause::calibration_invalid(&why);
         tracing::error!(code = cause.code, "{why}");
@@ -81,15 +81,15 @@ pub fn run_lot(
         controls: &controls,
     };
     block_on(source, async {
-        controls.heed_signals();
+        controls.stop_on_signals();
         runner.run(OrderQueue::without_orders(), outer).await
     })
 }
 
-/// Runs `work` on one thread, whose clock is the rig's in virtual time.
+/// Runs `work` on a runtime of one thread, whose clock is the rig's in virtual time.
 ///
 /// # Errors
-/// Those of `work`, or a runtime that cannot be started.
+/// Fails as `work` does, or when the runtime cannot start.
 pub fn block_on<T>(
     source: &RigSource,
     work: impl Future<Output = anyhow::Result<T>>,
@@ -100,10 +100,10 @@ pub fn block_on<T>(
     done
 }
 
-/// A runtime of one thread for runs on `source`.
+/// Creates a runtime of one thread for runs on `source`.
 ///
 /// # Errors
-/// The system refuses it.
+/// Fails when the operating system refuses it.
 pub fn runtime(source: &RigSource) -> anyhow::Result<tokio::runtime::Runtime> {
     let mut builder = tokio::runtime::Builder::new_current_thread();
     builder.enable_all();

@@ -13,21 +13,21 @@ use machine::rig::wiring::LineId;
 use rigsim::{SharedRig, pty, wire};
 use tokio::sync::mpsc;
 
-/// Grace for a late reply of a measuring line, ms. A silent module gets three requests for its name; with this grace they
-/// take 0.65 s, so the host watchdogs of the line's other modules receive their next sign of life in time.
+/// Grace for a late reply of a measuring line, ms. A silent module gets three requests for its name; with this grace
+/// they take 0.65 s, so the host watchdogs of the line's other modules receive their next sign of life in time.
 const LATE_REPLY_MS: u64 = 180;
 
-/// EEPROM writes of all modules so far; `None` on a real rig, whose modules keep no count.
+/// Returns the EEPROM writes of all modules so far; `None` on a real rig, whose modules keep no count.
 pub type EepromCount = Box<dyn Fn() -> Option<u64> + Send>;
 
 /// Open lines, ready for the cycle.
 #[derive(Default)]
 pub struct Lines {
-    /// The cycle's ends.
+    /// The cycle's queue ends, in the order of the wiring.
     pub ends: Vec<LineEnds>,
-    /// Trace and health of each line, by name.
+    /// Trace and health of each line, with its name.
     pub logs: Vec<(String, LineLog)>,
-    /// The simulated rig behind the lines.
+    /// The simulated rig behind the lines; `None` on a real one.
     #[cfg(feature = "sim")]
     rig: Option<SharedRig>,
     #[cfg(feature = "sim")]
@@ -35,7 +35,7 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// Counts the EEPROM writes of the simulated modules.
+    /// Returns a counter of the simulated modules' EEPROM writes.
     pub fn eeprom_count(&self) -> EepromCount {
         #[cfg(feature = "sim")]
         if let Some(rig) = self.rig.clone() {
@@ -44,10 +44,10 @@ impl Lines {
         Box::new(|| None)
     }
 
-    /// Writes the truth file of a simulated rig and logs bodies that touched.
+    /// Writes the truth file of a simulated rig and logs collisions.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// Fails when the file cannot be written.
     pub fn finish(&self, source: &RigSource) -> anyhow::Result<()> {
         match source {
             RigSource::Serial(_) => {}
@@ -112,7 +112,7 @@ fn settings(plant: &Plant, line: LineId) -> LineSettings {
             .module(plant.wiring.emergency_stop_module())
             .line
     {
-        // The line with the emergency stop keeps the shorter grace that its reaction bound is derived from.
+        // The line with the emergency stop keeps the shorter grace that its reaction bound assumes.
         settings.late_reply_ms = LATE_REPLY_MS;
     }
     settings.log = LineLog::with_trace(4096);
@@ -122,7 +122,7 @@ fn settings(plant: &Plant, line: LineId) -> LineSettings {
 /// Opens every line of the plant.
 ///
 /// # Errors
-/// A line that is not wired, or a simulated rig that cannot be built.
+/// Fails on a line without wiring, or a simulated rig that cannot be built.
 pub fn open(context: &LotContext, pace: &Pace) -> anyhow::Result<Lines> {
     match context.source {
         RigSource::Serial(given) => serial(context.plant, given, pace),
@@ -149,10 +149,10 @@ fn serial(plant: &Plant, given: &[LinePort], pace: &Pace) -> anyhow::Result<Line
     Ok(lines)
 }
 
-/// Checks that every line that gets another port is wired.
+/// Checks that the wiring has every line that `--line` names.
 ///
 /// # Errors
-/// The first one that is not.
+/// Fails on the first line without wiring.
 pub fn check(plant: &Plant, given: &[LinePort]) -> anyhow::Result<()> {
     let wired = plant.wiring.lines.iter().map(|line| line.name.as_str());
     let known: Vec<&str> = wired.collect();

@@ -1,21 +1,21 @@
-//! A person holds, releases or closes a lot that is not under way: an order like those of a screen, in the audit with
-//! the name.
+//! Writes a person's decision to hold, release or close a lot that is not under way; the audit keeps it with the name,
+//! like an order at a screen.
 
 use history::{Decision, HistoryError, Identity, LotStateRecord, OrderRecord, Row, Store};
 use machine::view::{By, Order};
 use serde_json::json;
 use std::path::Path;
 
-/// Writes an order about a lot and the state it puts the lot into.
+/// Writes an order about a lot, and the state that it gives the lot.
 ///
 /// # Errors
-/// The history cannot be written.
+/// Fails when the history cannot be written.
 pub fn write(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<(), HistoryError> {
     let rows = [audit(order, by), state(order, by, decision)];
     Store::open(db, &Identity::of_this_program())?.record(&rows)
 }
 
-/// The row of the audit of an order that was taken outside of a run.
+/// Returns the audit row of an order outside a run.
 pub fn audit(order: &Order, by: &By) -> Row {
     Row::Order(OrderRecord {
         lot: None,
@@ -28,7 +28,7 @@ pub fn audit(order: &Order, by: &By) -> Row {
     })
 }
 
-/// The row that puts the lot of an order into its new state.
+/// Returns the row that puts the order's lot into its new state.
 pub fn state(order: &Order, by: &By, decision: Decision) -> Row {
     let reason = order.reason.as_deref().unwrap_or_default();
     Row::LotState(LotStateRecord {

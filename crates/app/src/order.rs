@@ -1,21 +1,21 @@
-//! What a person or a program orders: a lot, and where its files are.
+//! Orders of a person or a program: a lot, and the paths of its files.
 
 use std::path::PathBuf;
 
-/// Which lot is to be run.
+/// Order of a lot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LotOrder {
-    /// Name of the lot that the parts belong to.
+    /// Name of the lot.
     pub lot: String,
     /// Name of a recipe in `recipes/` of the configuration.
     pub recipe: String,
-    /// Parts of the lot; none: the lot goes on until it is stopped.
+    /// Number of parts; `None`: the lot continues until a stop.
     pub count: Option<u64>,
-    /// Who has agreed that parts of the lot are tested again; the first results stay.
+    /// Name of the person who agreed to a retest of the lot's parts; the history keeps the first results.
     pub retest: Option<String>,
 }
 
-/// Where configuration and history are.
+/// Paths of configuration and history.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Files {
     /// Folder of the configuration.

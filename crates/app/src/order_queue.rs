@@ -3,7 +3,7 @@
 use machine::view::OrderRequest;
 use tokio::sync::mpsc;
 
-/// Orders on their way to the cycle of a run.
+/// Orders for the cycle of a run.
 #[derive(Debug)]
 pub struct OrderQueue {
     pub(super) orders: mpsc::Receiver<OrderRequest>,

@@ -1,4 +1,4 @@
-//! The simulated rig behind the lines of a run: built for it, or living on from run to run.
+//! Builds the simulated rig of a run, or takes over one that lives from run to run.
 
 use super::order::LotOrder;
 use super::source::Simulated;
@@ -6,18 +6,18 @@ use config::Plant;
 use machine::dut::Calibration;
 use rigsim::{Options, SharedRig};
 
-/// A simulated rig that lives before and after the run.
+/// A simulated rig that exists before and after the run.
 #[derive(Debug, Clone)]
 pub struct LiveRig {
-    /// The rig; rig time of the run begins where it stands.
+    /// The rig; the run's rig time begins at its present time.
     pub rig: SharedRig,
     /// Wall clock at rig time zero of the run, microseconds since 1970 UTC.
     pub epoch_us: i64,
-    /// What the rig was calibrated with before; without it the run calibrates.
+    /// Calibration of the rig; `None`: the run calibrates.
     pub calibration: Option<Calibration>,
 }
 
-/// The faults of the source; and the magazine is loaded as the golden checks of the lot want it, as a person would.
+/// Returns the source's faults, and the one that loads reference parts as often as the lot's checks need them.
 fn faults(plant: &Plant, source: &Simulated) -> Vec<String> {
     let mut faults = source.faults.clone();
     let asked = faults.iter().any(|it| it.starts_with("golden_every"));
@@ -26,7 +26,7 @@ fn faults(plant: &Plant, source: &Simulated) -> Vec<String> {
     faults
 }
 
-/// Golden parts and the lot in the magazine.
+/// Returns the options that put reference parts and the lot into the magazine.
 fn loaded(plant: &Plant, source: &Simulated, order: &LotOrder) -> Options {
     Options {
         config_dir: plant.dir.clone(),
@@ -39,10 +39,10 @@ fn loaded(plant: &Plant, source: &Simulated, order: &LotOrder) -> Options {
     }
 }
 
-/// Builds the rig with golden parts and the lot in its magazine.
+/// Builds the rig with reference parts and the lot in its magazine.
 ///
 /// # Errors
-/// Files or faults that the simulated rig refuses.
+/// Fails on files or faults that the simulated rig refuses.
 pub fn build(plant: &Plant, source: &Simulated, order: &LotOrder) -> anyhow::Result<SharedRig> {
     Ok(rigsim::build(&loaded(plant, source, order))?)
 }
@@ -50,7 +50,7 @@ pub fn build(plant: &Plant, source: &Simulated, order: &LotOrder) -> anyhow::Res
 /// Builds the rig with an empty magazine.
 ///
 /// # Errors
-/// As [`build`].
+/// Fails as [`build`] does.
 pub fn build_empty(
     plant: &Plant,
     source: &Simulated,
@@ -63,10 +63,10 @@ pub fn build_empty(
     })?)
 }
 
-/// Does what a person does before a lot: empties the magazine and loads it.
+/// Empties the magazine and loads it for the lot, as a person would.
 ///
 /// # Errors
-/// As [`build`].
+/// Fails as [`build`] does.
 pub fn load(
     rig: &SharedRig,
     plant: &Plant,

@@ -1,63 +1,63 @@
-//! Which rig a run works on: the one at serial ports, or the simulated one.
+//! Selects the rig of a run: the one at serial ports, or a simulated one.
 
 #[cfg(feature = "sim")]
 use super::simulated::LiveRig;
 #[cfg(feature = "sim")]
 use std::path::PathBuf;
 
-/// The rig of a run.
+/// Rig of a run.
 #[derive(Debug, Clone)]
 pub enum RigSource {
-    /// Serial ports of `rig.toml`, except for the lines that are given another one.
+    /// Serial ports of `rig.toml`, except for the lines listed here.
     Serial(Vec<LinePort>),
     /// The simulated rig.
     #[cfg(feature = "sim")]
     Simulated(Simulated),
 }
 
-/// A line and the port that it gets instead of the one in `rig.toml`.
+/// A line with the port that replaces the one in `rig.toml`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LinePort {
-    /// Name of the line as wired.
+    /// Name of the line in `rig.toml`.
     pub line: String,
     /// Path of the serial port.
     pub port: String,
 }
 
-/// How the simulated rig is drawn and how its time passes.
+/// Options of the simulated rig.
 #[cfg(feature = "sim")]
 #[derive(Debug, Clone)]
 pub struct Simulated {
-    /// How time passes.
+    /// Speed of rig time.
     pub pace: SimulatedPace,
-    /// Draws rig and parts.
+    /// Seed of the rig's errors and of its parts.
     pub seed: u64,
-    /// World instead of `sim.toml` of the configuration.
+    /// World file in place of the configuration's `sim.toml`.
     pub world: Option<PathBuf>,
     /// Faults, `NAME[=VALUE[@FROM[..UNTIL]]]`.
     pub faults: Vec<String>,
-    /// True values of every specimen go to this file.
+    /// File for the true values of every specimen.
     pub truth: Option<PathBuf>,
-    /// A rig that lives before and after the run; none: one is built for the run.
+    /// A rig that exists before and after the run; `None`: the run builds one.
     pub live: Option<Box<LiveRig>>,
 }
 
-/// How time passes on the simulated rig.
+/// Speed of time on the simulated rig.
 #[cfg(feature = "sim")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SimulatedPace {
-    /// As fast as the computer can, in-process.
+    /// As fast as the computer allows, in-process.
     Virtual,
     /// In-process, at most this many times as fast as the wall clock.
     Held(f64),
-    /// As the wall clock, through pseudo-terminals.
+    /// Wall-clock time, through pseudo-terminals.
     Real,
 }
 
 #[cfg(feature = "sim")]
 impl Simulated {
-    /// The default world in virtual time.
-    pub fn drawn_by(seed: u64) -> Self {
+    /// Returns the default world in virtual time.
+    pub fn with_seed(seed: u64) -> Self {
         Self {
             pace: SimulatedPace::Virtual,
             seed,
@@ -70,7 +70,7 @@ impl Simulated {
 }
 
 impl RigSource {
-    /// The simulated rig as it lives; none: one is built for the run, or the rig is real.
+    /// Returns the live simulated rig; `None` when the run builds one, or on a real rig.
     #[cfg(feature = "sim")]
     pub(super) fn live(&self) -> Option<&LiveRig> {
         match self {
@@ -79,7 +79,7 @@ impl RigSource {
         }
     }
 
-    /// The seed of the simulated rig; none of a real one.
+    /// Returns the seed of the simulated rig; `None` on a real one.
     pub fn seed(&self) -> Option<u64> {
         match self {
             Self::Serial(_) => None,
@@ -88,7 +88,7 @@ impl RigSource {
         }
     }
 
-    /// Whether the simulated rig looks for bodies that touch (feature `bodies`); none of a real rig.
+    /// Returns whether the simulated rig checks bodies for contact (feature `bodies`); `None` on a real rig.
     pub fn bodies_watched(&self) -> Option<bool> {
         match self {
             Self::Serial(_) => None,
@@ -97,12 +97,12 @@ impl RigSource {
         }
     }
 
-    /// The rig is simulated.
+    /// Returns true for a simulated rig.
     pub fn is_simulated(&self) -> bool {
         self.seed().is_some()
     }
 
-    /// Time of the run is virtual: the runtime's clock is paused.
+    /// Returns true when rig time is virtual: the runtime's clock is paused.
     pub fn is_virtual(&self) -> bool {
         match self {
             Self::Serial(_) => false,
@@ -111,7 +111,7 @@ impl RigSource {
         }
     }
 
-    /// How many times as fast as the wall clock virtual time may pass; none: unlimited, or not virtual.
+    /// Returns the largest ratio of virtual time to wall time; `None`: unlimited, or not virtual.
     pub fn speed(&self) -> Option<f64> {
         match self {
             Self::Serial(_) => None,

@@ -1,37 +1,36 @@
-//! What an alarm leaves beside the history: the last traffic of every line, and how the modules were doing.
+//! Writes the last traffic of every line to files when an alarm comes; reports the health of the modules.
 
 use bus::{LineLog, Meaning, Recorded, arrow, escaped};
 use config::Plant;
 use machine::view::{LineTraffic, LineView, Message, ModuleView};
 use std::path::{Path, PathBuf};
 
-/// Most traces of one run per line: the first alarms show the cause.
-const MOST: usize = 8;
+/// Most traces per line and run: the first alarms are the informative ones.
+const MAX_TRACES: usize = 8;
 
-/// One line of the run.
 #[derive(Debug, Clone)]
-struct Source {
+struct LineSource {
     name: String,
     baud: u32,
     checksum: bool,
     log: LineLog,
 }
 
-/// The lines of a run and where their traces go.
+/// Logs of a run's lines, and the path of their trace files.
 #[derive(Debug, Clone)]
 pub struct Traces {
-    /// History file without its extension.
+    /// Path of the history file without its extension.
     stem: PathBuf,
-    sources: Vec<Source>,
+    sources: Vec<LineSource>,
     dumped: usize,
 }
 
 impl Traces {
-    /// Of the lines in `logs`, beside `db`.
+    /// Collects the lines in `logs`; trace files go beside `db`.
     pub fn new(db: &Path, plant: &Plant, logs: &[(String, LineLog)]) -> Self {
         let sources = logs.iter().filter_map(|(name, log)| {
             let line = plant.wiring.line(plant.wiring.line_named(name)?);
-            Some(Source {
+            Some(LineSource {
                 name: name.clone(),
                 baud: line.baud,
                 checksum: line.checksum,
@@ -45,9 +44,9 @@ impl Traces {
         }
     }
 
-    /// Writes the trace of every line; where they are. A trace that cannot be written is told and never stops the run.
+    /// Writes the trace of every line and returns the paths. Logs a failed write; the run continues.
     pub fn dump(&mut self, at_us: i64) -> Vec<PathBuf> {
-        if self.dumped >= MOST {
+        if self.dumped >= MAX_TRACES {
             return Vec::new();
         }
         self.dumped += 1;
@@ -66,19 +65,19 @@ impl Traces {
         written
     }
 
-    /// The last `last` messages of every line, with their meaning.
+    /// Returns the last `last` messages of every line, with their meaning.
     pub fn messages(&self, last: usize) -> Vec<LineTraffic> {
         let sources = self.sources.iter();
         sources.map(|source| messages(source, last)).collect()
     }
 
-    /// How the lines and their modules are doing.
+    /// Returns the health of the lines and their modules.
     pub fn health(&self) -> Vec<LineView> {
         self.sources.iter().map(health).collect()
     }
 }
 
-fn messages(source: &Source, last: usize) -> LineTraffic {
+fn messages(source: &LineSource, last: usize) -> LineTraffic {
     let trace = source.log.trace();
     let all: Vec<_> = trace.entries().collect();
     let mut meaning = Meaning::new(source.checksum);
@@ -95,7 +94,7 @@ fn messages(source: &Source, last: usize) -> LineTraffic {
     }
 }
 
-fn health(source: &Source) -> LineView {
+fn health(source: &LineSource) -> LineView {
     let health = source.log.health();
     let modules = health.modules().map(|(address, module)| {
         let ms = |share| {

@@ -1,4 +1,4 @@
-//! In-process streams of the simulated rig as ports of a line: lost and opened again like serial ports.
+//! In-process streams of the simulated rig as ports of a line; they close and reopen like serial ports.
 
 use bus::{PortError, Ports};
 use rigsim::wire::Plug;

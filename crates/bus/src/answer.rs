@@ -79,9 +79,9 @@ pub enum LineError {
     /// An earlier, timed-out request may have caused this reply, and the module did not confirm it.
     #[error("line {line}, {command}: reply rejected, it may be a late reply to an earlier request")]
     OutOfStep {
-        /// Command that was sent.
+        /// Name of the line.
         line: String,
-        /// The request that this answers.
+        /// Command that was sent.
         command: Command,
     },
     /// After a damaged reply from this address, the repeated reads disagree: two modules share the address, the line
@@ -90,12 +90,12 @@ pub enum LineError {
         "line {line}, {command}: reply rejected, repeated reads disagree after damaged replies"
     )]
     Contradicted {
-        /// Command that was sent.
+        /// Name of the line.
         line: String,
-        /// The request that this answers.
+        /// Command that was sent.
         command: Command,
     },
-    /// A module sends unasked and does not stop; the line sent nothing.
+    /// A module sends without a request and does not stop; the line sent nothing.
     #[error("line {line}, {command}: not sent, the line never falls silent")]
     NeverSilent {
         /// Name of the line.

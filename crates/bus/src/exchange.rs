@@ -124,25 +124,25 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
             }
         };
         if !frame.bytes().is_empty() {
-            self.note(Direction::Heard, frame.bytes());
+            self.note(Direction::Received, frame.bytes());
         }
         Ok(heard)
     }
 
-    /// Sends `question`, whose reply names its module, and reads until `in_step` accepts a frame or `deadline` passes.
+    /// Sends an identification request and reads until `in_step` accepts a frame or `deadline` passes.
     pub(super) async fn name(
         &mut self,
-        question: &Command,
+        identification: &Command,
         with_checksum: bool,
         deadline: RigTime,
         mut in_step: impl FnMut(&[u8]) -> bool,
     ) -> io::Result<Identification> {
         assert!(
-            question.address().is_some(),
-            "a broadcast cannot ask for a name"
+            identification.address().is_some(),
+            "a broadcast identifies no module"
         );
         let mut request = Vec::with_capacity(8);
-        question.encode(with_checksum, &mut request);
+        identification.encode(with_checksum, &mut request);
         let mut named = Identification {
             by_module: false,
             strays: false,
@@ -167,7 +167,7 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
                 named.by_module = in_step(frame.bytes());
                 named.strays |= !named.by_module;
                 let direction = if named.by_module {
-                    Direction::Heard
+                    Direction::Received
                 } else {
                     Direction::Stray
                 };

@@ -92,7 +92,7 @@ impl Health {
     pub(super) fn count(
         &mut self,
         address: Address,
-        asked_reset: bool,
+        reads_reset: bool,
         outcome: &Result<Reply, LineError>,
         latency: Span,
     ) {
@@ -101,7 +101,7 @@ impl Health {
         match outcome {
             Ok(reply) => {
                 module.latency.add(latency);
-                if asked_reset && *reply == Reply::Flag(true) {
+                if reads_reset && *reply == Reply::Flag(true) {
                     module.resets += 1;
                 }
             }

@@ -34,7 +34,7 @@
 //!
 //! # A transaction
 //!
-//! 1. The line discards the bytes that wait in the input, as no request asked for them.
+//! 1. The line discards the bytes that wait in the input, since they belong to no request.
 //! 2. It writes the request. The reply must be complete within wire(request) + wire(longest reply) + allowance.
 //! 3. It rests for the turnaround (two characters). A byte during the rest shows a second sender: the line rejects the
 //!    reply.

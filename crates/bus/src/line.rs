@@ -105,33 +105,33 @@ struct Try {
 impl<O: Ports> Line<O> {
     /// Writes a setting only if the module does not have it already, because the EEPROM of a module wears. Writes it
     /// too if the module cannot report it.
-    async fn serve(&mut self, asked: Request) -> Answer {
-        let Some(setting) = asked.command.setting() else {
-            return self.asked(asked).await;
+    async fn serve(&mut self, request: Request) -> Answer {
+        let Some(setting) = request.command.setting() else {
+            return self.carry_out(request).await;
         };
         let found = self
-            .asked(Request {
+            .carry_out(Request {
                 command: setting,
-                ..asked
+                ..request
             })
             .await;
         let outcome = match found.outcome {
-            Ok(reply) if asked.command.is_in_effect(&reply) => Ok(Reply::Accepted),
-            Ok(_) => return self.asked(asked).await,
+            Ok(reply) if request.command.is_in_effect(&reply) => Ok(Reply::Accepted),
+            Ok(_) => return self.carry_out(request).await,
             Err(LineError::Reply { reason, .. }) if reason.is_answer() => {
-                return self.asked(asked).await;
+                return self.carry_out(request).await;
             }
             Err(error) => Err(error),
         };
         Answer {
-            command: asked.command,
+            command: request.command,
             outcome,
             ..found
         }
     }
 
-    async fn asked(&mut self, asked: Request) -> Answer {
-        let command = asked.command;
+    async fn carry_out(&mut self, request: Request) -> Answer {
+        let command = request.command;
         self.request.clear();
         command.encode(self.settings.checksum, &mut self.request);
         assert_eq!(
@@ -149,7 +149,7 @@ impl<O: Ports> Line<O> {
             self.frame.clear();
             let attempt = self.attempt(&command).await;
             self.count(&command, &attempt);
-            if tries_used >= asked.tries || !may_repeat(&command, &attempt.outcome) {
+            if tries_used >= request.tries || !may_repeat(&command, &attempt.outcome) {
                 break attempt;
             }
         };
@@ -162,11 +162,11 @@ impl<O: Ports> Line<O> {
         } = last;
         assert!(answered_at >= asked_at, "the answer precedes its request");
         assert!(
-            tries_used == 1 || tries_used <= asked.tries,
-            "asked more often than allowed"
+            tries_used == 1 || tries_used <= request.tries,
+            "more tries than the request allows"
         );
         Answer {
-            ticket: asked.ticket,
+            ticket: request.ticket,
             command,
             outcome,
             raw,
@@ -283,12 +283,12 @@ impl<O: Ports> Line<O> {
             .time(self.request.len() + self.frame.bytes().len());
         let taken = attempt.answered_at.since(attempt.asked_at);
         let latency = Span(taken.0.saturating_sub(on_wire.0));
-        let asked_reset = matches!(command, Command::Common(_, Common::ReadResetStatus));
+        let reads_reset = matches!(command, Command::Common(_, Common::ReadResetStatus));
         self.settings
             .log
             .records()
             .health
-            .count(address, asked_reset, &attempt.outcome, latency);
+            .count(address, reads_reset, &attempt.outcome, latency);
     }
 }
 

@@ -1,34 +1,34 @@
-//! What a reply means: the question before it decides.
+//! Decodes replies; the meaning of a reply depends on its request.
 
 use super::{Direction, Entry};
 
-/// Puts replies into words; remembers the last question.
+/// Decodes replies into words; keeps the last request.
 #[derive(Debug)]
 pub struct Meaning {
     checksum: bool,
-    asked: Vec<u8>,
+    request: Vec<u8>,
 }
 
 impl Meaning {
-    /// For a line whose frames carry checksums or not.
+    /// Starts without a request; `checksum`: frames of the line carry one.
     pub fn new(checksum: bool) -> Self {
         Self {
             checksum,
-            asked: Vec::new(),
+            request: Vec::new(),
         }
     }
 
-    /// Of one piece of traffic; a question has none of its own.
+    /// Returns the meaning of a reply; empty for a request.
     pub fn of(&mut self, entry: &Entry) -> String {
         match entry.direction {
             Direction::Sent => {
-                self.asked = entry.bytes().to_vec();
+                self.request = entry.bytes().to_vec();
                 String::new()
             }
-            Direction::Stray => "not asked for, thrown away".to_owned(),
-            Direction::Heard => {
+            Direction::Stray => "unsolicited, discarded".to_owned(),
+            Direction::Received => {
                 let mut words: Vec<String> =
-                    dcon::understand(&self.asked, entry.bytes(), self.checksum)
+                    dcon::interpret(&self.request, entry.bytes(), self.checksum)
                         .into_iter()
                         .map(|(command, reply)| match reply {
                             Ok(reply) => format!("{command} = {reply}"),
@@ -39,7 +39,7 @@ impl Meaning {
                 match words.len() {
                     0 => "no known command".to_owned(),
                     1..=3 => words.join(" | "),
-                    more => format!("{} | and {} other readings", words[0], more - 1),
+                    more => format!("{} | and {} other meanings", words[0], more - 1),
                 }
             }
         }

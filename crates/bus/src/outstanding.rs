@@ -3,11 +3,11 @@
 //! A `>` reply and the bits of a digital module carry no address. After a time-out one of them may arrive late and
 //! look like the answer to the next request. The line excludes this in two ways:
 //!
-//! 1. It asks the silent module for a reply that names the module ([`OutstandingReplies::question`]). A module serves
-//!    its requests in order, so this reply proves that nothing older is on its way. A question without an answer in
-//!    time is outstanding too: its reply may arrive after a later request timed out, and proves nothing about that
-//!    one. So the line attributes a reply to the oldest request that it fits, and asks a question that is not
-//!    outstanding as long as there is one.
+//! 1. It sends the silent module an identification request ([`OutstandingReplies::identification`]), whose reply names
+//!    the module. A module serves its requests in order, so this reply proves that nothing older is on its way. An
+//!    identification request without an answer in time is outstanding too: its reply may arrive after a later request
+//!    timed out, and proves nothing about that one. So the line attributes a reply to the oldest request that it fits,
+//!    and prefers an identification request that is not outstanding.
 //! 2. If the module does not name itself, its reply stays outstanding for [`HORIZON`]. During that time the line
 //!    accepts a reply of the same form only when the module repeats it and then names itself, with no other bytes
 //!    between. A write must not be repeated, so the line rejects its reply.
@@ -22,13 +22,13 @@ const HORIZON: Span = Span::ms(1_000);
 /// Bound on the outstanding replies: each costs a time-out, and expires after the horizon.
 const MOST_OUTSTANDING: usize = 10_000;
 
-/// Questions whose replies name their module, change nothing, and are known to every module. Their replies differ in
+/// Identification requests: every module has them, they change nothing, their replies name the module and differ in
 /// form: three bytes in hex, a product, a version.
-const QUESTIONS: [Common; 3] = [Common::ReadConfig, Common::ReadFirmware, Common::ReadName];
+const IDENTIFICATIONS: [Common; 3] = [Common::ReadConfig, Common::ReadFirmware, Common::ReadName];
 
-/// Returns the first question; its time-out applies to the others too.
-pub(super) fn question(to: Address) -> Command {
-    QUESTIONS[0].to(to)
+/// Returns the first identification request; its time-out applies to the others too.
+pub(super) fn identification(to: Address) -> Command {
+    IDENTIFICATIONS[0].to(to)
 }
 
 /// Requests without an answer, each with its expiry, oldest first; few, because each costs a time-out.
@@ -48,12 +48,12 @@ impl OutstandingReplies {
         self.0.push((command, now + HORIZON));
     }
 
-    /// Returns the question that asks a module for its name: if possible one that is not outstanding.
-    pub(super) fn question(&self, to: Address) -> Command {
-        let mut questions = QUESTIONS.into_iter().map(|question| question.to(to));
-        questions
-            .find(|question| !self.contains(question))
-            .unwrap_or_else(|| question(to))
+    /// Returns an identification request, if possible one that is not outstanding.
+    pub(super) fn identification(&self, to: Address) -> Command {
+        let mut requests = IDENTIFICATIONS.into_iter().map(|request| request.to(to));
+        requests
+            .find(|request| !self.contains(request))
+            .unwrap_or_else(|| identification(to))
     }
 
     /// Returns true when the reply to `command` may be on its way.
@@ -64,8 +64,8 @@ impl OutstandingReplies {
     /// Removes the requests that `frame` proves answered: if it names `module`, the oldest that it fits and all older
     /// ones of that module. Returns false when it names another module or fits no outstanding request.
     pub(super) fn settle(&mut self, module: Address, frame: &[u8], with_checksum: bool) -> bool {
-        let asked = |request: &Command| request.address() == Some(module);
-        let answered = |request: &Command| asked(request) && fits(request, frame, with_checksum);
+        let to_it = |request: &Command| request.address() == Some(module);
+        let answered = |request: &Command| to_it(request) && fits(request, frame, with_checksum);
         let Some(oldest) = self.0.iter().position(|(request, _)| answered(request)) else {
             return false;
         };
@@ -75,7 +75,7 @@ impl OutstandingReplies {
         let (before, mut place) = (self.0.len(), 0);
         self.0.retain(|(request, _)| {
             place += 1;
-            place > oldest + 1 || !asked(request)
+            place > oldest + 1 || !to_it(request)
         });
         assert!(self.0.len() < before, "nothing was settled");
         true

@@ -86,7 +86,7 @@ impl Pace {
 
     /// Keeps virtual time from passing faster than `speed` times the wall clock; never returns. A busy machine slows
     /// the rig down, and the clock does not catch up afterwards.
-    pub async fn hold_back(self, speed: f64) {
+    pub async fn limit_speed(self, speed: f64) {
         assert!(
             speed > 0.0 && speed.is_finite(),
             "the speed is not positive and finite"

@@ -4,7 +4,7 @@
 //! the damage, but an eight-bit checksum misses one in 256. So visible damage serves as a warning: after a damaged
 //! reply the address is on probation until [`PROBATION_ANSWERS`] whole answers in a row. During probation the line
 //! reads twice and accepts equal answers. For noisy or moving quantities it reads a third time and accepts the middle
-//! answer ([`dcon::Command::believed`]). It rejects readings that change faster; the request may retry them. Without
+//! answer ([`dcon::Command::select_answer`]). It rejects readings that change faster; the request may retry them. Without
 //! damage a line never reads twice.
 //!
 //! Residual risk: let a share c of an address's replies be damaged such that a share p of them passes, and a share d

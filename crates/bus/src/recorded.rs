@@ -108,7 +108,7 @@ fn entry(row: &str) -> Option<Entry> {
     let (arrow, bytes) = rest.split_once(' ')?;
     let direction = match arrow {
         ">" => Direction::Sent,
-        "<" => Direction::Heard,
+        "<" => Direction::Received,
         "~" => Direction::Stray,
         _ => return None,
     };
@@ -119,7 +119,7 @@ fn entry(row: &str) -> Option<Entry> {
 pub fn arrow(direction: Direction) -> char {
     match direction {
         Direction::Sent => '>',
-        Direction::Heard => '<',
+        Direction::Received => '<',
         Direction::Stray => '~',
     }
 }

@@ -1,6 +1,6 @@
 //! Settings of a line, and the time-outs that follow from them.
 
-use super::outstanding::question;
+use super::outstanding::identification;
 use super::{LineLog, Wire};
 use dcon::{Address, Command, Common};
 use units::Span;
@@ -82,7 +82,8 @@ impl LineSettings {
     /// Returns how long the line asks a module for its name after trouble with `command`: as long as the required
     /// silence, and at least one time-out.
     pub(super) fn resynchronisation_limit(&self, command: &Command, address: Address) -> Span {
-        self.silence(command).max(self.time_out(&question(address)))
+        self.silence(command)
+            .max(self.time_out(&identification(address)))
     }
 
     /// Returns the time of the request on the wire.
@@ -115,9 +116,9 @@ impl LineSettings {
 pub fn longest_transaction(settings: &LineSettings, commands: &[Command]) -> Span {
     let one = |command: &Command| match command.address() {
         Some(address) => {
-            let asked = settings.time_out(command) + settings.turnaround();
+            let exchange = settings.time_out(command) + settings.turnaround();
             let step = settings.resynchronisation_limit(command, address) + settings.turnaround();
-            asked + asked + step + settings.silence(command)
+            exchange + exchange + step + settings.silence(command)
         }
         None => settings.request_time(command) + settings.turnaround(),
     };

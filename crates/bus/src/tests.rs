@@ -48,7 +48,7 @@ fn in_virtual_time<F: Future>(test: F) -> F::Output {
 /// Answers the n-th request with the n-th entry of `script`, and nothing afterwards. Answers a request for its name
 /// after all other bytes; `script` and the returned requests do not contain those.
 async fn modules(mut stream: DuplexStream, pace: Pace, script: Vec<Vec<Say>>) -> Vec<String> {
-    let mut asked = Vec::new();
+    let mut sent = Vec::new();
     let mut script = script.into_iter();
     while let Some(request) = next_request(&mut stream).await {
         let heard_at = pace.now();
@@ -57,13 +57,13 @@ async fn modules(mut stream: DuplexStream, pace: Pace, script: Vec<Vec<Say>>) ->
             let _ = stream.write_all(name.as_bytes()).await;
             continue;
         }
-        asked.push(request);
+        sent.push(request);
         for (after, bytes) in script.next().unwrap_or_default() {
             pace.sleep_until(heard_at + Span(after)).await;
             let _ = stream.write_all(bytes).await;
         }
     }
-    asked
+    sent
 }
 
 /// Returns the reply to a request for a name, with configuration word, version or name; `None` for other requests.
@@ -117,18 +117,18 @@ async fn played(
         drop(ask);
         got
     };
-    let (asked, (), got) = tokio::join!(modules(theirs, pace, script), line, client);
-    (got, asked)
+    let (sent, (), got) = tokio::join!(modules(theirs, pace, script), line, client);
+    (got, sent)
 }
 
 #[test]
 fn a_reply_in_time_carries_its_text_and_times() {
-    let (got, asked) = in_virtual_time(played(
+    let (got, sent) = in_virtual_time(played(
         settings(),
         vec![vec![(3_000, THIRTY)]],
         &[(count(), 1)],
     ));
-    assert_eq!(asked, ["#030B6"]);
+    assert_eq!(sent, ["#030B6"]);
     assert_eq!(got[0].outcome, Ok(Reply::Count(30)));
     assert_eq!(got[0].raw, ">0000001ED4");
     assert_eq!(
@@ -156,7 +156,7 @@ fn a_late_reply_never_counts_for_the_next_request() {
     // At every hundredth of the time from the deadline to the end of the required silence.
     for late in (0..100).map(|part| limit + 1 + part * (grace - 2) / 100) {
         let script = vec![vec![(late, THIRTY)], vec![(2_000, NINE)]];
-        let (got, asked) =
+        let (got, sent) =
             in_virtual_time(played(settings(), script, &[(count(), 1), (count(), 1)]));
         assert!(
             matches!(got[0].outcome, Err(LineError::TimeOut { .. })),
@@ -164,15 +164,15 @@ fn a_late_reply_never_counts_for_the_next_request() {
             got[0].outcome
         );
         assert_eq!(got[1].outcome, Ok(Reply::Count(9)), "late by {late}");
-        assert_eq!(asked.len(), 2);
+        assert_eq!(sent.len(), 2);
     }
 }
 
 #[test]
 fn a_silent_module_times_out_after_every_allowed_try() {
-    let (got, asked) = in_virtual_time(played(settings(), vec![], &[(count(), 3)]));
+    let (got, sent) = in_virtual_time(played(settings(), vec![], &[(count(), 3)]));
     assert_eq!(got[0].tries_used, 3);
-    assert_eq!(asked.len(), 3);
+    assert_eq!(sent.len(), 3);
     let limit = settings().time_out(&count());
     assert_eq!(got[0].answered_at.since(got[0].asked_at), limit);
     let text = got[0].outcome.as_ref().unwrap_err().to_string();
@@ -183,15 +183,15 @@ fn a_silent_module_times_out_after_every_allowed_try() {
 }
 
 #[test]
-fn a_damaged_reply_to_a_read_is_asked_for_again() {
+fn a_damaged_reply_to_a_read_is_requested_again() {
     let damaged = vec![(2_000, b">0000001FD4\r" as &[u8])];
-    let (got, asked) = in_virtual_time(played(
+    let (got, sent) = in_virtual_time(played(
         settings(),
         vec![damaged, vec![(2_000, THIRTY)], vec![(2_000, THIRTY)]],
         &[(count(), 2)],
     ));
     assert_eq!(
-        (got[0].outcome.clone(), got[0].tries_used, asked.len()),
+        (got[0].outcome.clone(), got[0].tries_used, sent.len()),
         (Ok(Reply::Count(30)), 2, 3)
     );
 }
@@ -203,9 +203,9 @@ fn a_write_is_sent_only_once() {
         vec![(2_000, b">3F\r" as &[u8])],
         vec![(2_000, b">\x003E\r")],
     ] {
-        let (got, asked) = in_virtual_time(played(settings(), vec![say], &[(write(), 5)]));
+        let (got, sent) = in_virtual_time(played(settings(), vec![say], &[(write(), 5)]));
         assert!(got[0].outcome.is_err());
-        assert_eq!((got[0].tries_used, asked.len()), (1, 1));
+        assert_eq!((got[0].tries_used, sent.len()), (1, 1));
     }
 }
 
@@ -217,7 +217,7 @@ fn a_refusal_causes_neither_a_repetition_nor_a_silence() {
         vec![(2_000, NINE)],
         vec![(2_000, NINE)],
     ];
-    let (got, asked) = in_virtual_time(played(
+    let (got, sent) = in_virtual_time(played(
         settings(),
         script,
         &[(count(), 1), (count(), 5), (count(), 1)],
@@ -246,7 +246,7 @@ fn a_refusal_causes_neither_a_repetition_nor_a_silence() {
         got[1].answered_at + settings().turnaround()
     );
     // After the damage the line reads the count twice.
-    assert_eq!(asked.len(), 4);
+    assert_eq!(sent.len(), 4);
 }
 
 #[test]
@@ -306,14 +306,14 @@ fn a_line_that_never_falls_silent_gets_no_request() {
     let babble: Vec<Say> = (1..60).map(|turn| (turn * 5_000, b"U" as &[u8])).collect();
     let mut script = vec![babble];
     script.extend(vec![vec![(2_000, NINE)]; 9]);
-    let (got, asked) = in_virtual_time(played(settings(), script, &[(count(), 1); 10]));
+    let (got, sent) = in_virtual_time(played(settings(), script, &[(count(), 1); 10]));
     let longest = longest_transaction(&settings(), &[count()]);
-    let unasked = got
+    let unsent = got
         .iter()
         .filter(|a| matches!(a.outcome, Err(LineError::NeverSilent { .. })))
         .count();
     // After the babble the line asks each of the others twice.
-    assert!(unasked > 0 && asked.len() < 2 * (10 - unasked), "{asked:?}");
+    assert!(unsent > 0 && sent.len() < 2 * (10 - unsent), "{sent:?}");
     for pair in got.windows(2) {
         assert!(
             pair[1].asked_at.since(pair[0].asked_at) <= longest,
@@ -330,13 +330,13 @@ fn a_line_that_never_falls_silent_gets_no_request() {
 
 #[test]
 fn a_broadcast_takes_its_wire_time_and_the_turnaround() {
-    let (got, asked) = in_virtual_time(played(
+    let (got, sent) = in_virtual_time(played(
         settings(),
         vec![],
         &[(Command::HostOk, 1), (Command::HostOk, 1)],
     ));
     assert_eq!(got[0].outcome, Ok(Reply::Sent));
-    assert_eq!(asked, ["~**D2", "~**D2"]);
+    assert_eq!(sent, ["~**D2", "~**D2"]);
     let each = settings().wire().time(6) + settings().turnaround();
     assert_eq!(got[1].asked_at.since(got[0].asked_at), each);
 }
@@ -359,12 +359,12 @@ fn a_line_without_checksum_sends_plain_frames() {
     let mut settings = settings();
     settings.checksum = false;
     let read = Digital::ReadAll.to(Address(4));
-    let (got, asked) = in_virtual_time(played(
+    let (got, sent) = in_virtual_time(played(
         settings,
         vec![vec![(2_000, b"!BEDE00\r")]],
         &[(read, 1)],
     ));
-    assert_eq!(asked, ["$046"]);
+    assert_eq!(sent, ["$046"]);
     assert_eq!(
         got[0].outcome,
         Ok(Reply::Bits(Bits {

@@ -10,8 +10,8 @@ pub enum Direction {
     /// Sent by the line.
     Sent,
     /// Received as a reply, or as the start of one.
-    Heard,
-    /// Received unasked, and discarded.
+    Received,
+    /// Received without a request, and discarded.
     Stray,
 }
 

@@ -2,7 +2,7 @@
 
 use super::LineSettings;
 use super::exchange::{Exchange, Frame, FrameEnd, SilenceEnd};
-use super::outstanding::{OutstandingReplies, question};
+use super::outstanding::{OutstandingReplies, identification};
 use super::probation::Probation;
 use dcon::{Address, Command, Reply, ReplyError};
 use std::io;
@@ -135,7 +135,7 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Transaction<'_, P> {
         }
     }
 
-    /// Repeats the command until one of the answers is plausible beside the others ([`Command::believed`]): a second
+    /// Repeats the command until one of the answers is plausible beside the others ([`Command::select_answer`]): a second
     /// time, and a third if the module is prompt enough to answer three times in the time of two late answers.
     async fn read_again(
         &mut self,
@@ -163,7 +163,7 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Transaction<'_, P> {
             );
             assert!(answers.len() <= 3, "more than three answers");
             let apart_ms = self.now().since(begun).0.div_ceil(1_000);
-            if let Some(place) = command.believed(&answers, apart_ms) {
+            if let Some(place) = command.select_answer(&answers, apart_ms) {
                 assert!(place < answers.len(), "the chosen answer does not exist");
                 if let Some(earlier) = heard.into_iter().nth(place) {
                     (*frame, *times) = earlier;
@@ -250,11 +250,11 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Transaction<'_, P> {
         let checksum = self.settings.checksum;
         let mut alone = true;
         let limit = self.now() + self.settings.resynchronisation_limit(command, address);
-        let name_time_out = self.settings.time_out(&question(address));
+        let name_time_out = self.settings.time_out(&identification(address));
         // At least once: the clock advances between two lines of code. Each round lasts some microseconds or up to its
         // time-out, so the limit ends the loop.
         let last_heard = loop {
-            let ask_name = self.outstanding.question(address);
+            let ask_name = self.outstanding.identification(address);
             self.outstanding.add(ask_name, self.now());
             let outstanding = &mut *self.outstanding;
             let in_step = |frame: &[u8]| {

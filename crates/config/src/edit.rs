@@ -5,7 +5,7 @@ use super::error::ConfigError;
 use super::nearest::nearest;
 use super::sheet::{Entry, Field, fields};
 use machine::rig::fault::Fault;
-use serde_json::Value as Wanted;
+use serde_json::Value as NewValue;
 use std::collections::BTreeMap;
 use toml_edit::{Array, DocumentMut, Item, Value};
 
@@ -15,7 +15,7 @@ use toml_edit::{Array, DocumentMut, Item, Value};
 /// The kind is unknown, the kind has no such path, or TOML has no such value.
 pub(super) fn edited(
     file: &File,
-    values: &BTreeMap<String, Wanted>,
+    values: &BTreeMap<String, NewValue>,
 ) -> Result<String, ConfigError> {
     let fields = fields(file)?;
     let parsed = file.text.parse::<DocumentMut>();
@@ -26,12 +26,12 @@ pub(super) fn edited(
     })?;
     for (path, wanted) in values {
         let field = known(file, &fields, path)?;
-        if same(&field.value, wanted) {
+        if equal_values(&field.value, wanted) {
             continue;
         }
         match as_toml(wanted, &field.entry) {
             Some(value) => set(document.as_item_mut(), path, value),
-            None if wanted.is_null() => leave_out(document.as_item_mut(), path),
+            None if wanted.is_null() => remove_key(document.as_item_mut(), path),
             None => {
                 let fault = Fault::new(
                     path,
@@ -59,23 +59,23 @@ fn known<'a>(file: &File, fields: &'a [Field], path: &str) -> Result<&'a Field, 
 }
 
 /// Compares values; 9 equals 9.0.
-fn same(stands: &Wanted, wanted: &Wanted) -> bool {
-    match (stands, wanted) {
-        (Wanted::Number(stands), Wanted::Number(wanted)) => stands.as_f64() == wanted.as_f64(),
-        (Wanted::Array(stands), Wanted::Array(wanted)) => {
-            let pairs = || stands.iter().zip(wanted);
-            stands.len() == wanted.len() && pairs().all(|(stands, wanted)| same(stands, wanted))
+fn equal_values(old: &NewValue, wanted: &NewValue) -> bool {
+    match (old, wanted) {
+        (NewValue::Number(old), NewValue::Number(wanted)) => old.as_f64() == wanted.as_f64(),
+        (NewValue::Array(old), NewValue::Array(wanted)) => {
+            let pairs = || old.iter().zip(wanted);
+            old.len() == wanted.len() && pairs().all(|(old, wanted)| equal_values(old, wanted))
         }
-        (stands, wanted) => stands == wanted,
+        (old, wanted) => old == wanted,
     }
 }
 
 /// Converts to TOML; numbers become floats unless the entry takes whole numbers. Returns `None` for null and objects.
-fn as_toml(wanted: &Wanted, entry: &Entry) -> Option<Value> {
+fn as_toml(wanted: &NewValue, entry: &Entry) -> Option<Value> {
     match wanted {
-        Wanted::String(text) => Some(text.as_str().into()),
-        Wanted::Bool(flag) => Some((*flag).into()),
-        Wanted::Number(number) => match (entry, number.as_i64()) {
+        NewValue::String(text) => Some(text.as_str().into()),
+        NewValue::Bool(flag) => Some((*flag).into()),
+        NewValue::Number(number) => match (entry, number.as_i64()) {
             (Entry::Number(_) | Entry::Numbers { .. }, _) | (_, None) => {
                 Some(number.as_f64()?.into())
             }
@@ -83,17 +83,17 @@ fn as_toml(wanted: &Wanted, entry: &Entry) -> Option<Value> {
                 Some(whole.into())
             }
         },
-        Wanted::Array(items) => {
+        NewValue::Array(items) => {
             let items = items.iter().map(|item| as_toml(item, entry));
             Some(Value::Array(items.collect::<Option<Array>>()?))
         }
-        Wanted::Null | Wanted::Object(_) => None,
+        NewValue::Null | NewValue::Object(_) => None,
     }
 }
 
 /// Sets a value; a comment after the old one stays.
 fn set(root: &mut Item, path: &str, mut value: Value) {
-    let (tables, key) = parted(path);
+    let (tables, key) = split_path(path);
     let table = tables.fold(root, |item, key| &mut item[key]);
     let slot = &mut table[key];
     let old = slot.as_value().map(|old| old.decor().clone());
@@ -104,30 +104,30 @@ fn set(root: &mut Item, path: &str, mut value: Value) {
         }
         None => {
             *slot = Item::Value(value);
-            tidy(table);
+            restore_spacing(table);
         }
     }
 }
 
-fn leave_out(root: &mut Item, path: &str) {
-    let (mut tables, key) = parted(path);
+fn remove_key(root: &mut Item, path: &str) {
+    let (mut tables, key) = split_path(path);
     let Some(table) = tables.try_fold(root, |item, key| item.get_mut(key)) else {
         return;
     };
     if let Some(keys) = table.as_table_like_mut() {
         keys.remove(key);
-        tidy(table);
+        restore_spacing(table);
     }
 }
 
 /// Splits a path into the names of tables and the key in the last one.
-fn parted(path: &str) -> (impl Iterator<Item = &str>, &str) {
+fn split_path(path: &str) -> (impl Iterator<Item = &str>, &str) {
     let (tables, key) = path.rsplit_once('.').unwrap_or(("", path));
     (tables.split('.').filter(|it| !it.is_empty()), key)
 }
 
 /// Restores the spaces of an inline table after a key was added or removed.
-fn tidy(table: &mut Item) {
+fn restore_spacing(table: &mut Item) {
     if let Some(inline) = table.as_inline_table_mut() {
         inline.fmt();
     }
@@ -141,13 +141,13 @@ mod tests {
 
     const TEXT: &str = include_str!("../../../config/recipes/jzc-22f-012.toml");
 
-    fn changed(values: Wanted) -> Result<String, ConfigError> {
+    fn changed(values: NewValue) -> Result<String, ConfigError> {
         let file = File::parse("r.toml".into(), TEXT.to_owned()).unwrap();
         edited(&file, &serde_json::from_value(values).unwrap())
     }
 
     /// Lines that are not in the text before.
-    fn new_lines(values: Wanted) -> Vec<String> {
+    fn new_lines(values: NewValue) -> Vec<String> {
         let text = changed(values).unwrap();
         let new = text
             .lines()

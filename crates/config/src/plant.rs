@@ -36,7 +36,7 @@ pub struct Plant {
     /// Validity of a calibration.
     pub calibration: CalibrationSettings,
     /// Reference parts; none where `rig.toml` names no file of them.
-    pub golden: ReferenceSet,
+    pub reference_parts: ReferenceSet,
     /// Gates of a lot.
     pub lot: LotSettings,
     /// Text of `rig.toml`, which the record of a lot keeps.
@@ -62,7 +62,7 @@ impl Plant {
         let gauge: GaugeSections = rig.settings(keys::rig::FILE)?;
         let wiring =
             Wiring::resolve(&settings, dut::FIXTURES).map_err(|fault| rig.locate(&fault))?;
-        let golden = match &gauge.calibration.reference_file {
+        let reference_parts = match &gauge.calibration.golden {
             Some(name) => load_reference_parts(&dir.join(name))?,
             None => ReferenceSet::default(),
         };
@@ -75,7 +75,7 @@ impl Plant {
             reference: gauge.reference,
             accuracy: gauge.accuracy,
             calibration: gauge.calibration,
-            golden,
+            reference_parts,
             lot: load_lot(dir)?,
             rig_text: rig.text,
         })
@@ -98,13 +98,16 @@ impl Plant {
     /// # Errors
     /// The first fault, with file, line, key and the module that cannot measure it.
     pub fn admit(&self, recipe: &Recipe) -> Result<(), ConfigError> {
-        recipe.feasible(&self.rig()).or_else(|fault| {
-            let path = self
-                .dir
-                .join("recipes")
-                .join(format!("{}.toml", recipe.name));
-            Err(File::parse(path, recipe.source_text.clone())?.locate(&fault))
-        })
+        recipe
+            .referenced(self.reference.as_ref(), &self.reference_parts)
+            .and_then(|()| recipe.feasible(&self.wiring, &self.accuracy))
+            .or_else(|fault| {
+                let path = self
+                    .dir
+                    .join("recipes")
+                    .join(format!("{}.toml", recipe.name));
+                Err(File::parse(path, recipe.source_text.clone())?.locate(&fault))
+            })
     }
 }
 
@@ -132,7 +135,7 @@ impl File {
     /// Checks the file against its keys and deserialises it.
     pub fn settings<T: DeserializeOwned>(&self, keys: &[Key]) -> Result<T, ConfigError> {
         self.check(keys)?;
-        toml::from_str(&self.text).map_err(|error| self.misfit(&error))
+        toml::from_str(&self.text).map_err(|error| self.type_mismatch(&error))
     }
 }
 
@@ -170,7 +173,7 @@ fn load_reference_parts(path: &Path) -> Result<ReferenceSet, ConfigError> {
 fn load_scene(path: &Path) -> Result<GuardSettings, ConfigError> {
     let file = File::read(path.to_owned(), "the bodies around the nest")?;
     let settings: GuardSettings =
-        toml::from_str(&file.text).map_err(|error| file.misfit(&error))?;
+        toml::from_str(&file.text).map_err(|error| file.type_mismatch(&error))?;
     Guard::build(&settings).map_err(|error| file.broken_rule(&error))?;
     Ok(settings)
 }
@@ -206,7 +209,7 @@ fn check_axis(wiring: &Wiring, scene: &GuardSettings, rig: &File) -> Result<(), 
 
 impl File {
     /// Makes the error of a text that does not fit its settings type.
-    fn misfit(&self, error: &toml::de::Error) -> ConfigError {
+    fn type_mismatch(&self, error: &toml::de::Error) -> ConfigError {
         let fault = not_toml(&self.text, error);
         let key = self.label(&self.root.path_at(fault.line));
         let problem = fault

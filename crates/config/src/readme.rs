@@ -18,7 +18,7 @@ fn write_rows(path: &str, keys: &[Key], text: &mut String) {
         let _ = writeln!(
             text,
             "| `{own}` | {}{left_out} | {} | {} |",
-            what(&key.form),
+            form_text(&key.form),
             key.reader,
             key.meaning
         );
@@ -64,7 +64,7 @@ fn points_in_words(points: &Points) -> String {
     words.join("; ")
 }
 
-fn what(form: &Form) -> String {
+fn form_text(form: &Form) -> String {
     match form {
         Form::Named(_) => "tables with names of your choice".to_owned(),
         Form::NamedWith(names, _) => format!(

@@ -57,13 +57,13 @@ pub struct Change {
 /// As [`super::load_recipe`]; or there is no revision of this number.
 pub fn revision(dir: &Path, name: &str, number: Option<u32>) -> Result<Revision, ConfigError> {
     let file = File::read(recipe_path(dir, name)?, "a recipe")?;
-    let kept = kept(dir, name);
+    let kept = earlier_revisions(dir, name);
     let newest = number_of(dir, name, &kept, &file.text);
     let number = number.unwrap_or(newest);
     let file = if number == newest {
         file
     } else if kept.contains(&number) {
-        File::read(kept_path(dir, name, number), "a recipe")?
+        File::read(revision_path(dir, name, number), "a recipe")?
     } else {
         return Err(ConfigError::UnknownRevision {
             name: name.to_owned(),
@@ -95,13 +95,13 @@ pub fn revise(plant: &Plant, change: &Change) -> Result<Revision, ConfigError> {
     let folder = std::fs::File::open(dir.join("recipes")).map_err(unwritten)?;
     folder.lock().map_err(unwritten)?;
     let old = File::read(path.clone(), "a recipe")?;
-    let kept = kept(dir, name);
+    let kept = earlier_revisions(dir, name);
     let number = number_of(dir, name, &kept, &old.text);
     let text = next_text(plant, change, &old, number)?;
     if kept.last() != Some(&number) {
-        put(&kept_path(dir, name, number), &old.text).map_err(unwritten)?;
+        replace_file(&revision_path(dir, name, number), &old.text).map_err(unwritten)?;
     }
-    put(&path, &text).map_err(unwritten)?;
+    replace_file(&path, &text).map_err(unwritten)?;
     revision(dir, name, None)
 }
 
@@ -130,8 +130,8 @@ fn next_text(
 }
 
 /// Returns the numbers of the earlier revisions, ascending.
-fn kept(dir: &Path, name: &str) -> Vec<u32> {
-    let files = std::fs::read_dir(kept_folder(dir, name));
+fn earlier_revisions(dir: &Path, name: &str) -> Vec<u32> {
+    let files = std::fs::read_dir(revision_folder(dir, name));
     let number = |file: std::fs::DirEntry| {
         let file = file.file_name();
         file.to_str()?.strip_suffix(".toml")?.parse().ok()
@@ -147,22 +147,22 @@ fn number_of(dir: &Path, name: &str, kept: &[u32], text: &str) -> u32 {
     let Some(last) = kept.last() else {
         return 1;
     };
-    match std::fs::read_to_string(kept_path(dir, name, *last)) {
+    match std::fs::read_to_string(revision_path(dir, name, *last)) {
         Ok(kept) if kept == text => *last,
         Ok(_) | Err(_) => last + 1,
     }
 }
 
-fn kept_folder(dir: &Path, name: &str) -> PathBuf {
+fn revision_folder(dir: &Path, name: &str) -> PathBuf {
     dir.join("recipes").join("revisions").join(name)
 }
 
-fn kept_path(dir: &Path, name: &str, number: u32) -> PathBuf {
-    kept_folder(dir, name).join(format!("{number}.toml"))
+fn revision_path(dir: &Path, name: &str, number: u32) -> PathBuf {
+    revision_folder(dir, name).join(format!("{number}.toml"))
 }
 
 /// Replaces a file atomically: after a crash it holds `text` or its old content.
-fn put(path: &Path, text: &str) -> std::io::Result<()> {
+fn replace_file(path: &Path, text: &str) -> std::io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder)?;
     let beside = path.with_extension("toml.new");

@@ -187,7 +187,7 @@ impl LineTable {
     fn value(&self, value: &Spanned<DeValue<'_>>) -> Value {
         match value.get_ref() {
             DeValue::String(text) => Value::Text(text.to_string()),
-            DeValue::Integer(number) => whole(number.as_str(), number.radix()),
+            DeValue::Integer(number) => parse_whole(number.as_str(), number.radix()),
             DeValue::Float(number) => Value::Number(number.as_str().parse().unwrap_or(f64::NAN)),
             DeValue::Boolean(flag) => Value::Flag(*flag),
             DeValue::Datetime(date) => Value::Date(date.to_string()),
@@ -206,7 +206,7 @@ impl LineTable {
 }
 
 /// Reads a whole number; one beyond 64 bits becomes infinite, so that a range check refuses it.
-fn whole(digits: &str, radix: u32) -> Value {
+fn parse_whole(digits: &str, radix: u32) -> Value {
     match i64::from_str_radix(digits, radix) {
         Ok(number) => Value::Whole(number),
         Err(_) => Value::Number(f64::INFINITY),

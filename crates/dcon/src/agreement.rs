@@ -1,11 +1,11 @@
-//! Chooses the answer to believe among several answers to one request, some milliseconds apart, of which one may be
+//! Selects one of several answers to one request, some milliseconds apart, of which one may be
 //! damaged.
 //!
 //! An eight-bit checksum lets one damaged reply in 256 pass. Damage rarely repeats identically, so two consecutive
 //! equal answers are both taken as true. Moving or noisy quantities differ between answers; they are read a third time and
-//! the answer between the other two is believed: one damaged answer of three cannot push it beyond the two intact ones.
+//! the answer between the other two is selected: one damaged answer of three cannot push it beyond the two intact ones.
 //!
-//! | three answers, no two consecutive ones equal | believed |
+//! | three answers, no two consecutive ones equal | selected |
 //! |---|---|
 //! | analog reading, level, frequency | the middle value |
 //! | all analog inputs at once | the second, if each input lies between its first and third reading, or beyond by 1/1024 of its range: noise of the coarsest converter, twelve bits |
@@ -23,9 +23,9 @@ const COUNTS_PER_MS: u64 = 100;
 const MS_PER_EVENT: u64 = 10;
 
 impl Command {
-    /// Returns the index of the answer to believe among two or three. `apart_ms` is the time between first and last
+    /// Returns the index of the answer to accept among two or three. `apart_ms` is the time between first and last
     /// request, rounded up. Returns `None` when another answer is needed, or when three do not suffice.
-    pub fn believed(&self, answers: &[Reply], apart_ms: u64) -> Option<usize> {
+    pub fn select_answer(&self, answers: &[Reply], apart_ms: u64) -> Option<usize> {
         let alike = answers.windows(2).position(|pair| pair[0] == pair[1]);
         let [first, second, third] = answers else {
             return alike;
@@ -108,13 +108,13 @@ mod tests {
         UpTo,
     };
 
-    /// Returns the index of the believed answer, with 3 ms between first and last.
-    fn believed(command: Command, said: &[&str]) -> Option<usize> {
+    /// Returns the index of the selected answer, with 3 ms between first and last.
+    fn select(command: Command, said: &[&str]) -> Option<usize> {
         let answers: Vec<_> = said
             .iter()
             .map(|text| command.decode(text.as_bytes(), false).unwrap())
             .collect();
-        command.believed(&answers, 3 * (said.len() as u64 - 1))
+        command.select_answer(&answers, 3 * (said.len() as u64 - 1))
     }
 
     fn form(format: DataFormat) -> InputForm {
@@ -128,19 +128,19 @@ mod tests {
     }
 
     #[test]
-    fn two_equal_answers_are_believed() {
+    fn two_equal_answers_are_accepted() {
         let port = Digital::ReadPort.to(Address(3));
-        assert_eq!(believed(port, &[">BEDE\r", ">BEDE\r"]), Some(0));
-        assert_eq!(believed(port, &[">BEDE\r", ">BEDC\r"]), None);
-        assert_eq!(believed(port, &[">BEDE\r", ">BEDC\r", ">BEDC\r"]), Some(1));
-        assert_eq!(believed(port, &[">BEDE\r", ">BEDC\r", ">BEDE\r"]), None);
-        assert_eq!(believed(volts(), &[">+05.000\r", ">+05.001\r"]), None);
-        assert_eq!(believed(volts(), &[">+9999.9\r", ">+9999.9\r"]), Some(0));
+        assert_eq!(select(port, &[">BEDE\r", ">BEDE\r"]), Some(0));
+        assert_eq!(select(port, &[">BEDE\r", ">BEDC\r"]), None);
+        assert_eq!(select(port, &[">BEDE\r", ">BEDC\r", ">BEDC\r"]), Some(1));
+        assert_eq!(select(port, &[">BEDE\r", ">BEDC\r", ">BEDE\r"]), None);
+        assert_eq!(select(volts(), &[">+05.000\r", ">+05.001\r"]), None);
+        assert_eq!(select(volts(), &[">+9999.9\r", ">+9999.9\r"]), Some(0));
     }
 
     #[test]
-    fn the_middle_of_three_readings_is_believed() {
-        let middle = |said: [&str; 3]| believed(volts(), &said);
+    fn the_middle_of_three_readings_is_accepted() {
+        let middle = |said: [&str; 3]| select(volts(), &said);
         assert_eq!(middle([">+05.019\r", ">+05.001\r", ">+05.000\r"]), Some(1));
         assert_eq!(middle([">+05.001\r", ">+05.019\r", ">+05.000\r"]), Some(0));
         assert_eq!(middle([">+05.002\r", ">+05.000\r", ">+05.001\r"]), Some(2));
@@ -152,9 +152,9 @@ mod tests {
     fn frequencies_may_fall_unlike_counts() {
         let frequency = Counter::ReadFrequency(UpTo::new(0).unwrap()).to(Address(3));
         let said = [">00000032\r", ">00000009\r", ">00000031\r"];
-        assert_eq!(believed(frequency, &said), Some(2));
+        assert_eq!(select(frequency, &said), Some(2));
         let count = Counter::Read(UpTo::new(0).unwrap()).to(Address(3));
-        assert_eq!(believed(count, &said), None);
+        assert_eq!(select(count, &said), None);
     }
 
     #[test]
@@ -163,7 +163,7 @@ mod tests {
         let all = |last: &str| format!(">{}{last}\r", "4000".repeat(7));
         let second = |last: [&str; 3]| {
             let [a, b, c] = last.map(all);
-            believed(hex, &[&a, &b, &c])
+            select(hex, &[&a, &b, &c])
         };
         assert_eq!(second(["4000", "4040", "4001"]), Some(1));
         assert_eq!(second(["4000", "4050", "4001"]), None);
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn a_count_rises_no_faster_than_its_input_allows() {
         let count = Counter::Read(UpTo::new(0).unwrap()).to(Address(3));
-        let second = |said: [&str; 3]| believed(count, &said);
+        let second = |said: [&str; 3]| select(count, &said);
         assert_eq!(
             second([">000003E8\r", ">00000514\r", ">00000640\r"]),
             Some(1)
@@ -188,7 +188,7 @@ mod tests {
         );
         let channel = Channel::new(2).unwrap();
         let events = Digital::ReadEvents { channel }.to(Address(3));
-        let second = |said: [&str; 3]| believed(events, &said);
+        let second = |said: [&str; 3]| select(events, &said);
         assert_eq!(second(["!0300103\r", "!0300104\r", "!0300105\r"]), Some(1));
         assert_eq!(second(["!0300103\r", "!0300105\r", "!0300106\r"]), None);
     }

@@ -1,6 +1,6 @@
 //! Analog inputs: 7017, 7017F, 7017R, 7018 (eight channels) and 7033 (three resistance thermometers).
 
-use super::command::Nature::{self, Read, Store};
+use super::command::Effect::{self, Read, Store};
 use super::request::Request;
 use super::shape::Shape;
 use super::{Address, Channel, DataFormat, TypeCode};
@@ -117,7 +117,7 @@ impl AnalogIn {
         };
     }
 
-    pub(super) fn table(&self) -> (Nature, Shape) {
+    pub(super) fn table(&self) -> (Effect, Shape) {
         match *self {
             Self::ReadAll(form) => (Read, Shape::Readings(form)),
             Self::ReadOne { form, .. } => (Read, Shape::Reading(form)),

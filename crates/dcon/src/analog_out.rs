@@ -1,6 +1,6 @@
 //! Analog outputs: 7021 and 7021P (one channel, not named in the request), 7022 (two) and 7024 (four).
 
-use super::command::Nature::{self, Output, Read, Store};
+use super::command::Effect::{self, Output, Read, Store};
 use super::request::Request;
 use super::shape::Shape;
 use super::{Address, Channel, Level, OutputForm, SlewCode, TypeCode, UpTo};
@@ -98,7 +98,7 @@ impl AnalogOut {
         };
     }
 
-    pub(super) fn table(&self) -> (Nature, Shape) {
+    pub(super) fn table(&self) -> (Effect, Shape) {
         match *self {
             Self::Write { .. } => (Output, Shape::Output),
             Self::ReadLast { form, .. }

@@ -27,7 +27,7 @@ pub enum Command {
 
 /// Effect of a command on the module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Nature {
+pub enum Effect {
     /// Changes nothing; may be repeated.
     Read,
     /// Reading clears something (such as a flag), so a repeat gives another answer.
@@ -78,25 +78,25 @@ impl Command {
     /// length on a line without checksum. Returns a [`ReplyError`] for everything unexpected; its variants
     /// `Refused` and `Ignored` are answers of the module.
     pub fn decode(&self, frame: &[u8], checksum: bool) -> Result<Reply, ReplyError> {
-        let (Some(address), Some((nature, shape))) = (self.address(), self.table()) else {
-            return Err(ReplyError::NotAsked);
+        let (Some(address), Some((effect, shape))) = (self.address(), self.table()) else {
+            return Err(ReplyError::Broadcast);
         };
         let (text, ended) = frame::open(frame, checksum)?;
         if !ended && shape.is_open() {
             return Err(ReplyError::NotEnded);
         }
-        shape::declined(text, address, nature)?;
+        shape::check_refusal(text, address, effect)?;
         shape.decode(text, address)
     }
 
     /// Whether repeating the command after a lost reply is harmless and gives the same information.
     pub fn repeatable(&self) -> bool {
-        self.nature() == Nature::Read
+        self.effect() == Effect::Read
     }
 
     /// Whether the module writes, or may write, its EEPROM. Such a command must not be sent cyclically or during a lot.
     pub fn writes_eeprom(&self) -> bool {
-        self.nature() == Nature::Store
+        self.effect() == Effect::Store
     }
 
     /// Length of the longest reply from lead to CR, characters; a checksum adds two. Zero for broadcasts.
@@ -108,7 +108,7 @@ impl Command {
     }
 
     /// Whether the command has a reply; false for broadcasts.
-    pub fn answered(&self) -> bool {
+    pub fn has_reply(&self) -> bool {
         self.address().is_some()
     }
 
@@ -129,13 +129,13 @@ impl Command {
         matches!(self, Self::AnalogIn(..))
     }
 
-    /// Effect of the command on the module. Broadcasts count as [`Nature::Act`]: they restart watchdogs and take
+    /// Effect of the command on the module. Broadcasts count as [`Effect::Act`]: they restart watchdogs and take
     /// samples.
-    pub fn nature(&self) -> Nature {
-        self.table().map_or(Nature::Act, |(nature, _)| nature)
+    pub fn effect(&self) -> Effect {
+        self.table().map_or(Effect::Act, |(effect, _)| effect)
     }
 
-    fn table(&self) -> Option<(Nature, Shape)> {
+    fn table(&self) -> Option<(Effect, Shape)> {
         match self {
             Self::HostOk | Self::SampleAll => None,
             Self::Common(_, ask) => Some(ask.table()),

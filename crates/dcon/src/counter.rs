@@ -1,6 +1,6 @@
 //! The two 32-bit counters of a 7080, each with its own gate input.
 
-use super::command::Nature::{self, Act, Output, Read, Store};
+use super::command::Effect::{self, Act, Output, Read, Store};
 use super::request::Request;
 use super::shape::Shape;
 use super::{Address, Channel, UpTo};
@@ -191,7 +191,7 @@ impl Counter {
         };
     }
 
-    pub(super) fn table(&self) -> (Nature, Shape) {
+    pub(super) fn table(&self) -> (Effect, Shape) {
         match *self {
             Self::Read(_) => (Read, Shape::Count),
             Self::ReadFrequency(_) => (Read, Shape::Frequency),

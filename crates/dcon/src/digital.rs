@@ -1,6 +1,6 @@
 //! Digital inputs and outputs, latches, and the slow event counters on the inputs.
 
-use super::command::Nature::{self, Act, Output, Read, ReadOnce, Store};
+use super::command::Effect::{self, Act, Output, Read, ReadOnce, Store};
 use super::request::Request;
 use super::shape::Shape;
 use super::{Address, Channel, OutputWord, UpTo};
@@ -106,7 +106,7 @@ impl Digital {
         };
     }
 
-    pub(super) fn table(&self) -> (Nature, Shape) {
+    pub(super) fn table(&self) -> (Effect, Shape) {
         match *self {
             Self::ReadAll => (Read, Shape::Bits),
             Self::ReadPort => (Read, Shape::PortBits),

@@ -3,7 +3,7 @@
 use super::Address;
 use thiserror::Error;
 
-/// Reason for refusing a reply. [`ReplyError::is_answer`] separates a module that declined from a damaged reply.
+/// Reason for refusing a reply. [`ReplyError::is_answer`] separates a module that declines from a damaged reply.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum ReplyError {
     /// `?AA`: the module understood the command but refused it (no such channel, out of range, needs INIT*, an
@@ -15,7 +15,7 @@ pub enum ReplyError {
     Ignored,
     /// The command is a broadcast, which has no reply.
     #[error("a broadcast has no reply")]
-    NotAsked,
+    Broadcast,
     /// The frame has no characters before its end.
     #[error("empty reply")]
     Empty,
@@ -56,12 +56,12 @@ pub enum ReplyError {
         expected: u8,
     },
     /// Another module answered.
-    #[error("address {found} answered, {asked} was asked")]
+    #[error("reply from address {found}, expected {expected}")]
     WrongAddress {
         /// Address in the reply.
         found: Address,
         /// Address in the request.
-        asked: Address,
+        expected: Address,
     },
     /// The reply has more or fewer characters than this command allows.
     #[error("{found} characters before the checksum, not a valid length of this reply")]

@@ -1,6 +1,6 @@
 //! Commands of (almost) every module type: configuration, identity, host watchdog, INIT*.
 
-use super::command::Nature::{self, Act, Read, ReadOnce, Store};
+use super::command::Effect::{self, Act, Read, ReadOnce, Store};
 use super::request::Request;
 use super::shape::Shape;
 use super::{Address, Config, ModuleName, UpTo};
@@ -106,7 +106,7 @@ impl Common {
         };
     }
 
-    pub(super) fn table(&self) -> (Nature, Shape) {
+    pub(super) fn table(&self) -> (Effect, Shape) {
         match *self {
             Self::ReadConfig => (Read, Shape::Config),
             Self::WriteConfig { address, .. } => (Store, Shape::AcceptedAs(address)),

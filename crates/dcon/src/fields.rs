@@ -152,12 +152,12 @@ impl<'a> Fields<'a> {
     }
 
     /// Reads an address; fails unless it is that of the addressed module.
-    pub(super) fn address_is(&mut self, asked: Address) -> Result<(), ReplyError> {
+    pub(super) fn address_is(&mut self, expected: Address) -> Result<(), ReplyError> {
         let found = self.address()?;
-        if found == asked {
+        if found == expected {
             Ok(())
         } else {
-            Err(ReplyError::WrongAddress { found, asked })
+            Err(ReplyError::WrongAddress { found, expected })
         }
     }
 }

@@ -19,7 +19,7 @@
 //!
 //! # Map of the modules
 //! Commands are grouped by module family, because the same letters mean different things in each. Each family has
-//! one table: the effect of a command on the module ([`Nature`]) and the form of its reply.
+//! one table: the effect of a command on the module ([`Effect`]) and the form of its reply.
 //!
 //! | family | modules | file |
 //! |---|---|---|
@@ -35,8 +35,8 @@
 //! | `reply.rs`, `shape.rs`, `fields.rs`, `error.rs` | replies: meanings, forms, fields, reasons for refusal |
 //! | `reading.rs`, `level.rs`, `bits.rs`, `bounded.rs`, `type_code.rs`, `config.rs` | values, ranges and configuration words |
 //! | `setting.rs` | whether a setting is already in effect, since writing wears the EEPROM |
-//! | `agreement.rs` | which of several answers to one request to believe |
-//! | `written.rs`, `understand.rs`, `words.rs` | requests back into commands, their meaning with a reply, both in words |
+//! | `agreement.rs` | selection among several answers to one request |
+//! | `decode_request.rs`, `interpret.rs`, `words.rs` | text of a request to commands, their meaning with a reply, both in words |
 //!
 //! # Absent by design
 //! Factory calibration and trim (`$AA0`, `$AA1`, `$AA3` of outputs, `~AAE`) have no representation in these types,
@@ -50,11 +50,13 @@ mod bounded;
 mod command;
 mod config;
 mod counter;
+mod decode_request;
 mod digital;
 mod error;
 mod every_module;
 mod fields;
 mod frame;
+mod interpret;
 mod level;
 mod reading;
 mod reply;
@@ -62,9 +64,7 @@ mod request;
 mod setting;
 mod shape;
 mod type_code;
-mod understand;
 mod words;
-mod written;
 
 #[cfg(test)]
 mod tests;
@@ -73,19 +73,19 @@ pub use analog_in::{AnalogIn, InputForm};
 pub use analog_out::AnalogOut;
 pub use bits::{Bits, OutputWord, Width};
 pub use bounded::{Address, Channel, UpTo};
-pub use command::{Command, Nature};
+pub use command::{Command, Effect};
 pub use config::{BaudCode, Config, DataFormat, FormatByte, ModuleName, SlewCode};
 pub use counter::{AlarmKind, AlarmState, Counter, Edge, GateMode, InputMode};
+pub use decode_request::decode_request;
 pub use digital::{Digital, GroupWrite, Stored};
 pub use error::ReplyError;
 pub use every_module::Common;
 pub use frame::{FRAME_LIMIT, checksum};
+pub use interpret::{Family, factory_command, interpret};
 pub use level::{Level, LevelError, OutputForm};
 pub use reading::{Reading, Readings, Value};
 pub use reply::{Reply, Text};
 pub use type_code::{FullScale, TypeCode, Unit};
-pub use understand::{Family, factory, understand};
-pub use written::readings;
 
 /// Keeps the example of the README compiling.
 #[cfg(doctest)]

@@ -1,7 +1,7 @@
 //! Forms of replies: lead, lengths, fields. The families' tables refer to these.
 
 use super::analog_out::output_range;
-use super::command::Nature;
+use super::command::Effect;
 use super::fields::Fields;
 use super::reading::width;
 use super::{
@@ -68,15 +68,15 @@ pub(super) enum Shape {
 }
 
 /// Detects `?AA` and the bare `!`, by which a module declines. Other leads are left to the form.
-pub(super) fn declined(text: &[u8], asked: Address, nature: Nature) -> Result<(), ReplyError> {
-    let output = nature == Nature::Output;
+pub(super) fn check_refusal(text: &[u8], to: Address, effect: Effect) -> Result<(), ReplyError> {
+    let output = effect == Effect::Output;
     let mut fields = Fields::new(text);
     match (fields.lead(), text.len()) {
         (Some(b'!'), 1) if output => Err(ReplyError::Ignored),
         (Some(b'?'), 1) if output => Err(ReplyError::Refused),
         (Some(b'?'), _) => {
             fields.start(b'?', 3..=3)?;
-            fields.address_is(asked)?;
+            fields.address_is(to)?;
             Err(ReplyError::Refused)
         }
         (Some(_) | None, _) => Ok(()),
@@ -153,15 +153,15 @@ impl Shape {
     }
 
     /// Decodes `text`, from lead to last character before checksum and CR.
-    pub(super) fn decode(self, text: &[u8], asked: Address) -> Result<Reply, ReplyError> {
+    pub(super) fn decode(self, text: &[u8], expected: Address) -> Result<Reply, ReplyError> {
         let mut fields = Fields::new(text);
         fields.start(self.lead(), self.shortest()..=self.longest())?;
         match self {
             Self::Output => Ok(Reply::Accepted),
             Self::AcceptedAs(new) => fields.address_is(new).map(|()| Reply::Accepted),
-            Self::Config => config(&mut fields, asked),
+            Self::Config => config(&mut fields, expected),
             Self::Bits | Self::PortBits | Self::Sampled | Self::Latched => {
-                self.bits(&mut fields, asked)
+                self.bits(&mut fields, expected)
             }
             Self::Count => fields.hex(8).map(Reply::Count),
             Self::Frequency => fields.hex(8).map(Reply::Frequency),
@@ -185,7 +185,7 @@ impl Shape {
             | Self::Level(_)
             | Self::OutputChannel
             | Self::ChannelRange(_) => {
-                fields.address_is(asked)?;
+                fields.address_is(expected)?;
                 self.addressed(&mut fields)
             }
         }
@@ -228,9 +228,9 @@ impl Shape {
     }
 
     /// Decodes the replies of digital modules without address, and the latches, which have one in some firmware.
-    fn bits(self, fields: &mut Fields<'_>, asked: Address) -> Result<Reply, ReplyError> {
+    fn bits(self, fields: &mut Fields<'_>, expected: Address) -> Result<Reply, ReplyError> {
         if self == Self::Latched && fields.length() > self.shortest() {
-            fields.address_is(asked)?;
+            fields.address_is(expected)?;
         }
         let first_read = if self == Self::Sampled {
             Some(fields.flag()?)
@@ -261,11 +261,11 @@ fn stored_bits(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
     two_bytes(fields).map(Reply::Bits)
 }
 
-fn config(fields: &mut Fields<'_>, asked: Address) -> Result<Reply, ReplyError> {
+fn config(fields: &mut Fields<'_>, expected: Address) -> Result<Reply, ReplyError> {
     let found = fields.address()?;
     // A module in INIT* mode listens at 00 and reports its stored address.
-    if found != asked && asked != Address(0) {
-        return Err(ReplyError::WrongAddress { found, asked });
+    if found != expected && expected != Address(0) {
+        return Err(ReplyError::WrongAddress { found, expected });
     }
     let type_code = TypeCode(fields.byte()?);
     let at = fields.at();
@@ -345,7 +345,7 @@ fn channel_range(fields: &mut Fields<'_>, asked: Channel) -> Result<Reply, Reply
     if fields.hex(1)? != u32::from(asked.get()) {
         return Err(ReplyError::BadField {
             at,
-            expected: "channel that was asked",
+            expected: "channel of the request",
         });
     }
     fields.filler(b"R", "letter R")?;

@@ -180,7 +180,7 @@ fn a_refusal_counts_only_from_the_addressed_module() {
     assert_eq!(read.decode(b"?02\r", false), Err(ReplyError::Refused));
     let stranger = ReplyError::WrongAddress {
         found: Address(3),
-        asked: Address(2),
+        expected: Address(2),
     };
     assert_eq!(read.decode(b"?03\r", false), Err(stranger));
     assert_eq!(
@@ -220,7 +220,7 @@ fn replies_of_another_kind_or_module_are_refused() {
         status.decode(b"!021\r", false),
         Err(ReplyError::WrongAddress {
             found: Address(2),
-            asked: A1
+            expected: A1
         })
     );
     assert_eq!(
@@ -238,10 +238,10 @@ fn broadcasts_are_sent_and_never_answered() {
     Command::HostOk.encode(true, &mut out);
     Command::SampleAll.encode(true, &mut out);
     assert_eq!(out, b"~**D2\r#**77\r");
-    assert!(!Command::HostOk.answered() && Command::HostOk.longest_reply() == 0);
+    assert!(!Command::HostOk.has_reply() && Command::HostOk.longest_reply() == 0);
     assert_eq!(
         Command::HostOk.decode(b"!01\r", false),
-        Err(ReplyError::NotAsked)
+        Err(ReplyError::Broadcast)
     );
 }
 

@@ -71,7 +71,7 @@ impl Archive {
     }
 
     /// Counts the selected parts.
-    pub fn how_many(&self, filter: &Filter) -> Result<u64> {
+    pub fn count_parts(&self, filter: &Filter) -> Result<u64> {
         let select = filter.count();
         self.connection
             .prepare(&select.sql)
@@ -125,7 +125,7 @@ impl Archive {
 
     /// Returns the latest test of the reference part with this serial number.
     pub fn reference_part(&self, serial: &str) -> Result<Option<Part>> {
-        const DOING: &str = "reading a golden part";
+        const DOING: &str = "reading a reference part";
         let mut statement = self
             .connection
             .prepare(&filter::reference_part())

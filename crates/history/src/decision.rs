@@ -42,7 +42,7 @@ impl Decision {
     }
 
     /// Returns the refusal for a lot in this state; `None` when the decision is possible.
-    pub fn why_not(self, state: LotState) -> Option<Message> {
+    pub fn refusal(self, state: LotState) -> Option<Message> {
         let refused = |code| Some(Message::new("refusal", code));
         match (self, state) {
             (Self::Hold, LotState::Held) => refused("lot_held_already"),

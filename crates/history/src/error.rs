@@ -32,7 +32,7 @@ pub enum HistoryError {
     /// Another process held the file for longer than the busy timeout.
     #[error("{doing}: the history is locked by another process")]
     Locked {
-        /// What was being done.
+        /// The step that failed.
         doing: &'static str,
         /// The cause.
         source: rusqlite::Error,
@@ -40,7 +40,7 @@ pub enum HistoryError {
     /// The disk is full; nothing of the batch was written.
     #[error("{doing}: the disk is full")]
     DiskFull {
-        /// What was being done.
+        /// The step that failed.
         doing: &'static str,
         /// The cause.
         source: rusqlite::Error,
@@ -48,7 +48,7 @@ pub enum HistoryError {
     /// The file or its folder is read-only.
     #[error("{doing}: the history is read-only")]
     ReadOnly {
-        /// What was being done.
+        /// The step that failed.
         doing: &'static str,
         /// The cause.
         source: rusqlite::Error,
@@ -56,7 +56,7 @@ pub enum HistoryError {
     /// Any other answer of the database.
     #[error("{doing}")]
     Database {
-        /// What was being done.
+        /// The step that failed.
         doing: &'static str,
         /// The cause.
         source: rusqlite::Error,
@@ -134,7 +134,7 @@ pub enum HistoryError {
 /// Result of an access to the history.
 pub type Result<T> = std::result::Result<T, HistoryError>;
 
-/// Adds what was being done to a database error.
+/// Adds the step that failed to a database error.
 pub(super) trait Doing<T> {
     /// Turns a database error into the variant an operator can act upon.
     fn doing(self, doing: &'static str) -> Result<T>;

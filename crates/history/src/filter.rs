@@ -147,7 +147,7 @@ impl Filter {
     /// Selects part row and value of a parameter, unordered. Reads only the index unless the filter has a bin, a time or
     /// `suspect`.
     pub(super) fn series(&self, param: &str) -> Select {
-        let joined = self.asks_of_part();
+        let joined = self.restricts_part();
         let mut select = self.values(param, "m.part_id, m.value", joined);
         if joined {
             self.part_conditions(&mut select, true);
@@ -158,7 +158,7 @@ impl Filter {
     /// Counts the parts, by the index of values alone where that is enough.
     pub(super) fn count(&self) -> Select {
         let found = match &self.param {
-            Some(param) if !self.asks_of_part() => {
+            Some(param) if !self.restricts_part() => {
                 let mut found = self.values(param, "1", false);
                 self.page(&mut found);
                 found
@@ -172,14 +172,14 @@ impl Filter {
     }
 
     /// Returns true when the filter selects all production parts of whole runs, apart from its page.
-    pub(super) fn asks_for_runs_alone(&self) -> bool {
+    pub(super) fn selects_whole_runs(&self) -> bool {
         let production = self.kind.as_deref().is_none_or(|kind| kind == "lot");
         let ranged = self.min.is_some() || self.max.is_some();
-        production && self.verdict.is_none() && !ranged && !self.asks_of_part()
+        production && self.verdict.is_none() && !ranged && !self.restricts_part()
     }
 
     /// Returns true when a member restricts a column that only `part` has.
-    fn asks_of_part(&self) -> bool {
+    fn restricts_part(&self) -> bool {
         self.suspect || self.bin.is_some() || self.since.is_some() || self.until.is_some()
     }
 

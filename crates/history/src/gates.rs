@@ -141,10 +141,10 @@ pub(super) fn state(connection: &Connection, record: &LotStateRecord) -> rusqlit
 /// Inserts a check; recording it again changes nothing.
 pub(super) fn reference_check(
     tx: &Transaction<'_>,
-    known: &RowIds,
+    row_ids: &RowIds,
     it: &ReferenceCheckRecord,
 ) -> Result<()> {
-    let run = known.run(&it.lot)?;
+    let run = row_ids.run(&it.lot)?;
     tx.execute(
         "INSERT INTO golden_check (run_id, at_us, passed, text, suspect_since_us)
          SELECT own.id, ?2, ?3, ?4, CASE WHEN ?3 THEN NULL ELSE ifnull(
@@ -156,7 +156,7 @@ pub(super) fn reference_check(
            AND NOT EXISTS (SELECT 1 FROM golden_check WHERE run_id = ?1 AND at_us = ?2)",
         params![run, it.at_us, it.passed, it.text],
     )
-    .doing("recording a golden check")?;
+    .doing("recording a reference check")?;
     Ok(())
 }
 
@@ -218,7 +218,7 @@ impl Archive {
             parts: count(&format!("{parts} {first}"))?,
             first_pass: count(&format!("{parts} {first} AND part.verdict = 'pass'"))?,
             retest_pass: count(&format!("{parts} {again} AND part.verdict = 'pass'"))?,
-            suspect: self.how_many(&Filter {
+            suspect: self.count_parts(&Filter {
                 lot: Some(lot.to_owned()),
                 suspect: true,
                 ..Filter::default()
@@ -241,7 +241,7 @@ impl Archive {
                 it.query_map(params_from_iter(&runs.values), reference_check_of)?
                     .collect()
             })
-            .doing("reading golden checks")
+            .doing("reading reference checks")
     }
 
     /// Returns the latest reference check of a rig.
@@ -255,7 +255,7 @@ impl Archive {
                 reference_check_of,
             )
             .optional()
-            .doing("reading the last golden check")
+            .doing("reading the last reference check")
     }
 }
 

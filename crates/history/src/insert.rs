@@ -56,9 +56,9 @@ pub(super) fn run(
 }
 
 /// Inserts a part with its measurements, samples and curves; does nothing when it has the same row already.
-pub(super) fn part(tx: &Transaction<'_>, known: &mut RowIds, part: &PartRecord) -> Result<()> {
+pub(super) fn part(tx: &Transaction<'_>, row_ids: &mut RowIds, part: &PartRecord) -> Result<()> {
     const DOING: &str = "recording a part";
-    let run = known.run(&part.lot)?;
+    let run = row_ids.run(&part.lot)?;
     check(part);
     let seq = signed("part", part.seq)?;
     let texts: Vec<String> = part.reasons.iter().map(Reason::to_string).collect();
@@ -92,7 +92,7 @@ pub(super) fn part(tx: &Transaction<'_>, known: &mut RowIds, part: &PartRecord) 
     match row {
         Some(row) => {
             reasons::insert(tx, row, 1, &part.reasons).doing("recording reasons")?;
-            measurements(tx, known, part, run, row)?;
+            measurements(tx, row_ids, part, run, row)?;
             let mut curves = part.curves.iter();
             curves
                 .try_for_each(|it| curve::insert(tx, row, it))
@@ -147,14 +147,14 @@ fn same_part(tx: &Transaction<'_>, part: &PartRecord, run: i64, seq: i64) -> Res
 
 fn measurements(
     tx: &Transaction<'_>,
-    known: &mut RowIds,
+    row_ids: &mut RowIds,
     part: &PartRecord,
     run: i64,
     row: i64,
 ) -> Result<()> {
     for measurement in &part.measurements {
         assert!(measurement.attempt >= 1, "the first attempt has number 1");
-        let parameter = parameter(tx, known, &measurement.key)?;
+        let parameter = parameter(tx, row_ids, &measurement.key)?;
         let last = part
             .measurements
             .iter()
@@ -229,13 +229,13 @@ fn sampled(
     Ok(())
 }
 
-fn parameter(tx: &Transaction<'_>, known: &mut RowIds, key: &str) -> Result<i64> {
-    if let Some(&row) = known.parameters.get(key) {
+fn parameter(tx: &Transaction<'_>, row_ids: &mut RowIds, key: &str) -> Result<i64> {
+    if let Some(&row) = row_ids.parameters.get(key) {
         return Ok(row);
     }
     assert!(!key.is_empty(), "a parameter without a name");
     let row = parameter_row(tx, key).doing("naming a parameter")?;
-    known.parameters.insert(key.to_owned(), row);
+    row_ids.parameters.insert(key.to_owned(), row);
     Ok(row)
 }
 

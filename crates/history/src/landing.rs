@@ -9,9 +9,9 @@ use super::{AlarmRecord, InterruptedRecord, LandingRecord};
 use rusqlite::{OptionalExtension, Transaction, params};
 
 /// Fills in bin and time of a landing, once.
-pub(super) fn landing(tx: &Transaction<'_>, known: &RowIds, it: &LandingRecord) -> Result<()> {
+pub(super) fn landing(tx: &Transaction<'_>, row_ids: &RowIds, it: &LandingRecord) -> Result<()> {
     const DOING: &str = "recording a landing";
-    let run = known.run(&it.lot)?;
+    let run = row_ids.run(&it.lot)?;
     let seq = signed("part", it.seq)?;
     assert!(!it.bin.is_empty(), "landed in no bin");
     let judged_at_us: Option<i64> = tx
@@ -46,11 +46,11 @@ pub(super) fn landing(tx: &Transaction<'_>, known: &RowIds, it: &LandingRecord) 
 /// Makes a judged part void with bin `retest`, once and only before it has landed.
 pub(super) fn interrupted(
     tx: &Transaction<'_>,
-    known: &RowIds,
+    row_ids: &RowIds,
     it: &InterruptedRecord,
 ) -> Result<()> {
     const DOING: &str = "recording an interruption";
-    let run = known.run(&it.lot)?;
+    let run = row_ids.run(&it.lot)?;
     let seq = signed("part", it.seq)?;
     let voided: Option<(i64, i64)> = tx
         .query_row(
@@ -93,8 +93,8 @@ fn landed_before(it: &LandingRecord, first: Option<String>) -> Result<()> {
 }
 
 /// Inserts an alarm; a second record of it only fills in when it was cleared.
-pub(super) fn alarm(tx: &Transaction<'_>, known: &RowIds, it: &AlarmRecord) -> Result<()> {
-    let run = it.lot.as_deref().map(|lot| known.run(lot)).transpose()?;
+pub(super) fn alarm(tx: &Transaction<'_>, row_ids: &RowIds, it: &AlarmRecord) -> Result<()> {
+    let run = it.lot.as_deref().map(|lot| row_ids.run(lot)).transpose()?;
     assert!(!it.code.is_empty(), "an alarm without a code");
     let cleared_after = it.cleared_at_us.is_none_or(|at| at >= it.raised_at_us);
     assert!(cleared_after, "{} went before it came", it.code);

@@ -46,8 +46,8 @@ pub struct OrderEntry {
     pub refused: Option<String>,
 }
 
-pub(super) fn insert(tx: &Transaction<'_>, known: &RowIds, it: &OrderRecord) -> Result<()> {
-    let run = it.lot.as_deref().map(|lot| known.run(lot)).transpose()?;
+pub(super) fn insert(tx: &Transaction<'_>, row_ids: &RowIds, it: &OrderRecord) -> Result<()> {
+    let run = it.lot.as_deref().map(|lot| row_ids.run(lot)).transpose()?;
     tx.prepare_cached(
         "INSERT INTO ordered (at_us, run_id, who, role, origin, what, refused)
          VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",

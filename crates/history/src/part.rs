@@ -31,7 +31,7 @@ pub struct Part {
     pub landed_bin: Option<String>,
     /// Time of that confirmation.
     pub landed_at: Option<Moment>,
-    /// Reasons against a pass, in the strings of rows.
+    /// Reasons against a pass, as texts.
     pub reasons: Vec<String>,
     /// The same reasons as codes.
     pub reason_codes: Vec<Reason>,

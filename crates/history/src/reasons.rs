@@ -48,13 +48,13 @@ const TEXTS: &str = include_str!("schema/reason_texts.txt");
 
 /// Reads a text as programs before schema 8 wrote it; one without a code stays [`Code::Unclassified`](machine::dut::reason::Code).
 fn read_text(text: &str) -> Reason {
-    let known = TEXTS.lines().find_map(|line| read_as(line, text));
-    let known = known.or_else(|| of_a_limit(text));
+    let known = TEXTS.lines().find_map(|line| match_text(line, text));
+    let known = known.or_else(|| limit_reason(text));
     known.unwrap_or_else(|| Reason::unclassified(text))
 }
 
 /// The reason of one line of [`TEXTS`], when the text is its text.
-fn read_as(line: &str, text: &str) -> Option<Reason> {
+fn match_text(line: &str, text: &str) -> Option<Reason> {
     let [code, key, side, form] = line.splitn(4, '|').collect::<Vec<_>>().try_into().ok()?;
     let detail = match form.split_once('*') {
         Some((before, after)) => text.strip_prefix(before)?.strip_suffix(after)?,
@@ -66,7 +66,7 @@ fn read_as(line: &str, text: &str) -> Option<Reason> {
 }
 
 /// A text that begins with the key of a characteristic and speaks of its limit.
-fn of_a_limit(text: &str) -> Option<Reason> {
+fn limit_reason(text: &str) -> Option<Reason> {
     let (key, rest) = text.split_once(' ')?;
     let (code, side) = match rest {
         "low" => ("outside_limit", Some(Side::Low)),

@@ -32,7 +32,7 @@ pub fn rejudged(part: &Part, curves: &[Curve], basis: Basis, recipe: &Recipe) ->
     let by_values = Verdict::of(&recipe.device.kind().characteristics(), &judged);
     let seen = |it| bound(it).is_some();
     let others = part.reason_codes.iter();
-    let others: Vec<Reason> = others.filter(|it| !of_a_limit(it, seen)).cloned().collect();
+    let others: Vec<Reason> = others.filter(|it| !is_limit(it, seen)).cloned().collect();
     match (part.verdict.as_str(), others.as_slice()) {
         ("fail", [first, ..]) => {
             let limits = match by_values {
@@ -65,7 +65,7 @@ fn stored(part: &Part, of: Characteristic, factor: f64) -> Reading {
 
 /// Returns true for a reason that depends on a limit or a missing value, which the other recipe judges anew. A contact that
 /// did not move also exceeds an upper limit, where the curves have `seen` that.
-fn of_a_limit(reason: &Reason, seen: impl Fn(Characteristic) -> bool) -> bool {
+fn is_limit(reason: &Reason, seen: impl Fn(Characteristic) -> bool) -> bool {
     match reason.code {
         Code::OutsideLimit(_) | Code::NotProven(_) | Code::NotMeasured(_) => true,
         Code::Finding(_) => {

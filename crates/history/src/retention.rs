@@ -1,6 +1,6 @@
 //! Retention: deletes the parts of runs that were copied whole.
 //!
-//! - Backup and export call [`Store::copied`] once their file is on the disk. Only closed runs count as copied.
+//! - Backup and export call [`Store::record_export`] once their file is on the disk. Only closed runs count as copied.
 //! - [`Store::prune`] deletes parts, reasons, measurements, raw replies, curves and alarms of copied runs that ended before
 //!   an instant, one transaction a run. Lot, run, recipe and the note of the copy stay: run numbers continue, and the note
 //!   names the file with the parts.
@@ -25,7 +25,7 @@ pub struct Pruned {
 
 impl Store {
     /// Notes that `file` holds the selected closed runs (lot, run, recipe) whole. Returns their number.
-    pub fn copied(&mut self, filter: &Filter, file: &str, at_us: i64) -> Result<u64> {
+    pub fn record_export(&mut self, filter: &Filter, file: &str, at_us: i64) -> Result<u64> {
         const DOING: &str = "noting a copy";
         let runs = filter.runs();
         let sql = format!(

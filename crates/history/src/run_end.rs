@@ -17,7 +17,7 @@ pub struct RunEndRecord {
 }
 
 /// Stores the end of a run; a later one replaces it.
-pub(super) fn insert(tx: &Transaction<'_>, known: &RowIds, it: &RunEndRecord) -> Result<()> {
+pub(super) fn insert(tx: &Transaction<'_>, row_ids: &RowIds, it: &RunEndRecord) -> Result<()> {
     assert!(
         it.cause.is_none() || it.ended == Ending::Alarm,
         "trouble of a run that ended well"
@@ -25,7 +25,7 @@ pub(super) fn insert(tx: &Transaction<'_>, known: &RowIds, it: &RunEndRecord) ->
     let (cause, text) = it.cause.as_ref().map(|it| (&it.0, &it.1)).unzip();
     tx.execute(
         "INSERT OR REPLACE INTO run_end (run_id, ended, cause, cause_text) VALUES (?1, ?2, ?3, ?4)",
-        params![known.run(&it.lot)?, it.ended.name(), cause, text],
+        params![row_ids.run(&it.lot)?, it.ended.name(), cause, text],
     )
     .doing("recording the end of a run")?;
     Ok(())

@@ -95,7 +95,7 @@ impl Archive {
         param: &str,
         filter: &Filter,
     ) -> rusqlite::Result<Option<Vec<f64>>> {
-        if !filter.asks_for_runs_alone() {
+        if !filter.selects_whole_runs() {
             return Ok(None);
         }
         let find = "SELECT id FROM parameter WHERE key = ?1";

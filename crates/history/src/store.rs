@@ -37,7 +37,7 @@ pub struct Store {
     connection: Connection,
     path: PathBuf,
     written_by: String,
-    known: RowIds,
+    row_ids: RowIds,
 }
 
 /// Row numbers that need no look-up in the file.
@@ -67,7 +67,7 @@ impl Store {
             connection: open::writer(path)?,
             path: path.to_owned(),
             written_by: format!("{} {}", identity.program, identity.version),
-            known: RowIds::default(),
+            row_ids: RowIds::default(),
         })
     }
 
@@ -84,7 +84,7 @@ impl Store {
         let transaction = self.transaction(DOING)?;
         let (run, number) = insert::run(&transaction, lot, source, &written_by).doing(DOING)?;
         transaction.commit().doing(DOING)?;
-        let before = self.known.runs.insert(lot.lot.clone(), run);
+        let before = self.row_ids.runs.insert(lot.lot.clone(), run);
         assert_ne!(before, Some(run), "one row for two runs");
         assert!(number >= 1, "the first run has number 1");
         Ok(number)
@@ -104,10 +104,10 @@ impl Store {
             .transaction_with_behavior(TransactionBehavior::Immediate)
             .doing(DOING)?;
         let (run, number) = insert::run(&transaction, lot, "import", written_by).doing(DOING)?;
-        let mut known = RowIds::default();
-        known.runs.insert(lot.lot.clone(), run);
+        let mut row_ids = RowIds::default();
+        row_ids.runs.insert(lot.lot.clone(), run);
         for part in &parts {
-            insert::part(&transaction, &mut known, part)?;
+            insert::part(&transaction, &mut row_ids, part)?;
         }
         transaction
             .execute(
@@ -122,7 +122,7 @@ impl Store {
 
     /// Stores the hash of the calibration that the open run of the lot uses from now on.
     pub fn calibrated(&mut self, lot: &str, hash: &str) -> Result<()> {
-        let run = self.known.run(lot)?;
+        let run = self.row_ids.run(lot)?;
         let changed = self
             .connection
             .execute(
@@ -137,7 +137,7 @@ impl Store {
     /// Closes the run of the lot; later rows for it are refused.
     pub fn close_lot(&mut self, lot: &str, at_us: i64) -> Result<()> {
         const PACKING: &str = "packing the values of a closed lot";
-        let run = self.known.run(lot)?;
+        let run = self.row_ids.run(lot)?;
         let changed = self
             .connection
             .execute(
@@ -146,8 +146,8 @@ impl Store {
             )
             .doing("closing the lot")?;
         assert_eq!(changed, 1, "an open run without its row");
-        self.known.runs.remove(lot);
-        assert!(self.known.run(lot).is_err(), "a closed run gets rows");
+        self.row_ids.runs.remove(lot);
+        assert!(self.row_ids.run(lot).is_err(), "a closed run gets rows");
         // The run stays closed when packing fails: statistics then read the index.
         let transaction = self.transaction(PACKING)?;
         series::pack(&transaction, run).doing(PACKING)?;
@@ -161,16 +161,18 @@ impl Store {
     pub fn record(&mut self, rows: &[Row]) -> Result<()> {
         const DOING: &str = "recording";
         let Self {
-            connection, known, ..
+            connection,
+            row_ids,
+            ..
         } = self;
         let transaction = connection
             .transaction_with_behavior(TransactionBehavior::Immediate)
             .doing(DOING)?;
-        let before = known.parameters.len();
+        let before = row_ids.parameters.len();
         let written =
-            write(&transaction, known, rows).and_then(|()| transaction.commit().doing(DOING));
-        if written.is_err() && known.parameters.len() != before {
-            known.parameters.clear();
+            write(&transaction, row_ids, rows).and_then(|()| transaction.commit().doing(DOING));
+        if written.is_err() && row_ids.parameters.len() != before {
+            row_ids.parameters.clear();
         }
         let is_over = connection.is_autocommit();
         assert!(written.is_err() || is_over, "a batch is left open");
@@ -257,19 +259,19 @@ pub(super) const fn source(simulated: bool) -> &'static str {
     if simulated { "simulated" } else { "rig" }
 }
 
-fn write(transaction: &Transaction<'_>, known: &mut RowIds, rows: &[Row]) -> Result<()> {
+fn write(transaction: &Transaction<'_>, row_ids: &mut RowIds, rows: &[Row]) -> Result<()> {
     rows.iter().try_for_each(|row| match row {
-        Row::Part(part) => insert::part(transaction, known, part),
-        Row::Interrupted(it) => landing::interrupted(transaction, known, it),
-        Row::Landed(landed) => landing::landing(transaction, known, landed),
-        Row::Alarm(alarm) => landing::alarm(transaction, known, alarm),
+        Row::Part(part) => insert::part(transaction, row_ids, part),
+        Row::Interrupted(it) => landing::interrupted(transaction, row_ids, it),
+        Row::Landed(landed) => landing::landing(transaction, row_ids, landed),
+        Row::Alarm(alarm) => landing::alarm(transaction, row_ids, alarm),
         Row::AlarmChange(it) => alarm_states::change(transaction, it),
-        Row::RunEnded(it) => run_end::insert(transaction, known, it),
+        Row::RunEnded(it) => run_end::insert(transaction, row_ids, it),
         Row::LotState(it) => gates::state(transaction, it)
             .map(|_| ())
             .doing("recording the state of a lot"),
-        Row::ReferenceCheck(it) => gates::reference_check(transaction, known, it),
-        Row::Order(it) => orders::insert(transaction, known, it),
+        Row::ReferenceCheck(it) => gates::reference_check(transaction, row_ids, it),
+        Row::Order(it) => orders::insert(transaction, row_ids, it),
         Row::Wear(it) => wear::add(transaction, it),
         Row::Inside(it) => inside::keep(transaction, it),
     })
@@ -300,7 +302,7 @@ impl Store {
             .expect("a file can be kept from being written");
     }
     /// Makes every write fail that would enlarge the file.
-    pub(super) fn no_more_pages(&self) {
+    pub(super) fn forbid_growth(&self) {
         let pages: i64 = self
             .connection
             .pragma_query_value(None, "page_count", |row| row.get(0))

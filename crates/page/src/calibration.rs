@@ -16,7 +16,7 @@ pub(super) async fn calibration(State(app): App) -> JsonResult<Instruments> {
         Ok(instruments(
             archive,
             simulated,
-            &plant.golden.certificates(),
+            &plant.reference_parts.certificates(),
         )?)
     };
     app.readers.read(read).await.map(Json)

@@ -122,7 +122,7 @@ impl ApiError {
                 unread(history)
             }
             Self::Inquiry(InquiryError::Member { .. }) => StatusCode::BAD_REQUEST,
-            Self::Inquiry(InquiryError::NotThere { .. }) => StatusCode::NOT_FOUND,
+            Self::Inquiry(InquiryError::Missing { .. }) => StatusCode::NOT_FOUND,
             Self::Inquiry(InquiryError::Write(_) | InquiryError::Sheet(_))
             | Self::Access(_)
             | Self::NotAudited { .. }

@@ -105,7 +105,7 @@ impl Feed {
 async fn changed(views: &mut watch::Receiver<View>, at: Instant, sent: &mut View) {
     sleep_until(at + PACE).await;
     while views.changed().await.is_ok() {
-        if at.elapsed() >= BEAT || !shows_same(&views.borrow_and_update(), sent) {
+        if at.elapsed() >= BEAT || !same_content(&views.borrow_and_update(), sent) {
             return;
         }
     }
@@ -113,7 +113,7 @@ async fn changed(views: &mut watch::Receiver<View>, at: Instant, sent: &mut View
 }
 
 /// Compares all but the wall-clock times, which each turn of the cycle changes; `sent` takes those of `view`.
-fn shows_same(view: &View, sent: &mut View) -> bool {
+fn same_content(view: &View, sent: &mut View) -> bool {
     sent.at_us = view.at_us;
     sent.machine.phases_s.clone_from(&view.machine.phases_s);
     view == sent

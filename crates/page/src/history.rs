@@ -78,7 +78,7 @@ pub(super) async fn count(State(app): App, filter: Members<Filter>) -> JsonResul
     }
     let read = move |archive: &Archive| {
         checks::parameters(archive, filter.param.as_deref())?;
-        Ok(json!({"parts": archive.how_many(&filter)?}))
+        Ok(json!({"parts": archive.count_parts(&filter)?}))
     };
     app.readers.read(read).await.map(Json)
 }
@@ -128,7 +128,7 @@ pub(super) async fn show(State(app): App, which: Members<PartQuery>) -> JsonResu
         parts.retain(|part| run.is_none_or(|run| part.run == run));
         if parts.is_empty() {
             let what = format!("lot {lot:?} has no {kind} part {seq}");
-            return Err(InquiryError::not_there(what).into());
+            return Err(InquiryError::missing(what).into());
         }
         Ok(parts)
     };

@@ -53,7 +53,7 @@ pub(super) async fn lots(State(app): App, page: Members<Paging>) -> JsonResult<V
 fn why_not(state: LotState) -> BTreeMap<&'static str, Option<Message>> {
     let decisions = Decision::ALL
         .into_iter()
-        .map(|it| (it.order(), it.why_not(state)));
+        .map(|it| (it.order(), it.refusal(state)));
     let held = (state == LotState::Held).then(|| Message::new("refusal", "release_first"));
     decisions.chain([("start", held)]).collect()
 }

@@ -91,9 +91,9 @@ fn parts(out: &mut Figures<'_>, view: &View) -> fmt::Result {
     }
     let help = "Parts between pocket and beam.";
     out.one("relayrig_parts_inside", help, view.inside)?;
-    let help = "Parts that came in, golden ones too.";
+    let help = "Parts that came in, reference parts too.";
     out.one("relayrig_parts_came_in", help, view.came_in)?;
-    let help = "Parts a beam confirmed, golden ones too.";
+    let help = "Parts a beam confirmed, reference parts too.";
     out.one("relayrig_parts_went_out", help, view.went_out)?;
     if let Some(rate) = view.parts_per_hour.filter(|it| it.is_finite()) {
         out.one(

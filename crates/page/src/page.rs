@@ -4,17 +4,17 @@
 //! Every answer is put together and compressed once, from the files in `page/` and the catalogue of texts. The policy lets a
 //! browser run the inline script, by its hash, and scripts of this rig, which all have the media type of a script.
 
-mod fetched;
+mod compressed;
 mod kinds;
-mod packed;
+mod page_scripts;
 
 use super::error::ApiError;
 use axum::extract::Path;
 use axum::http::HeaderMap;
 use axum::http::header::{CACHE_CONTROL, CONTENT_SECURITY_POLICY};
 use axum::response::IntoResponse;
+use compressed::CompressedBody;
 use data_encoding::BASE64;
-use packed::Packed;
 use sha2::{Digest, Sha256};
 use std::sync::LazyLock;
 
@@ -39,14 +39,14 @@ const SCRIPT: &str = concat!(
     include_str!("page/script/start.js"),
 );
 
-static PAGE: LazyLock<Packed> = LazyLock::new(|| {
+static PAGE: LazyLock<CompressedBody> = LazyLock::new(|| {
     let page = FRAME
         .replace("/*look*/", LOOK)
         .replace("/*words*/", &kinds::words())
         .replace("/*kinds*/", &kinds::json())
-        .replace("/*scripts*/", &fetched::json())
+        .replace("/*scripts*/", &page_scripts::json())
         .replace("/*script*/", SCRIPT);
-    Packed::new("text/html; charset=utf-8", page)
+    CompressedBody::new("text/html; charset=utf-8", page)
 });
 static POLICY: LazyLock<String> = LazyLock::new(|| {
     let hash = |text: &str| BASE64.encode(&Sha256::digest(text));
@@ -69,7 +69,7 @@ pub(super) async fn script(
     headers: HeaderMap,
 ) -> Result<impl IntoResponse, ApiError> {
     let path = format!("/page/{file}");
-    let script = fetched::SCRIPTS.get(&path);
+    let script = page_scripts::SCRIPTS.get(&path);
     let script = script.ok_or(ApiError::NoSuchRoute { path })?;
     let kept = [(CACHE_CONTROL, "public, max-age=31536000, immutable")];
     Ok((kept, script.answer(&headers)))

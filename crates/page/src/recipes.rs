@@ -12,7 +12,7 @@
 
 use super::access::{Person, Role};
 use super::error::{ApiError, JsonResult, Members, blocking};
-use super::history::paper::{Page, on_paper};
+use super::history::paper::{Page, with_policy};
 use super::router::App;
 use super::{origin, sessions};
 use axum::Json;
@@ -104,7 +104,7 @@ pub(super) async fn card(State(app): App, printed: Members<CardQuery>) -> Result
         let paper = paper(lang.unwrap_or(Lang::Zh));
         let plant = config::load_card(&dir)?;
         let card = card::card(paper.language, &recipe, &plant, &paper.made);
-        Ok::<_, ApiError>(on_paper(card))
+        Ok::<_, ApiError>(with_policy(card))
     };
     blocking(made).await
 }
@@ -134,7 +134,7 @@ pub(super) async fn revise(
             who: person.name,
             role: person.role.to_string(),
             origin,
-            what: noted_as(&change, done.as_ref().ok()).to_string(),
+            what: audit_entry(&change, done.as_ref().ok()).to_string(),
             refused: done.as_ref().err().map(ToString::to_string),
         })]);
         match (done, noted) {
@@ -151,7 +151,7 @@ fn revised(dir: &Path, person: &Person, change: &Change) -> Result<Revision, Api
     config::revise(&plant, change).map_err(|refused| ApiError::Revision { refused })
 }
 
-fn noted_as(change: &Change, saved: Option<&Revision>) -> serde_json::Value {
+fn audit_entry(change: &Change, saved: Option<&Revision>) -> serde_json::Value {
     let number = saved.map(|it| it.number);
     json!({"order": "revise", "recipe": change.name, "revision": number, "from": change.from, "values": change.values})
 }

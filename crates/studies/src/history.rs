@@ -9,7 +9,7 @@ use super::figure::{Bar, Figure};
 use super::order::Order;
 use super::output::Report;
 use anyhow::Context;
-use app::generate::{Wanted, generate};
+use app::generate::{GenerateOptions, generate};
 use app::progress::{PIECES, progress};
 use history::inquiry::figures::figures;
 use history::{Archive, Filter, Identity, LotRecord, Moment, Row, Store};
@@ -36,9 +36,9 @@ const LOOK: Duration = Duration::from_millis(5);
 /// # Errors
 /// A file that cannot be written or read.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
-    let folder = TempDir::new()?;
-    let db = folder.path().join("history.db");
-    let wanted = Wanted {
+    let folder = Folder::new()?;
+    let db = folder.0.join("history.db");
+    let wanted = GenerateOptions {
         parts: order.parts,
         seed: 1,
         recipe: order.recipe.clone(),

@@ -95,7 +95,7 @@ impl Damage {
         rng: &mut ChaCha8Rng,
         now_us: u64,
     ) {
-        if self.clashing.hold(module, now_us) || self.clash.strike(rng, now_us) {
+        if self.clashing.hold(module, now_us) || self.clash.occurs(rng, now_us) {
             let twin = twin(reply, rng);
             let apart = rng.random_range(-APART_BITS..=APART_BITS);
             *reply = uart::superposed(reply, &twin, apart);
@@ -103,26 +103,26 @@ impl Damage {
     }
 
     /// Damages a reply on its way to the host.
-    pub(super) fn strike(
+    pub(super) fn apply(
         &self,
         request: &[u8],
         reply: &mut Vec<u8>,
         rng: &mut ChaCha8Rng,
         now_us: u64,
     ) {
-        if self.flip.strike(rng, now_us) && !reply.is_empty() {
+        if self.flip.occurs(rng, now_us) && !reply.is_empty() {
             let bit = rng.random_range(0..reply.len() * 8);
             reply[bit / 8] ^= 1 << (bit % 8);
         }
-        if self.garble.strike(rng, now_us) {
-            *reply = uart::heard_faster(reply, rng.random_range(2..=3));
+        if self.garble.occurs(rng, now_us) {
+            *reply = uart::sampled_too_fast(reply, rng.random_range(2..=3));
         }
-        if self.noise.strike(rng, now_us) {
+        if self.noise.occurs(rng, now_us) {
             let count = rng.random_range(1..=4);
             let noise: Vec<u8> = (0..count).map(|_| rng.random()).collect();
             reply.splice(0..0, noise);
         }
-        if self.echo.strike(rng, now_us) {
+        if self.echo.occurs(rng, now_us) {
             reply.splice(0..0, request.iter().copied().chain([dcon::CR]));
         }
     }
@@ -148,17 +148,17 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::super::LineFaults;
 
-    fn struck(fault: &str) -> Vec<u8> {
+    fn damaged(fault: &str) -> Vec<u8> {
         let mut faults = LineFaults::none(7);
         faults.add(fault, Some("1")).unwrap();
         let mut reply = b">+05.123\r".to_vec();
         faults.clash("timer", &mut reply, 0);
-        faults.strike(b"#010", reply, 0).unwrap().1
+        faults.apply(b"#010", reply, 0).unwrap().1
     }
 
     #[test]
     fn a_flip_changes_one_bit() {
-        let bytes = struck("flip");
+        let bytes = damaged("flip");
         let both = bytes.iter().zip(b">+05.123\r");
         let differing: u32 = both.map(|(a, b)| (a ^ b).count_ones()).sum();
         assert_eq!((bytes.len(), differing), (9, 1));
@@ -166,15 +166,15 @@ mod tests {
 
     #[test]
     fn noise_and_echo_come_before_the_reply() {
-        let noisy = struck("noise");
+        let noisy = damaged("noise");
         assert!(noisy.ends_with(b">+05.123\r") && (10..=13).contains(&noisy.len()));
-        assert_eq!(struck("echo"), b"#010\r>+05.123\r");
+        assert_eq!(damaged("echo"), b"#010\r>+05.123\r");
     }
 
     #[test]
     fn second_transmitter_and_wrong_baud_rate_destroy_the_reply() {
         for fault in ["clash", "garble"] {
-            let bytes = struck(fault);
+            let bytes = damaged(fault);
             assert_ne!(bytes, b">+05.123\r", "{fault}");
             assert!(!bytes.is_empty(), "{fault}");
         }

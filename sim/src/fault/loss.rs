@@ -69,7 +69,7 @@ impl Family for Loss {
 impl Loss {
     /// Draws whether this request is lost.
     pub(super) fn loses_request(&self, rng: &mut ChaCha8Rng, now_us: u64) -> bool {
-        self.deaf.strike(rng, now_us)
+        self.deaf.occurs(rng, now_us)
     }
 
     /// Checks whether a fault suppresses every reply of the module now.
@@ -78,11 +78,11 @@ impl Loss {
     }
 
     /// Loses or truncates a reply; a lost reply becomes empty.
-    pub(super) fn strike(&self, reply: &mut Vec<u8>, rng: &mut ChaCha8Rng, now_us: u64) {
-        if self.drop.strike(rng, now_us) {
+    pub(super) fn apply(&self, reply: &mut Vec<u8>, rng: &mut ChaCha8Rng, now_us: u64) {
+        if self.drop.occurs(rng, now_us) {
             reply.clear();
         }
-        if self.truncate.strike(rng, now_us) && !reply.is_empty() {
+        if self.truncate.occurs(rng, now_us) && !reply.is_empty() {
             reply.truncate(rng.random_range(0..reply.len()));
         }
     }
@@ -98,11 +98,11 @@ mod tests {
         let mut faults = LineFaults::none(7);
         faults.add("truncate", Some("1")).unwrap();
         for _ in 0..100 {
-            let left = faults.strike(b"#01", b">+05.123\r".to_vec(), 0);
+            let left = faults.apply(b"#01", b">+05.123\r".to_vec(), 0);
             assert!(left.is_none_or(|(_, bytes)| bytes.len() < 9));
         }
         faults.add("drop", Some("1@2..3")).unwrap();
-        let mut left = |now_us| faults.strike(b"#01", b">\r".to_vec(), now_us);
+        let mut left = |now_us| faults.apply(b"#01", b">\r".to_vec(), now_us);
         assert_eq!(left(2_500_000), None);
     }
 

@@ -155,7 +155,7 @@ impl LineFaults {
 
     /// Returns the instant at which a lost port comes back; `None` while the port is present.
     pub fn port_back_us(&self, line: &str, now_us: u64) -> Option<u64> {
-        self.port.back_us(line, now_us)
+        self.port.restored_us(line, now_us)
     }
 
     /// Returns the instant at which the port of a line vanishes next.
@@ -200,15 +200,15 @@ impl LineFaults {
 
     /// Applies loss, damage and delay to a reply; returns the extra microseconds and the bytes, `None` when
     /// nothing arrives.
-    pub fn strike(
+    pub fn apply(
         &mut self,
         request: &[u8],
         mut reply: Vec<u8>,
         now_us: u64,
     ) -> Option<(u64, Vec<u8>)> {
         let rng = &mut self.rng;
-        self.loss.strike(&mut reply, rng, now_us);
-        self.damage.strike(request, &mut reply, rng, now_us);
+        self.loss.apply(&mut reply, rng, now_us);
+        self.damage.apply(request, &mut reply, rng, now_us);
         let extra_us = self.timing.extra_us(rng, now_us);
         (!reply.is_empty()).then_some((extra_us, reply))
     }
@@ -235,7 +235,7 @@ mod tests {
         for now_us in [0, 5_000_000] {
             assert!(!faults.loses_request(now_us) && !faults.line_dead("measure", now_us));
             assert_eq!(faults.before_a_request(now_us), None);
-            let reply = faults.strike(b"#01", b">\r".to_vec(), now_us);
+            let reply = faults.apply(b"#01", b">\r".to_vec(), now_us);
             assert_eq!(reply, Some((0, b">\r".to_vec())));
         }
         assert_eq!(faults.rng, LineFaults::none(1).rng);
@@ -262,7 +262,7 @@ mod tests {
         for (name, value) in [("echo", "1"), ("late", "1/350"), ("delay", "1")] {
             assert!(faults.add(name, Some(value)).unwrap());
         }
-        let struck = faults.strike(b"#010", b">7FFF\r".to_vec(), 0);
-        assert_eq!(struck, Some((351_000, b"#010\r>7FFF\r".to_vec())));
+        let reply = faults.apply(b"#010", b">7FFF\r".to_vec(), 0);
+        assert_eq!(reply, Some((351_000, b"#010\r>7FFF\r".to_vec())));
     }
 }

@@ -84,7 +84,7 @@ impl Port {
     /// Draws whether a request makes the port vanish.
     pub(super) fn may_lose(&mut self, line: &str, rng: &mut ChaCha8Rng, now_us: u64) {
         for (away_us, chances) in &self.losses {
-            if chances.strike(rng, now_us) {
+            if chances.occurs(rng, now_us) {
                 let window = Window {
                     from_us: now_us,
                     until_us: Some(now_us + away_us),
@@ -96,7 +96,7 @@ impl Port {
     }
 
     /// Returns the instant at which a lost port comes back; `None` while the port is present.
-    pub(super) fn back_us(&self, line: &str, now_us: u64) -> Option<u64> {
+    pub(super) fn restored_us(&self, line: &str, now_us: u64) -> Option<u64> {
         let away = self
             .lost
             .windows(line)

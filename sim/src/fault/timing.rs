@@ -65,7 +65,7 @@ impl Timing {
             .filter(|(_, window)| window.holds(now_us));
         let delay_us: u64 = delays.map(|(us, _)| us).sum();
         let late = self.late.iter().map(|(us, chances)| {
-            let strikes = chances.strike(rng, now_us);
+            let strikes = chances.occurs(rng, now_us);
             u64::from(strikes) * us
         });
         delay_us + late.sum::<u64>()
@@ -82,10 +82,10 @@ mod tests {
         let mut faults = LineFaults::none(1);
         faults.add("delay", Some("5")).unwrap();
         faults.add("delay", Some("2.5@1")).unwrap();
-        let mut extra = |now_us| faults.strike(b"#01", b">\r".to_vec(), now_us).unwrap().0;
+        let mut extra = |now_us| faults.apply(b"#01", b">\r".to_vec(), now_us).unwrap().0;
         assert_eq!((extra(0), extra(1_000_000)), (5_000, 7_500));
         faults.add("late", Some("1/350")).unwrap();
-        let (extra_us, bytes) = faults.strike(b"#01", b">\r".to_vec(), 0).unwrap();
+        let (extra_us, bytes) = faults.apply(b"#01", b">\r".to_vec(), 0).unwrap();
         assert_eq!((extra_us, bytes), (355_000, b">\r".to_vec()));
     }
 }

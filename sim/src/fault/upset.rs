@@ -96,10 +96,10 @@ impl Family for Upset {
 impl Upset {
     /// Draws an event that strikes a module just before it receives a request.
     pub(super) fn before_a_request(&self, rng: &mut ChaCha8Rng, now_us: u64) -> Option<Event> {
-        if self.reset.strike(rng, now_us) {
+        if self.reset.occurs(rng, now_us) {
             return Some(Event::Reset);
         }
-        self.trip.strike(rng, now_us).then_some(Event::Trip)
+        self.trip.occurs(rng, now_us).then_some(Event::Trip)
     }
 
     /// Removes and returns the next event that is due.

@@ -127,7 +127,7 @@ impl Chances {
     }
 
     /// Draws whether any of them strikes; draws nothing while no window is open.
-    pub(super) fn strike(&self, rng: &mut ChaCha8Rng, now_us: u64) -> bool {
+    pub(super) fn occurs(&self, rng: &mut ChaCha8Rng, now_us: u64) -> bool {
         self.0.iter().any(|(probability, window)| {
             window.holds(now_us) && *probability > 0.0 && rng.random::<f64>() < *probability
         })

@@ -206,7 +206,7 @@ impl AnalogIn {
                 "       "
             });
         } else if let Some(range) = self.range(channel) {
-            range.spell(self.readings[usize::from(channel)], format, text);
+            range.format_value(self.readings[usize::from(channel)], format, text);
         }
     }
 
@@ -258,7 +258,7 @@ impl AnalogIn {
             [b'8', b'C', digit] => match known(digit) {
                 Some(n) => {
                     let range = self.ranges[usize::from(n)];
-                    dcon::done_with(base.address, &format!("C{n}R{range:02X}"))
+                    dcon::done_data(base.address, &format!("C{n}R{range:02X}"))
                 }
                 None => dcon::refused(base.address),
             },

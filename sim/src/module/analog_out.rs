@@ -14,7 +14,7 @@
 //! value of six characters (`+5.000`) at a 7021: it gets `?AA` unless the table has `signed = true`.
 
 use super::base::{Commissioning, ModuleBase};
-use super::output::{Data, Model, Span, model, read, span, spell};
+use super::output::{Data, Model, Span, format_value, model, read, span};
 use super::ramp::{Ramp, nominal_rate};
 use super::range::Format;
 use super::tolerances::Tolerances;
@@ -192,8 +192,8 @@ impl AnalogOut {
 
     fn shown(&self, base: &ModuleBase, channel: usize, value: f64) -> Answer {
         let span = self.span(base, channel);
-        let text = spell(self.model, self.format(base), span, value);
-        dcon::done_with(base.address, &text)
+        let text = format_value(self.model, self.format(base), span, value);
+        dcon::done_data(base.address, &text)
     }
 
     fn present(&self, channel: usize) -> f64 {

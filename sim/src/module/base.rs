@@ -104,7 +104,7 @@ impl ModuleBase {
     }
 
     /// Checks whether the module answers at this address.
-    pub fn hears_at(&self, address: u8) -> bool {
+    pub fn is_addressed_by(&self, address: u8) -> bool {
         address == self.address || (self.init_grounded && address == 0)
     }
 
@@ -142,7 +142,7 @@ impl ModuleBase {
     }
 
     /// Simulates another product (a fault): other name, type 00.
-    pub fn pose_as(&mut self, name: &str) {
+    pub fn replace_product(&mut self, name: &str) {
         self.name = name.into();
         self.type_code = 0;
     }
@@ -161,8 +161,8 @@ impl ModuleBase {
                 let unread = std::mem::take(&mut self.reset_unread);
                 dcon::done_hex(address, u64::from(unread), 1)
             }
-            (b'$', b"F") => dcon::done_with(address, &self.firmware),
-            (b'$', b"M") => dcon::done_with(address, &self.name),
+            (b'$', b"F") => dcon::done_data(address, &self.firmware),
+            (b'$', b"M") => dcon::done_data(address, &self.name),
             (b'$', b"I") => dcon::done_hex(address, u64::from(!self.init_grounded), 1),
             (b'$', b"P") if self.newer => dcon::done_hex(address, 0, 1),
             // Modbus is not simulated: the module accepts DCON only.

@@ -171,7 +171,7 @@ impl Counter {
             _ => (&mut self.threshold, 2),
         };
         if rest.is_empty() {
-            return dcon::done_with(base.address, &format!("{:0width$}", values[place]));
+            return dcon::done_data(base.address, &format!("{:0width$}", values[place]));
         }
         let limits = if kind == b'0' { 2..=65_535 } else { 0..=50 };
         match dcon::decimal(rest) {

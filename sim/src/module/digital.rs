@@ -221,7 +221,7 @@ impl Digital {
         };
         let edges = at.plant.edges(at.module, channel);
         let count = (counter.start + edges - counter.from_edges) % 65_536;
-        dcon::done_with(base.address, &format!("{count:05}"))
+        dcon::done_data(base.address, &format!("{count:05}"))
     }
 
     fn clear_count(&mut self, base: &ModuleBase, digit: u8, at: &mut Terminals<'_>) -> Answer {

@@ -146,10 +146,10 @@ impl Module {
     }
 
     /// Checks whether a request for `address` at the host's rate reaches the module; a rate of `None` matches.
-    pub fn hears(&self, address: Address, host_baud: Option<u32>) -> bool {
+    pub fn is_reached_by(&self, address: Address, host_baud: Option<u32>) -> bool {
         let meant = match address {
             Address::Everybody => true,
-            Address::Module(address) => self.base.hears_at(address),
+            Address::Module(address) => self.base.is_addressed_by(address),
         };
         meant && host_baud.is_none_or(|baud| baud == self.base.baud())
     }
@@ -213,7 +213,7 @@ impl Module {
     }
 
     /// Processes `text` (without CR); returns the bytes of the reply, if any.
-    pub fn hear(&mut self, text: &[u8], plant: &mut dyn Plant, now_us: u64) -> Option<Vec<u8>> {
+    pub fn serve(&mut self, text: &[u8], plant: &mut dyn Plant, now_us: u64) -> Option<Vec<u8>> {
         let with_checksum = self.base.uses_checksum();
         let bare = if with_checksum {
             dcon::without_checksum(text)?

@@ -107,7 +107,7 @@ pub(super) fn read(model: Model, format: Format, span: Span, data: &[u8]) -> Dat
 }
 
 /// Formats a value of the output.
-pub(super) fn spell(model: Model, format: Format, span: Span, value: f64) -> String {
+pub(super) fn format_value(model: Model, format: Format, span: Span, value: f64) -> String {
     let fraction = (value - span.low) / (span.high - span.low);
     match format {
         Format::Hex => {

@@ -74,7 +74,7 @@ impl Range {
     }
 
     /// Appends the text of a reading in `format`.
-    pub fn spell(&self, fraction: f64, format: Format, text: &mut String) {
+    pub fn format_value(&self, fraction: f64, format: Format, text: &mut String) {
         use std::fmt::Write as _;
         let over = fraction.is_infinite();
         // Writing to a String cannot fail.
@@ -197,32 +197,32 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
 
-    fn spelt(range: Range, terminal: f64, format: Format) -> String {
+    fn formatted(range: Range, terminal: f64, format: Format) -> String {
         let mut text = String::new();
-        range.spell(range.fraction(terminal), format, &mut text);
+        range.format_value(range.fraction(terminal), format, &mut text);
         text
     }
 
     #[test]
     fn ten_volts_read_in_all_three_formats() {
         let range = voltage_range(0x08).unwrap();
-        assert_eq!(spelt(range, 5.0, Format::Engineering), "+05.000");
-        assert_eq!(spelt(range, 5.0, Format::Percent), "+050.00");
-        assert_eq!(spelt(range, 10.0, Format::Hex), "7FFF");
-        assert_eq!(spelt(range, -10.0, Format::Hex), "8000");
-        assert_eq!(spelt(range, -0.0001, Format::Engineering), "+00.000");
+        assert_eq!(formatted(range, 5.0, Format::Engineering), "+05.000");
+        assert_eq!(formatted(range, 5.0, Format::Percent), "+050.00");
+        assert_eq!(formatted(range, 10.0, Format::Hex), "7FFF");
+        assert_eq!(formatted(range, -10.0, Format::Hex), "8000");
+        assert_eq!(formatted(range, -0.0001, Format::Engineering), "+00.000");
     }
 
     #[test]
     fn voltage_saturates_and_current_shows_over_range() {
         assert_eq!(
-            spelt(voltage_range(0x08).unwrap(), 13.0, Format::Engineering),
+            formatted(voltage_range(0x08).unwrap(), 13.0, Format::Engineering),
             "+10.000"
         );
         let current = voltage_range(0x0D).unwrap();
-        assert_eq!(spelt(current, 21.0, Format::Engineering), "+9999.9");
-        assert_eq!(spelt(current, -21.0, Format::Percent), "-999.99");
-        assert_eq!(spelt(current, 21.0, Format::Hex), "7FFF");
+        assert_eq!(formatted(current, 21.0, Format::Engineering), "+9999.9");
+        assert_eq!(formatted(current, -21.0, Format::Percent), "-999.99");
+        assert_eq!(formatted(current, 21.0, Format::Hex), "7FFF");
     }
 
     #[test]
@@ -233,7 +233,7 @@ mod tests {
             };
             let full = range.full_scale / range.per_terminal;
             assert_eq!(
-                spelt(range, full, Format::Engineering).len(),
+                formatted(range, full, Format::Engineering).len(),
                 7,
                 "type {code:02X}"
             );

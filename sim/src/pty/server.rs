@@ -89,7 +89,7 @@ impl Server {
             // An I/O error of the terminal counts as a lost port.
             let _ = self.converse(master);
             self.socket.unplug();
-            self.stay_away();
+            self.wait_for_port();
             if self.stopped() {
                 return;
             }
@@ -120,7 +120,7 @@ impl Server {
     }
 
     /// Advances the rig while the port is lost.
-    fn stay_away(&self) {
+    fn wait_for_port(&self) {
         while self.away() && !self.stopped() {
             std::thread::sleep(IDLE);
             self.rig.advance(self.rig_us(Instant::now()));

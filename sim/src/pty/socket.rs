@@ -78,7 +78,7 @@ impl Socket {
     }
 
     /// Unblocks a writer whose host does not read.
-    pub(super) fn free_writer(&self) {
+    pub(super) fn unblock_writer(&self) {
         if let Some(slave) = &self.state().slave {
             let _ = tcflush(slave, QueueSelector::IFlush);
         }

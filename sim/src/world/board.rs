@@ -152,7 +152,7 @@ impl Board {
             self.source_live = false;
             self.switch_at_us = Some(self.now_us + self.table.source_lead_ms * 1000.0);
         } else {
-            self.throw(part);
+            self.set_switches(part);
         }
     }
 
@@ -167,7 +167,7 @@ impl Board {
     }
 
     /// Makes each further touch add this film to both coil probes together.
-    pub fn soil(&mut self, per_touch_ohm: f64) {
+    pub fn add_film_per_touch(&mut self, per_touch_ohm: f64) {
         self.film_per_touch_ohm = per_touch_ohm;
     }
 
@@ -248,7 +248,7 @@ impl Board {
         self.gates.expire(now);
         if self.switch_at_us.is_some_and(|at| at <= now) {
             self.switch_at_us = None;
-            self.throw(part);
+            self.set_switches(part);
         } else if self.source_due_us().is_some_and(|at| at <= now) {
             self.source_live = true;
             self.refresh(part);
@@ -256,7 +256,7 @@ impl Board {
     }
 
     /// Switches drive, selection and direction to the commanded state.
-    fn throw(&mut self, part: Option<&mut Specimen>) {
+    fn set_switches(&mut self, part: Option<&mut Specimen>) {
         let before = self.switches;
         self.switches = self.commanded();
         if before.select_no != self.switches.select_no {
@@ -273,7 +273,7 @@ impl Board {
         }
         let chosen = match self.commands.is_on(Out::EventNoBreak) {
             true => contact == Contact::No && !closed,
-            false => contact == self.selected() && closed && self.trips(part, contact),
+            false => contact == self.selected() && closed && self.detects_closed(part, contact),
         };
         if chosen {
             self.gates.event(self.now_us);
@@ -331,7 +331,7 @@ impl Board {
     fn coil_supply(&self, part: &Specimen) -> Supply {
         let meets = self.touching && part.pins().input();
         if self.driving && meets && !self.commands.is_on(Out::ReferenceCoil) {
-            return Supply::Volts(self.behind_probes_v(part.input_ohm()));
+            return Supply::Volts(self.coil_input_v(part.input_ohm()));
         }
         let suppression_v = if self.clamp_diode && meets {
             self.table.diode_v

@@ -46,7 +46,7 @@ impl Cylinder {
     }
 
     /// Checks whether the last command was the far end.
-    pub fn is_sent_far(&self) -> bool {
+    pub fn is_commanded_far(&self) -> bool {
         self.far
     }
 

@@ -111,7 +111,7 @@ impl Magazine {
     }
 
     /// Continues the counts of the magazine before, so that no lot part comes twice.
-    pub fn in_place_of(mut self, before: &Self) -> Self {
+    pub fn continuing(mut self, before: &Self) -> Self {
         (self.out, self.filled_at) = (before.out, before.out);
         self
     }

@@ -161,7 +161,7 @@ impl Mechanism {
         &mut self,
         load: impl FnOnce(&WorldFaults) -> Result<Magazine, E>,
     ) -> Result<(), E> {
-        self.magazine = load(&self.faults)?.in_place_of(&self.magazine);
+        self.magazine = load(&self.faults)?.continuing(&self.magazine);
         Ok(())
     }
 
@@ -246,7 +246,7 @@ impl Mechanism {
     }
 
     /// Lets a timed fault strike now.
-    pub fn strike(&mut self, fault: Fault, now_us: u64) {
+    pub fn inject(&mut self, fault: Fault, now_us: u64) {
         self.scheduled.push((now_us, Scheduled::Strike(fault)));
         self.schedule();
     }
@@ -326,7 +326,7 @@ impl Mechanism {
 
     /// Starts a stroke; returns false if that end was already commanded.
     fn send(&mut self, stroke: CylinderId, far: bool, now_us: u64) -> bool {
-        if far == self.at(stroke).is_sent_far() {
+        if far == self.at(stroke).is_commanded_far() {
             return false;
         }
         let scatter = self.draw.normal(1.0, self.table.scatter_pct / 100.0);
@@ -371,7 +371,7 @@ impl Mechanism {
     fn run_event(&mut self, what: Scheduled, now_us: u64) {
         match what {
             Scheduled::LiftOff => self.lift_off(now_us),
-            Scheduled::LetGo => self.let_go(now_us),
+            Scheduled::LetGo => self.release_part(now_us),
             Scheduled::Slip | Scheduled::TakenOut => self.drop_carried(now_us),
             Scheduled::Trip => self.axis.trip(now_us),
             Scheduled::Dark(beam) => self.dark.push(beam),

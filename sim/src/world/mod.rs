@@ -182,7 +182,7 @@ impl World {
     ///
     /// # Errors
     /// Fails when the fault is unknown, applies only to the start, or needs the number of a part.
-    pub fn strike(&mut self, name: &str, value: Option<f64>) -> Result<(), SimError> {
+    pub fn inject(&mut self, name: &str, value: Option<f64>) -> Result<(), SimError> {
         let Some(fault) = Fault::from_name(name) else {
             return Err(SimError::UnknownFault { name: name.into() });
         };
@@ -192,7 +192,7 @@ impl World {
             expected: expected.into(),
         };
         match (fault.kind(), value) {
-            (Kind::Timed, None) => self.mechanism.strike(fault, self.now_us),
+            (Kind::Timed, None) => self.mechanism.inject(fault, self.now_us),
             (Kind::Timed, Some(_)) => return Err(wrong("no value, since the fault strikes now")),
             (Kind::OfPart, Some(part)) => self.mechanism.add_part_fault(fault, part),
             (Kind::OfPart, None) => return Err(wrong("the number of a part")),
@@ -267,7 +267,7 @@ impl World {
                 self.board.drift(drift);
             }
             if let Some(film) = self.film.take() {
-                self.board.soil(film / 100.0);
+                self.board.add_film_per_touch(film / 100.0);
             }
         }
     }

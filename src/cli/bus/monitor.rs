@@ -5,7 +5,7 @@ use super::{PortArgs, print};
 use crate::cli::output::input;
 use anyhow::{Context, bail};
 use app::exit::Exit;
-use app::follower::{self, News, What};
+use app::follower::{self, Update, UpdateContent};
 use bus::{Direction, Entry, Meaning, Pace, Recorded, arrow, escaped, open_serial, unescaped};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -97,11 +97,11 @@ async fn watch(args: &MonitorArgs) -> anyhow::Result<()> {
     listen(args, &PortArgs { port: path.clone() }).await
 }
 
-/// Returns the row of a message of a running controller, without line end.
-fn row(news: &News, level: Level) -> String {
+/// One row of a running controller, its end left off.
+fn row(news: &Update, level: Level) -> String {
     let (seconds, line) = (news.at_us as f64 / 1e6, &news.line);
-    let What::Message(message) = &news.what else {
-        return format!("{seconds:>14.6} {line} - messages were lost here");
+    let UpdateContent::Message(message) = &news.what else {
+        return format!("{seconds:>14.6} {line} - more has passed than could be seen");
     };
     let shown = match level {
         Level::Bytes => unescaped(&message.text)
@@ -146,7 +146,7 @@ async fn listen(args: &MonitorArgs, port: &PortArgs) -> anyhow::Result<()> {
 fn direction(frame: &[u8]) -> Direction {
     match frame.first() {
         Some(b'#' | b'$' | b'%' | b'@' | b'~') => Direction::Sent,
-        Some(b'!' | b'>' | b'?') => Direction::Heard,
+        Some(b'!' | b'>' | b'?') => Direction::Received,
         Some(_) | None => Direction::Stray,
     }
 }
@@ -191,13 +191,13 @@ mod tests {
     use app::follower::Message;
 
     #[test]
-    fn a_level_sets_the_detail_of_a_message() {
-        let news = |what| News {
+    fn a_level_says_how_much_of_a_message_is_shown() {
+        let news = |what| Update {
             at_us: 4,
             line: "motion".to_owned(),
             what,
         };
-        let message = news(What::Message(Message {
+        let message = news(UpdateContent::Message(Message {
             at_us: 4,
             way: "<".to_owned(),
             text: ">3E\\r".to_owned(),
@@ -208,7 +208,7 @@ mod tests {
         let frames = row(&message, Level::Frames);
         assert_eq!(frames, "      0.000004 motion < >3E\\r");
         assert!(row(&message, Level::Meaning).ends_with("accepted"));
-        let gap = row(&news(What::Gap), Level::Meaning);
-        assert!(gap.ends_with("motion - messages were lost here"));
+        let gap = row(&news(UpdateContent::Gap), Level::Meaning);
+        assert!(gap.ends_with("motion - more has passed than could be seen"));
     }
 }

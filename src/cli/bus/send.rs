@@ -55,8 +55,8 @@ pub(super) async fn run(args: &SendArgs) -> anyhow::Result<Exit> {
         return print_unchanged(args, &found);
     }
     let reply = send_raw(&mut port, &settings, Pace::real(), &request).await?;
-    let mut meanings = dcon::understand(&request, &reply.bytes, args.checksum);
-    meanings.retain(|(command, _)| family.is_none_or(|family| family.knows(command)));
+    let mut meanings = dcon::interpret(&request, &reply.bytes, args.checksum);
+    meanings.retain(|(command, _)| family.is_none_or(|family| family.has_command(command)));
     let broadcast = text.ends_with(b"**");
     let good = !reply.more && meanings.iter().any(|(_, reply)| reply.is_ok());
     let mut words: Vec<String> = meanings
@@ -92,7 +92,7 @@ fn transcript(request: &[u8], reply: &RawReply, words: &[String], broadcast: boo
             "  sent to all; no module answers".to_owned()
         } else {
             format!(
-                "  no reply within {taken_ms:.1} ms: no module with this address, rate and checksum knows this command"
+                "  no reply within {taken_ms:.1} ms: no module has this address, rate, checksum and command"
             )
         });
     } else {
@@ -109,11 +109,11 @@ fn transcript(request: &[u8], reply: &RawReply, words: &[String], broadcast: boo
     rows.join("\n") + "\n"
 }
 
-/// Returns the command of an unambiguous text.
-fn unambiguous(text: &[u8], family: Option<Family>) -> Option<Command> {
-    let mut readings = dcon::readings(text);
-    readings.retain(|command| family.is_none_or(|family| family.knows(command)));
-    match readings[..] {
+/// What the text means, if that is one thing only.
+fn lone_reading(text: &[u8], family: Option<Family>) -> Option<Command> {
+    let mut commands = dcon::decode_request(text);
+    commands.retain(|command| family.is_none_or(|family| family.has_command(command)));
+    match commands[..] {
         [command] => Some(command),
         _ => None,
     }
@@ -162,7 +162,7 @@ fn checked(command: &str) -> anyhow::Result<&[u8]> {
             "COMMAND: found \"{command}\", expected two hexadecimal digits in capitals behind its first character, or **"
         );
     }
-    if let Some(what) = dcon::factory(text) {
+    if let Some(what) = dcon::factory_command(text) {
         bail!("COMMAND: \"{command}\" is {what}: only the factory may do that, it is never sent");
     }
     Ok(text)

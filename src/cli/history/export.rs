@@ -79,7 +79,7 @@ fn spreadsheet(
         "a spreadsheet needs a file, found -"
     );
     let name = file.display();
-    let bar = progress(Some(archive.how_many(filter)?), PIECES);
+    let bar = progress(Some(archive.count_parts(filter)?), PIECES);
     let language = args.lang.language();
     let mut workbook = export::spreadsheet(archive, filter, parameters, language, || bar.inc(1))?;
     bar.finish_and_clear();

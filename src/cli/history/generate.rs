@@ -1,7 +1,7 @@
 //! `history generate`: a random history as large as weeks of a plant, see [`app::generate`].
 
 use app::exit::Exit;
-use app::generate::{BATCH, Wanted, generate};
+use app::generate::{BATCH, GenerateOptions, generate};
 use app::progress::{PIECES, progress};
 use clap::Args;
 use history::Moment;
@@ -26,7 +26,7 @@ pub(super) struct GenerateArgs {
 }
 
 pub(super) fn run(config: &Path, db: &Path, args: &GenerateArgs) -> anyhow::Result<Exit> {
-    let wanted = Wanted {
+    let wanted = GenerateOptions {
         parts: args.parts,
         seed: args.seed,
         recipe: args.recipe.clone(),

@@ -1,39 +1,39 @@
-//! The factors of a calibration by name, and whether those found again agree with those stored.
+//! Compares the factors of two calibrations of the same rig, one by one.
 
 use machine::dut::Calibration;
 use std::fmt;
 use units::Unit;
 
-/// Coverage factor of what is told: about 95 %.
+/// Coverage factor of printed uncertainties: about 95 %.
 pub const K: f64 = 2.0;
 
-/// Coverage factor of a comparison. Fourteen factors have to agree at once: at 2 every second rig that has not changed
-/// would fail (1 - 0.95^14), at 3 one in thirty (1 - 0.9973^14), and terms that both measurements share make it fewer.
-pub const K_OF_ALL: f64 = 3.0;
+/// Coverage factor of a comparison. All fourteen factors must agree: with 2, every second unchanged rig would fail (1 -
+/// 0.95^14); with 3, one in thirty (1 - 0.9973^14), and fewer because both measurements share error terms.
+pub const K_JOINT: f64 = 3.0;
 
-/// A factor found again.
+/// A factor measured again, beside the stored one.
 #[derive(Debug)]
-pub struct Compared {
-    /// Name in the table.
+pub struct FactorComparison {
+    /// Name of the factor in the printed table.
     pub name: &'static str,
-    /// Unit of the figures.
+    /// Unit of `found`, `expected` and `expanded_u`.
     pub unit: Unit,
-    /// Measured now.
+    /// Value measured now.
     pub found: f64,
-    /// Stored.
+    /// Stored value.
     pub expected: f64,
-    /// Expanded uncertainty of both together.
+    /// Expanded uncertainty of the difference, coverage factor [`K_JOINT`].
     pub expanded_u: f64,
 }
 
-impl Compared {
-    /// Found and stored agree; NaN never does.
-    pub fn holds(&self) -> bool {
+impl FactorComparison {
+    /// Checks that both values agree within the uncertainty; NaN never agrees.
+    pub fn agrees(&self) -> bool {
         (self.found - self.expected).abs() <= self.expanded_u
     }
 }
 
-impl fmt::Display for Compared {
+impl fmt::Display for FactorComparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
@@ -43,25 +43,21 @@ impl fmt::Display for Compared {
             self.expected,
             self.expanded_u,
             self.unit,
-            if self.holds() { "holds" } else { "FAILED" }
+            if self.agrees() { "agrees" } else { "FAILED" }
         )
     }
 }
 
-/// Factor by factor.
-pub fn compare(found: &Calibration, expected: &Calibration) -> Vec<Compared> {
-    let pairs = found
-        .facts()
-        .factors
-        .into_iter()
-        .zip(expected.facts().factors);
+/// Pairs the factors of both calibrations, in the order of the table.
+pub fn compare(found: &Calibration, expected: &Calibration) -> Vec<FactorComparison> {
+    let pairs = found.factors().into_iter().zip(expected.factors());
     pairs
-        .map(|(found, expected)| Compared {
+        .map(|(found, expected)| FactorComparison {
             name: found.name,
             unit: found.unit,
             found: found.factor.value,
             expected: expected.factor.value,
-            expanded_u: K_OF_ALL * found.factor.u.hypot(expected.factor.u),
+            expanded_u: K_JOINT * found.factor.u.hypot(expected.factor.u),
         })
         .collect()
 }

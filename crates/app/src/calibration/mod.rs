@@ -1,9 +1,9 @@
-//! The factors of a rig from its references and golden parts, or their verification.
+//! Determines the calibration factors of a rig from its references and reference parts, or verifies them.
 //!
-//! Both measure as a run does before its lot, with no part of a lot after the golden ones. Calibrating stores
-//! what was found. A verification stores no factors: each found factor must lie within the combined expanded
-//! uncertainty (k = 3, for fourteen must hold at once) of the stored one, and the stored calibration is marked with
-//! the outcome. A rig whose calibration ran out or failed takes no lot until it was calibrated again.
+//! Both measure the reference parts as a run does before its lot, and no part of a lot after them. A calibration stores
+//! the factors found. A verification stores none: each factor found must lie within the combined expanded uncertainty
+//! of the stored one (k = 3, because fourteen must agree at once), and the history marks the stored calibration with
+//! the outcome. A rig whose calibration is overdue or failed takes no lot until a new calibration.
 
 mod compare;
 
@@ -12,36 +12,36 @@ use super::lot::{Purpose, Subscriber};
 use super::order::{Files, LotOrder};
 use super::source::RigSource;
 use anyhow::{Context, bail};
-pub use compare::{Compared, K, K_OF_ALL};
+pub use compare::{FactorComparison, K, K_JOINT};
 use config::{Plant, load_recipe};
 use history::{CalibrationRecord, Identity, Store, snapshot_hash};
 use machine::dut::Calibration;
 use std::path::Path;
 use std::sync::OnceLock;
 
-/// Lot that the golden parts are recorded in.
+/// Lot under which the history keeps the reference parts.
 const LOT: &str = "calibration";
 
-/// What a calibration has come to.
+/// Outcome of a calibration or a verification.
 #[derive(Debug)]
 pub enum Calibrated {
-    /// New factors are stored.
+    /// A calibration: the history holds the new factors.
     Stored(Box<Calibration>),
-    /// The stored factors were compared with what was found.
+    /// A verification: the stored factors beside those found now.
     Verified {
-        /// Factor by factor.
-        compared: Vec<Compared>,
-        /// Until when the stored ones are valid.
+        /// One entry per factor.
+        compared: Vec<FactorComparison>,
+        /// Instant at which the stored factors expire, microseconds since 1970 UTC.
         due_at_us: i64,
     },
-    /// The run ended before anything was found.
-    Not(Exit),
+    /// The run ended without factors.
+    Ended(Exit),
 }
 
-/// Calibrates the rig, or verifies its calibration. The coil voltage of `recipe` chooses the golden parts.
+/// Calibrates the rig, or verifies its calibration. The coil voltage of `recipe` selects the reference parts.
 ///
 /// # Errors
-/// Bad input: a recipe without a coil, no golden part of its voltage, nothing to verify.
+/// Fails on bad input: a recipe without a coil, no reference part of its voltage, no valid calibration to verify.
 pub fn calibrate(
     files: &Files,
     source: &RigSource,
@@ -50,7 +50,7 @@ pub fn calibrate(
 ) -> anyhow::Result<Calibrated> {
     let nominal_v = reference_voltage(&files.config, recipe)?;
     let stored = match verify {
-        true => Some(to_verify(
+        true => Some(valid_calibration(
             &open(&files.db)?,
             source.is_simulated(),
             nominal_v,
@@ -66,17 +66,17 @@ pub fn calibrate(
     let mut both = (OnceLock::new(), outer);
     match super::run_lot(files, source, &order, Purpose::Calibration, &mut both)? {
         Exit::Done => {}
-        exit => return Ok(Calibrated::Not(exit)),
+        exit => return Ok(Calibrated::Ended(exit)),
     }
     let Some(found) = both.0.into_inner() else {
         let cause = Cause::not_calibrated();
         tracing::error!("{}", cause.text);
-        return Ok(Calibrated::Not(Exit::Trouble(cause)));
+        return Ok(Calibrated::Ended(Exit::Trouble(cause)));
     };
     match stored {
         Some((record, expected)) => {
             let compared = compare::compare(&found, &expected);
-            let verified = compared.iter().all(Compared::holds);
+            let verified = compared.iter().all(FactorComparison::agrees);
             let due_at_us = record.due_at_us;
             open(&files.db)?.save_calibration(&CalibrationRecord { verified, ..record })?;
             Ok(Calibrated::Verified {
@@ -88,15 +88,15 @@ pub fn calibrate(
     }
 }
 
-/// Nominal voltage of the coil, of which there is a golden part.
+/// Returns the nominal coil voltage of the recipe; fails without a reference part of that voltage.
 fn reference_voltage(config: &Path, recipe: &str) -> anyhow::Result<f64> {
     let plant = Plant::load(config)?;
     let Some(nominal_v) = load_recipe(config, recipe)?.device.part().nominal_v else {
         bail!("--recipe {recipe}: found a kind that needs no calibration, expected a relay");
     };
-    if plant.golden.of_nominal(nominal_v).next().is_none() {
+    if plant.reference_parts.of_nominal(nominal_v).next().is_none() {
         bail!(
-            "{}: found no golden part of {nominal_v} V, expected at least 3",
+            "{}: found no reference part of {nominal_v} V, expected at least 3",
             config.join("golden.toml").display()
         );
     }
@@ -107,7 +107,7 @@ fn open(db: &Path) -> anyhow::Result<Store> {
     Ok(Store::open(db, &Identity::of_this_program())?)
 }
 
-fn to_verify(
+fn valid_calibration(
     store: &Store,
     simulated: bool,
     nominal_v: f64,
@@ -141,18 +141,18 @@ fn keep(db: &Path, found: Calibration) -> anyhow::Result<Calibrated> {
     Ok(Calibrated::Stored(Box::new(found)))
 }
 
-/// Microseconds since 1970 as a date in UTC.
+/// Formats microseconds since 1970 as a date in UTC.
 ///
 /// # Errors
-/// No date of the calendar.
+/// Fails outside the calendar's range.
 pub fn date(us: i64) -> anyhow::Result<String> {
     let at = jiff::Timestamp::from_microsecond(us).context("date of the calibration")?;
     Ok(at.strftime("%Y-%m-%dT%H:%M:%SZ").to_string())
 }
 
-/// Why a rig may not take a lot on its stored calibration; nothing to say when there is none yet, as the run
-/// then calibrates first.
-pub(super) fn why_not(db: &Path, nominal_v: f64) -> anyhow::Result<Option<String>> {
+/// Returns why the stored calibration allows no lot; `None` when it is valid, or absent (the run then calibrates
+/// first).
+pub(super) fn refusal(db: &Path, nominal_v: f64) -> anyhow::Result<Option<String>> {
     let Some(record) = open(db)?.latest_calibration_of(false, nominal_v)? else {
         return Ok(None);
     };

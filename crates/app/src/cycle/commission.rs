@@ -1,5 +1,5 @@
-//! Compares every module's name and settings with the wiring before anything moves. Outputs are still safe, so no
-//! emergency stop waits, and each line repeats a question as often as the bus settings allow.
+//! Compares every module's name and settings with the wiring before anything moves. The outputs are still safe, so no
+//! emergency stop waits, and each line repeats a request as often as the bus settings allow.
 
 use super::traffic::{Purpose, Traffic};
 use bus::Pace;
@@ -10,24 +10,24 @@ use machine::rig::wiring::{ModuleId, Wiring};
 use machine::station::trouble::Alarm;
 use std::collections::BTreeMap;
 
-/// What a life of the controller that was cut off has left in a module.
-struct Left {
+/// A setting that an interrupted run of the controller left in a module.
+struct Leftover {
     module: ModuleId,
-    what: What,
-    /// What puts it right; it is written to the EEPROM of the module.
+    what: Setting,
+    /// Commands that restore the setting; they write to the module's EEPROM.
     remedies: Vec<Command>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum What {
-    /// The host watchdog has tripped: the module stands at its safe outputs and has switched its watchdog off.
+enum Setting {
+    /// The host watchdog has tripped: the outputs are at their safe values and the watchdog is off.
     Tripped,
     /// The converter still has the channel mask of the references.
     Masked,
 }
 
-/// Asks everything, line by line in parallel; the first disagreement or silent module is the alarm. What the
-/// controller itself left behind when it was cut off is put right, and told.
+/// Reads all settings, all lines in parallel; returns the first mismatch or silent module as an alarm. Restores and
+/// logs what an interrupted run of the controller left behind.
 pub async fn verify(
     wiring: &Wiring,
     pace: &Pace,
@@ -39,32 +39,32 @@ pub async fn verify(
         return Ok(Vec::new());
     }
     for one in &left {
-        put_right(wiring, pace, traffic, one).await?;
+        restore(wiring, pace, traffic, one).await?;
     }
     let still = ask(wiring, pace, traffic).await?;
     traffic.start_scan();
-    let name = |one: &Left| wiring.module(one.module).name.clone();
+    let name = |one: &Leftover| wiring.module(one.module).name.clone();
     if let Some(one) = still.first() {
         let what = match one.what {
-            What::Tripped => "tripped",
-            What::Masked => "masked",
+            Setting::Tripped => "tripped",
+            Setting::Masked => "masked",
         };
-        return Err(Alarm::bus(&format!("{} stays {what}", name(one))));
+        return Err(Alarm::bus(&format!("{} is still {what}", name(one))));
     }
-    let names = |what: What| {
+    let names = |what: Setting| {
         let those: Vec<String> = left.iter().filter(|it| it.what == what).map(name).collect();
         (!those.is_empty()).then(|| those.join(", "))
     };
-    let tripped = names(What::Tripped).map(|names| Alarm::watchdog_tripped(&names));
-    let masked = names(What::Masked).map(|names| Alarm::calibration_cut_off(&names));
+    let tripped = names(Setting::Tripped).map(|names| Alarm::watchdog_tripped(&names));
+    let masked = names(Setting::Masked).map(|names| Alarm::calibration_cut_off(&names));
     Ok(tripped.into_iter().chain(masked).collect())
 }
 
-async fn put_right(
+async fn restore(
     wiring: &Wiring,
     pace: &Pace,
     traffic: &mut Traffic,
-    left: &Left,
+    left: &Leftover,
 ) -> Result<(), Alarm> {
     for command in &left.remedies {
         let line = wiring.module(left.module).line;
@@ -84,8 +84,8 @@ async fn put_right(
     Ok(())
 }
 
-/// A disagreement that the controller itself has left behind.
-fn left_behind(wiring: &Wiring, module: ModuleId, mismatch: &Mismatch) -> Option<Left> {
+/// Returns the leftover behind a mismatch; `None` when the controller did not cause it.
+fn leftover(wiring: &Wiring, module: ModuleId, mismatch: &Mismatch) -> Option<Leftover> {
     let wired = wiring.module(module);
     let of_references = wiring.mask_of(module, &dut::reference_inputs(wiring));
     let masked = of_references != 0 && mismatch.found == format!("{of_references:02X}");
@@ -95,22 +95,22 @@ fn left_behind(wiring: &Wiring, module: ModuleId, mismatch: &Mismatch) -> Option
             timeout_tenths: (wiring.bus.host_watchdog_ms / 100.0).round() as u8,
         };
         let both = [Common::ClearWatchdogStatus, enable];
-        (What::Tripped, both.map(|it| it.to(wired.address)).into())
+        (Setting::Tripped, both.map(|it| it.to(wired.address)).into())
     } else if mismatch.what == "channel mask" && masked {
-        (What::Masked, mismatch.remedy.into_iter().collect())
+        (Setting::Masked, mismatch.remedy.into_iter().collect())
     } else {
         return None;
     };
-    Some(Left {
+    Some(Leftover {
         module,
         what,
         remedies,
     })
 }
 
-/// Every question once; what was left behind.
-async fn ask(wiring: &Wiring, pace: &Pace, traffic: &mut Traffic) -> Result<Vec<Left>, Alarm> {
-    let mut all: Vec<Left> = Vec::new();
+/// Sends every request once and returns the leftovers found.
+async fn ask(wiring: &Wiring, pace: &Pace, traffic: &mut Traffic) -> Result<Vec<Leftover>, Alarm> {
+    let mut all: Vec<Leftover> = Vec::new();
     let checks = verification(wiring);
     let mut pending = BTreeMap::new();
     for (index, check) in checks.iter().enumerate() {
@@ -142,10 +142,10 @@ async fn ask(wiring: &Wiring, pace: &Pace, traffic: &mut Traffic) -> Result<Vec<
                 .map_err(|error| Alarm::bus(&format!("{error} ({} tries)", answer.tries_used)))?;
             let check = &checks[index];
             if let Some(mismatch) = judge(wiring, check, &reply) {
-                let Some(left) = left_behind(wiring, check.module, &mismatch) else {
+                let Some(left) = leftover(wiring, check.module, &mismatch) else {
                     return Err(Alarm::bus(&mismatch.to_string()));
                 };
-                let known = |it: &Left| it.module == left.module && it.what == left.what;
+                let known = |it: &Leftover| it.module == left.module && it.what == left.what;
                 if !all.iter().any(known) {
                     all.push(left);
                 }
@@ -153,6 +153,6 @@ async fn ask(wiring: &Wiring, pace: &Pace, traffic: &mut Traffic) -> Result<Vec<
         }
     }
     let open: usize = pending.values().map(Vec::len).sum();
-    assert_eq!(open, 0, "a question without its answer");
+    assert_eq!(open, 0, "a request without its answer");
     Ok(all)
 }

@@ -1,4 +1,4 @@
-//! What a run leaves for the history.
+//! Events of a run for the history.
 
 use machine::dut::Calibration;
 use machine::handling::inside::Inside;
@@ -11,31 +11,31 @@ use machine::station::turn::Checked;
 use machine::view::AnsweredOrder;
 use units::RigTime;
 
-/// What a run leaves for the history, in the order it happened.
+/// An event of a run, sent in the order of occurrence.
 #[derive(Debug, Clone)]
 pub enum Event {
-    /// The outer machine has entered a state.
+    /// The outer machine entered a state.
     State(packml::State),
-    /// A part was judged.
+    /// A part has its verdict.
     Judged(Box<Judged>),
-    /// Its beam saw it.
+    /// The beam of a bin saw the part.
     Landed(Landed),
-    /// It left the nest.
+    /// The part left the nest.
     Left(NestExit),
-    /// A judged part goes to retest all the same.
+    /// A judged part goes to retest despite its verdict.
     Interrupted(Interrupted),
-    /// An alarm was raised.
+    /// An alarm came, at this rig time.
     Alarm(Alarm, RigTime),
-    /// The list of alarms that stand has changed.
-    Standing(Vec<ListedAlarm>, RigTime),
-    /// Calibration and golden parts are complete.
+    /// The list of active or unacknowledged alarms changed.
+    Standing(Vec<Standing>, RigTime),
+    /// Calibration and reference parts are complete.
     Calibrated(Box<Calibration>),
-    /// A golden check has come out.
+    /// A reference check has its result.
     Checked(Checked, RigTime),
-    /// An order was answered.
+    /// An order has its answer.
     Ordered(Box<AnsweredOrder>, RigTime),
-    /// A part has moved on inside: what the next run has to look for, and the uses of what wears since the start.
+    /// Parts moved inside the machine: contents for the next run, and uses of wearing parts since the start.
     Inside(Inside, Uses),
-    /// The lot itself began.
+    /// The lot itself began, after calibration and reference parts.
     LotBegan(RigTime),
 }

@@ -1,9 +1,9 @@
-//! From the bodies of the guard to the picture of the machine.
+//! Converts the bodies of the guard into the picture of the machine.
 
 use machine::guard::{Actuator, Drawn};
 use machine::view::{Mimic, MimicBody};
 
-/// The scene for a screen.
+/// Returns the scene for a screen.
 #[must_use]
 pub fn mimic(drawing: Vec<Drawn>) -> Mimic {
     let bodies = drawing.into_iter().map(|body| MimicBody {

@@ -1,4 +1,4 @@
-//! Orders of screens: taken in, handed to the station, answered; and motions by hand.
+//! Receives orders of screens, hands them to the station, returns the answers; drives motions by hand.
 
 use super::{Cycle, Event, publish};
 use machine::handling::moves::Move;
@@ -8,17 +8,17 @@ use machine::view::{self, AnsweredOrder, By, OrderRequest};
 use texts::Lang;
 use units::RigTime;
 
-/// Origin of what is ordered with a button at the machine.
+/// Origin of an order given with a button at the machine.
 pub const PANEL: &str = "panel";
 
 impl Cycle {
-    /// Orders that have come in; one that is denied or no order is answered at once.
+    /// Collects new orders; answers denied and unreadable ones at once.
     pub(super) fn orders(&mut self, now: RigTime) -> Vec<Order> {
         while let Ok(asked) = self.links.orders.try_recv() {
-            self.asked.push(asked);
+            self.pending_orders.push(asked);
         }
         let mut orders = Vec::new();
-        for asked in std::mem::take(&mut self.asked) {
+        for asked in std::mem::take(&mut self.pending_orders) {
             let denied = asked
                 .denied
                 .as_ref()
@@ -26,27 +26,28 @@ impl Cycle {
             match denied.map_or_else(|| publish::read(&asked.order), Err) {
                 Ok(order) => {
                     orders.push(order);
-                    self.asked.push(asked);
+                    self.pending_orders.push(asked);
                 }
-                Err(why) => self.say(asked, Err(why), now),
+                Err(why) => self.send_answer(asked, Err(why), now),
             }
         }
-        assert_eq!(orders.len(), self.asked.len(), "an order lost its way back");
+        let pending = self.pending_orders.len();
+        assert_eq!(orders.len(), pending, "an order without its request");
         orders
     }
 
-    pub(super) fn answer(&mut self, output: &mut TurnOutput, now: RigTime) {
-        let (orders, answers) = (self.asked.len(), output.answers.len());
-        assert_eq!(orders, answers, "orders without their answers");
-        let asked: Vec<_> = self.asked.drain(..).collect();
-        for (asked, answer) in asked.into_iter().zip(output.answers.drain(..)) {
-            self.say(asked, answer, now);
+    pub(super) fn answer(&mut self, wants: &mut Wants, now: RigTime) {
+        let (orders, answers) = (self.pending_orders.len(), wants.answers.len());
+        assert_eq!(orders, answers, "orders and answers differ in number");
+        let asked: Vec<_> = self.pending_orders.drain(..).collect();
+        for (asked, answer) in asked.into_iter().zip(wants.answers.drain(..)) {
+            self.send_answer(asked, answer, now);
         }
     }
 
-    /// Buttons at the machine have no screen to answer to: the audit hears of them.
-    pub(super) fn pressed(&self, output: &mut TurnOutput, now: RigTime) {
-        for (command, answer) in output.pressed.drain(..) {
+    /// Records the orders of the machine's buttons, which have no screen to answer.
+    pub(super) fn pressed(&self, wants: &mut Wants, now: RigTime) {
+        for (command, answer) in wants.pressed.drain(..) {
             let answered = AnsweredOrder {
                 order: view::Order {
                     order: command.name().to_owned(),
@@ -58,30 +59,30 @@ impl Cycle {
                 },
                 refused: answer.err().map(|why| why.message().say(Lang::En)),
             };
-            self.tell(Event::Ordered(Box::new(answered), now));
+            self.send(Event::Ordered(Box::new(answered), now));
         }
     }
 
-    /// Sends the answer to the sender of the order and records it in the audit.
-    fn say(&self, asked: OrderRequest, answer: Result<(), Refused>, now: RigTime) {
+    /// Answers the sender and records the order with its answer.
+    fn send_answer(&self, asked: OrderRequest, answer: Result<(), Refused>, now: RigTime) {
         let said = answer.map_err(|why| why.message());
         let answered = AnsweredOrder {
             order: asked.order.clone(),
             by: asked.by.clone(),
             refused: said.as_ref().err().map(|why| why.say(Lang::En)),
         };
-        self.tell(Event::Ordered(Box::new(answered), now));
-        asked.answer(said);
+        self.send(Event::Ordered(Box::new(answered), now));
+        asked.say(said);
     }
 
-    /// A motion by hand: refused is an answer to who asked, not an alarm.
+    /// Drives a motion by hand; a refusal is the answer to the order, not an alarm.
     pub(super) fn jog(&mut self, movement: Move, now: RigTime) -> Result<(), Refused> {
         let situation = self.station.situation(now, &self.image);
         let cleared = self
             .guard
             .clear(&self.station.motion(movement), &situation)
             .map_err(|refusal| {
-                self.refused = Some(self.shown_refused(movement, &situation, &refusal));
+                self.refused = Some(self.refused_motion(movement, &situation, &refusal));
                 Refused::Collision(refusal.to_string())
             })?;
         self.outputs

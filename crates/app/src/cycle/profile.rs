@@ -1,26 +1,25 @@
-//! Where the wall time of the control cycle goes.
+//! Measures the wall time of each phase of the control cycle.
 
 use std::time::Instant;
 
-/// Wall time of the phases of all turns, seconds; what is left of a run is bus, history and, where there
-/// is one, the simulator.
+/// Wall time of each phase over all turns, seconds; bus, history and simulator take the rest of the run.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Profile {
-    /// Turns.
+    /// Number of turns.
     pub turns: u64,
-    /// Answers into the image.
+    /// Storing answers in the image.
     pub scan_s: f64,
-    /// The station.
+    /// Stepping the station.
     pub step_s: f64,
-    /// The guard.
+    /// Clearing motions by the guard.
     pub clear_s: f64,
-    /// Outputs to commands.
+    /// Turning outputs into commands.
     pub apply_s: f64,
-    /// The view for screens.
+    /// Building the view for screens.
     pub publish_s: f64,
 }
 
-/// Adds the time since `from` to `total` and begins anew.
+/// Adds the time since `from` to `total` and resets `from` to now.
 pub(super) fn lap(total: &mut f64, from: &mut Instant) {
     let now = Instant::now();
     *total += now.duration_since(*from).as_secs_f64();

@@ -1,4 +1,4 @@
-//! The view of the machine, made from station, image and outputs; and orders in words for the station.
+//! Builds the view of the machine from station, image and outputs; parses orders for the station.
 
 use super::Cycle;
 use machine::dut::verdict::Bin;
@@ -16,10 +16,10 @@ use std::collections::BTreeMap;
 use texts::Lang;
 use units::{RigTime, Span};
 
-/// Least time between two views.
+/// Shortest time between two views.
 pub const PACE: Span = Span::ms(50);
 
-/// An order in words; the error says what was expected.
+/// Parses an order; the error says what the station expects.
 pub fn read(order: &view::Order) -> Result<Order, Refused> {
     let expected = |member, known: Vec<&'static str>, found: Option<&str>| Refused::UnknownWord {
         member,
@@ -66,14 +66,14 @@ pub fn read(order: &view::Order) -> Result<Order, Refused> {
 }
 
 impl Cycle {
-    /// Screens see a turn only when one is looking, and at most one in [`PACE`].
+    /// Publishes the view at most once per [`PACE`], and only while a screen is connected.
     pub(super) fn publish(&mut self, now: RigTime, last: bool) {
         if self.links.view.receiver_count() == 0 || (now < self.publish_at && !last) {
             return;
         }
         self.publish_at = now + PACE;
         let mut machine = self.machine(now);
-        machine.jogs = self.foreseen(now);
+        machine.jogs = self.jog_preview(now);
         let (station, epoch_us) = (&self.station, self.links.epoch_us);
         let alarms = lines(station, epoch_us);
         let at_us = jiff::Timestamp::now().as_microsecond();
@@ -84,7 +84,7 @@ impl Cycle {
             view.doing = activity.code();
             view.stage = activity.stage();
             view.inside = station.ledger().inside();
-            // Between lots what the last one has come to stays on the screen.
+            // Between lots the screen keeps the results of the last lot.
             if !station.is_between_lots() {
                 view.came_in = station.ledger().came_in;
                 view.went_out = station.ledger().went_out;
@@ -268,7 +268,7 @@ mod tests {
     use texts::Lang;
 
     #[test]
-    fn every_signal_motion_actuator_mode_and_state_has_a_word_on_the_screen() {
+    fn every_signal_motion_mode_and_state_has_a_text() {
         let signals = DigitalIn::ALL.iter().map(|it| it.name());
         let signals = signals.chain(DigitalOut::ALL.iter().map(|it| it.name()));
         let keys = (signals.map(|it| format!("signal-{it}")))
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn every_word_of_an_order_is_understood() {
+    fn every_order_parses() {
         for word in ORDERS {
             let order = Order {
                 order: word.into(),
@@ -301,7 +301,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_without_its_member_says_what_was_expected() {
+    fn an_order_without_its_argument_names_what_is_expected() {
         for (word, expected) in [
             ("mode", "production"),
             ("jog", "pusher_extend"),
@@ -320,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_shelved_without_a_reason() {
+    fn shelving_requires_a_reason() {
         for reason in [None, Some(" ".to_owned())] {
             let order = Order {
                 order: "shelve".into(),

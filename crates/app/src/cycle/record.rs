@@ -1,54 +1,54 @@
-//! What a turn leaves for the record, event by event.
+//! Sends the events of a turn to the record.
 
 use super::{Cycle, Event};
 use machine::station::turn::TurnOutput;
 use units::RigTime;
 
 impl Cycle {
-    /// Everything that this turn has to tell, in order.
-    pub(super) fn record(&mut self, now: RigTime, output: &mut TurnOutput) {
-        for judged in output.record.parts.judged.drain(..) {
-            self.tell(Event::Judged(Box::new(judged)));
+    /// Sends all events of this turn, in order of occurrence.
+    pub(super) fn record(&mut self, now: RigTime, wants: &mut Wants) {
+        for judged in wants.record.parts.judged.drain(..) {
+            self.send(Event::Judged(Box::new(judged)));
         }
-        for left in output.record.parts.left.drain(..) {
-            self.tell(Event::Left(left));
+        for left in wants.record.parts.left.drain(..) {
+            self.send(Event::Left(left));
         }
-        for landed in output.record.parts.landed.drain(..) {
-            self.tell(Event::Landed(landed));
+        for landed in wants.record.parts.landed.drain(..) {
+            self.send(Event::Landed(landed));
         }
-        if let Some(checked) = output.record.checked.take() {
-            self.tell(Event::Checked(checked, now));
+        if let Some(checked) = wants.record.checked.take() {
+            self.send(Event::Checked(checked, now));
         }
-        if let Some(calibration) = output.record.calibrated.take() {
-            self.tell(Event::Calibrated(Box::new(calibration)));
+        if let Some(calibration) = wants.record.calibrated.take() {
+            self.send(Event::Calibrated(Box::new(calibration)));
         }
-        if output.record.lot_began {
-            self.tell(Event::LotBegan(now));
+        if wants.record.lot_began {
+            self.send(Event::LotBegan(now));
         }
-        for interrupted in output.record.parts.interrupted.drain(..) {
-            self.tell(Event::Interrupted(interrupted));
+        for interrupted in wants.record.parts.interrupted.drain(..) {
+            self.send(Event::Interrupted(interrupted));
         }
-        for alarm in output.record.alarms.drain(..) {
-            self.tell(Event::Alarm(alarm, now));
+        for alarm in wants.record.alarms.drain(..) {
+            self.send(Event::Alarm(alarm, now));
         }
-        if output.record.alarms_changed {
-            let standing = self.station.annunciator().listed().to_vec();
-            self.tell(Event::Standing(standing, now));
+        if wants.record.alarms_changed {
+            let standing = self.station.annunciator().standing().to_vec();
+            self.send(Event::Standing(standing, now));
         }
         let inside = self.station.ledger().parts_to_find();
         let moved = std::mem::replace(&mut self.inside, inside) != inside;
-        if moved || output.record.ending.is_some() {
-            self.tell(Event::Inside(inside, self.station.uses()));
+        if moved || wants.record.ending.is_some() {
+            self.send(Event::Inside(inside, self.station.uses()));
         }
         let state = self.station.outer();
-        if std::mem::replace(&mut self.told, state) != state {
-            self.tell(Event::State(state));
+        if std::mem::replace(&mut self.published_state, state) != state {
+            self.send(Event::State(state));
         }
     }
 
     /// Sends one event to the history.
-    pub(super) fn tell(&self, event: Event) {
-        // The receiver ends only with the program.
+    pub(super) fn send(&self, event: Event) {
+        // The receiver outlives the run.
         let _ = self.links.events.send(event);
     }
 }

@@ -1,41 +1,40 @@
-//! Whose turn it is in the scan of a line.
+//! Schedules the scan of a line.
 //!
-//! The module with the emergency-stop contact is every second transaction, whatever the others are: a write, too, waits
-//! for it. The turns between go to the watched beam and
-//! the other modules alternately, and now and then to the question whether a module has restarted; to that at once, one
-//! module after the other, when an actuator is not where it should be. Each list has a counter of its own, so that none
-//! of them can starve another, however many there are.
+//! The poll of the module with the emergency-stop contact is every second transaction, and even a write waits for it.
+//! The turns between alternate between the watched beam and the other modules, and now and then read the reset status
+//! of a module; when an actuator is not where it should be, the scan reads the reset status of all modules first. Each
+//! list has a counter of its own, so no list starves another.
 
 use dcon::Command;
 
-/// Turns per restart check of a module; turns that read a contact do not count.
+/// One turn in this many, polls of the contact excluded, reads the reset status of a module.
 const RESET_EVERY: usize = 16;
 
 /// The scan of one line.
 #[derive(Debug)]
 pub(super) struct ScanSchedule {
-    /// Every second turn, if the line carries the emergency-stop contact.
+    /// ScanPoll of the emergency-stop contact, on the line that carries it; every second turn.
     priority: Option<Command>,
-    /// The other modules.
+    /// Polls of the other modules.
     others: Vec<Command>,
     /// Reset status of every module with outputs.
     pub(super) resets: Vec<Command>,
-    /// The transaction before was another one.
+    /// The last transaction was not the poll of the contact.
     contact_is_due: bool,
     turn: usize,
     next_other: usize,
     next_reset: usize,
-    /// Reset questions that come before anything else.
+    /// Number of reset-status reads that go before all other polls.
     urgent_resets: usize,
     beam_was_last: bool,
 }
 
-/// What to ask next.
+/// Next transaction of a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Next {
-    /// The contact; the turn after it follows at once.
+pub(super) enum ScanPoll {
+    /// The poll of the contact; the next turn follows at once.
     Priority(Command),
-    /// Anything else; the scan rests afterwards.
+    /// Any other poll; the scan pauses afterwards.
     Other(Command),
 }
 
@@ -58,50 +57,50 @@ impl ScanSchedule {
         }
     }
 
-    /// The poll of the contact when its turn has come.
+    /// Returns the poll of the contact when it is due.
     pub(super) fn contact(&mut self) -> Option<Command> {
         let is_due = std::mem::take(&mut self.contact_is_due);
         self.priority.filter(|_| is_due)
     }
 
-    /// A transaction that is not the poll of the contact.
-    pub(super) fn something_else(&mut self) {
+    /// Notes a transaction other than the poll of the contact.
+    pub(super) fn note_other(&mut self) {
         self.contact_is_due = true;
     }
 
-    /// Every module of a line that is scanned is asked next whether it has restarted.
-    pub(super) fn ask_for_resets(&mut self) {
+    /// Makes the scan read the reset status of every module first.
+    pub(super) fn require_resets(&mut self) {
         if self.priority.is_some() || !self.others.is_empty() {
             self.urgent_resets = self.resets.len();
         }
     }
 
-    /// None when there is nothing to ask in this turn.
-    pub(super) fn next(&mut self, beam: Option<Command>) -> Option<Next> {
+    /// Returns the next poll; `None` when the line has nothing to poll.
+    pub(super) fn next(&mut self, beam: Option<Command>) -> Option<ScanPoll> {
         if let Some(command) = self.contact() {
-            return Some(Next::Priority(command));
+            return Some(ScanPoll::Priority(command));
         }
-        self.something_else();
+        self.note_other();
         if self.urgent_resets > 0 {
             self.urgent_resets -= 1;
-            return round(&self.resets, &mut self.next_reset).map(Next::Other);
+            return round(&self.resets, &mut self.next_reset).map(ScanPoll::Other);
         }
         let turn = self.turn;
         self.turn += 1;
         if turn % RESET_EVERY == RESET_EVERY - 1
             && let Some(command) = round(&self.resets, &mut self.next_reset)
         {
-            return Some(Next::Other(command));
+            return Some(ScanPoll::Other(command));
         }
         self.beam_was_last = !self.beam_was_last && beam.is_some();
         if self.beam_was_last || self.others.is_empty() {
-            return beam.map(Next::Other);
+            return beam.map(ScanPoll::Other);
         }
-        round(&self.others, &mut self.next_other).map(Next::Other)
+        round(&self.others, &mut self.next_other).map(ScanPoll::Other)
     }
 }
 
-/// The entries of `list` one after the other, again and again.
+/// Returns the entries of `list` in turn, cyclically.
 fn round(list: &[Command], next: &mut usize) -> Option<Command> {
     let command = *list.get(*next % list.len().max(1))?;
     *next = (*next + 1) % list.len();
@@ -126,7 +125,7 @@ mod tests {
         Digital::ReadEvents { channel }.to(Address(0x11))
     }
 
-    /// How often each command comes in `turns` turns, and the longest wait between two of the contact.
+    /// Counts each command in `turns` turns, and the longest wait between two polls of the contact.
     fn counted(
         scan_schedule: &mut ScanSchedule,
         beam: Option<Command>,
@@ -134,7 +133,8 @@ mod tests {
     ) -> Vec<(Command, usize)> {
         let mut counts: Vec<(Command, usize)> = Vec::new();
         for _ in 0..turns {
-            let Some(Next::Priority(command) | Next::Other(command)) = scan_schedule.next(beam)
+            let Some(ScanPoll::Priority(command) | ScanPoll::Other(command)) =
+                scan_schedule.next(beam)
             else {
                 continue;
             };
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn no_module_of_a_scan_starves_while_a_beam_is_watched() {
+    fn a_watched_beam_starves_no_module() {
         for modules in 1..=6u8 {
             let others: Vec<Command> = (0..modules).map(|n| poll(0x20 + n)).collect();
             let resets: Vec<Command> = (0..modules).map(|n| reset(0x20 + n)).collect();
@@ -182,40 +182,42 @@ mod tests {
     }
 
     #[test]
-    fn between_two_other_transactions_the_contact_is_asked() {
+    fn contact_is_polled_between_two_other_transactions() {
         let mut scan_schedule = ScanSchedule::new(Some(poll(0x11)), vec![poll(0x12)], Vec::new());
-        scan_schedule.something_else();
+        scan_schedule.note_other();
         assert_eq!(scan_schedule.contact(), Some(poll(0x11)));
-        assert_eq!(scan_schedule.contact(), None, "it was asked just now");
-        scan_schedule.something_else();
-        assert_eq!(scan_schedule.next(None), Some(Next::Priority(poll(0x11))));
-        assert_eq!(scan_schedule.next(None), Some(Next::Other(poll(0x12))));
+        assert_eq!(scan_schedule.contact(), None, "polled just now");
+        scan_schedule.note_other();
+        assert_eq!(
+            scan_schedule.next(None),
+            Some(ScanPoll::Priority(poll(0x11)))
+        );
+        assert_eq!(scan_schedule.next(None), Some(ScanPoll::Other(poll(0x12))));
     }
 
     #[test]
-    fn when_an_actuator_is_not_where_it_should_be_each_module_is_asked_at_once_whether_it_has_restarted()
-     {
+    fn a_misplaced_actuator_makes_each_reset_status_due_at_once() {
         let resets = vec![reset(0x13), reset(0x14)];
         let mut scan_schedule = ScanSchedule::new(Some(poll(0x11)), vec![poll(0x12)], resets);
-        scan_schedule.ask_for_resets();
-        let asked = std::iter::from_fn(|| scan_schedule.next(Some(beam())));
-        let asked: Vec<Command> = asked
-            .map(|(Next::Priority(command) | Next::Other(command))| command)
+        scan_schedule.require_resets();
+        let polled = std::iter::from_fn(|| scan_schedule.next(Some(beam())));
+        let polled: Vec<Command> = polled
+            .map(|(ScanPoll::Priority(command) | ScanPoll::Other(command))| command)
             .filter(|command| *command != poll(0x11))
             .take(3)
             .collect();
-        assert_eq!(asked, [reset(0x13), reset(0x14), beam()]);
+        assert_eq!(polled, [reset(0x13), reset(0x14), beam()]);
     }
 
     #[test]
-    fn a_line_that_is_not_scanned_is_left_to_its_measurements() {
+    fn an_unscanned_line_carries_measurements_only() {
         let mut scan_schedule = ScanSchedule::new(None, Vec::new(), vec![reset(0x04)]);
-        scan_schedule.ask_for_resets();
+        scan_schedule.require_resets();
         assert_eq!(scan_schedule.next(None), None);
     }
 
     #[test]
-    fn without_a_beam_its_turns_go_to_the_other_modules() {
+    fn other_modules_take_the_turns_of_an_absent_beam() {
         let others = vec![poll(0x12), poll(0x13)];
         let mut scan_schedule = ScanSchedule::new(Some(poll(0x11)), others, Vec::new());
         let counts = counted(&mut scan_schedule, None, 400);
@@ -226,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_with_nothing_to_scan_asks_nothing() {
+    fn a_line_without_modules_to_scan_polls_nothing() {
         let mut scan_schedule = ScanSchedule::new(None, Vec::new(), Vec::new());
         assert!(counted(&mut scan_schedule, None, 100).is_empty());
     }

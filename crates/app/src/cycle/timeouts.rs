@@ -1,9 +1,9 @@
-//! How often in a row something on a line may fail before it is trouble: as often as the bus settings allow tries.
+//! Counts failures in a row on a line; as many as the bus settings allow tries raise an alarm.
 
 use dcon::{Address, Command};
 use machine::rig::wiring::{LineId, ModuleId, Wiring};
 
-/// Failures in a row, of scans by address and of writes by module.
+/// Failures in a row: of scans by address, of writes by module.
 #[derive(Debug)]
 pub(super) struct Timeouts {
     tries: u8,
@@ -20,7 +20,7 @@ impl Timeouts {
         }
     }
 
-    /// A scan was not answered; how often in a row, once that is too often.
+    /// Counts a failed scan; returns the count once it reaches the limit.
     pub(super) fn scan_failed(&mut self, line: LineId, command: &Command) -> Option<u8> {
         let address = command.address();
         let known = self
@@ -36,7 +36,7 @@ impl Timeouts {
         (*times >= self.tries).then_some(*times)
     }
 
-    /// A scan was answered: failures before it no longer count.
+    /// Resets the count after an answered scan.
     pub(super) fn scan_answered(&mut self, line: LineId, command: &Command) {
         if !self.scans.is_empty() {
             let address = command.address();
@@ -44,20 +44,20 @@ impl Timeouts {
         }
     }
 
-    /// Counts a failed write; true while it may be tried again.
+    /// Counts a failed write; returns true while another try is allowed.
     pub(super) fn may_rewrite(&mut self, module: ModuleId) -> bool {
         let times = &mut self.writes[module.0];
         *times = times.saturating_add(1);
         *times < self.tries
     }
 
-    /// A write was confirmed: failures before it no longer count.
+    /// Resets the count after a confirmed write.
     pub(super) fn written(&mut self, module: ModuleId) {
         self.writes[module.0] = 0;
     }
 
-    /// Forgets failed writes: at the end every module is written until it confirms.
-    pub(super) fn forgive(&mut self) {
+    /// Resets all counts of writes: at the end the cycle writes every module until it confirms.
+    pub(super) fn reset_writes(&mut self) {
         self.writes.fill(0);
     }
 }
@@ -68,7 +68,7 @@ mod tests {
     use dcon::Common;
 
     #[test]
-    fn more_failures_than_a_byte_counts_are_still_trouble() {
+    fn a_count_of_failures_saturates() {
         let mut timeouts = Timeouts {
             tries: 3,
             scans: Vec::new(),

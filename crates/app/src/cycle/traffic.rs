@@ -1,10 +1,10 @@
-//! Who may use a line next: writes first, then the heartbeat, the measuring job, and the scan.
+//! Chooses the next transaction of a line: writes first, then the heartbeat, the measuring job, the scan.
 //!
-//! Every line has one transaction under way at most. The module with the emergency-stop contact is
-//! every second transaction of its line's scan ([`super::scan_schedule`]).
+//! Every line has at most one transaction under way. Every second transaction of a line's scan polls the module with
+//! the emergency-stop contact ([`super::scan_schedule`]).
 
-use super::scan_schedule::{Next, ScanSchedule};
-use super::underway::JobUnderway;
+use super::open_job::OpenJob;
+use super::scan_schedule::{ScanPoll, ScanSchedule};
 use bus::{Answer, Request};
 use dcon::{Command, Common};
 use machine::instrument::act::JobDone;
@@ -17,8 +17,8 @@ use std::task::Poll;
 use tokio::sync::mpsc;
 use units::{RigTime, Span};
 
-/// More commands than this wait on no line: every question of a verification, several times over.
-const DEEPEST: usize = 2_000;
+/// Longest queue of a line: several times all requests of a verification.
+const MAX_QUEUE: usize = 2_000;
 
 fn reset_questions(wiring: &Wiring, line: LineId) -> Vec<Command> {
     wiring
@@ -29,7 +29,8 @@ fn reset_questions(wiring: &Wiring, line: LineId) -> Vec<Command> {
         .collect()
 }
 
-/// Modules of a line that carry inputs of the machine or beams, by address; those of a fixture are read by its acts.
+/// Returns the modules of a line that carry machine inputs or beams, by address; acts of a test read those of a
+/// fixture.
 fn scanned_modules(wiring: &Wiring, line: LineId) -> Vec<ModuleId> {
     let machine = DigitalIn::ALL.iter().copied().map(DigitalInput::from);
     let beams = wiring.axis.bins().map(|bin| wiring.axis.beam(bin));
@@ -39,34 +40,34 @@ fn scanned_modules(wiring: &Wiring, line: LineId) -> Vec<ModuleId> {
     modules.into_iter().filter(here).collect()
 }
 
-/// The cycle's ends of a line's queues.
+/// The cycle's ends of the queues of a line.
 #[derive(Debug)]
 pub struct LineEnds {
-    /// Which line.
+    /// The line.
     pub line: LineId,
-    /// To the line's task, one deep.
+    /// Requests to the line's task; holds one.
     pub requests: mpsc::Sender<Request>,
-    /// From it.
+    /// Answers of the line's task.
     pub answers: mpsc::Receiver<Answer>,
 }
 
-/// What a transaction is for.
+/// Purpose of a transaction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
-    /// Output write; `job`: the measuring job waits for it.
+    /// An output write.
     Write {
-        /// Module written.
+        /// The written module.
         module: ModuleId,
-        /// The measuring job waits for it.
+        /// The measuring job waits for this write.
         job: bool,
     },
-    /// Part of a measuring job.
+    /// A transaction of the measuring job.
     Job,
-    /// Motion scan.
+    /// A poll of the motion sensors.
     Scan,
-    /// Verification at the start.
+    /// A request of the verification at the start.
     Check,
-    /// Host OK.
+    /// The host-OK message that feeds the modules' watchdogs.
     Heartbeat,
 }
 
@@ -81,28 +82,28 @@ struct Slot {
     scan_due: RigTime,
 }
 
-/// All lines.
+/// Queues and open transactions of all lines.
 pub struct Traffic {
     slots: Vec<Slot>,
     /// Lines with points of a fixture.
     measuring: Vec<LineId>,
     heartbeat: Span,
     scan_period: Span,
-    job: Option<JobUnderway>,
+    job: Option<OpenJob>,
     beam: Option<Command>,
-    /// An actuator is not where it should be: the scan asks first which modules have restarted.
+    /// An actuator is not where it should be: the scan reads the modules' reset status first.
     restart_check: bool,
     beam_line: LineId,
     scanning: bool,
     check_tries: u8,
-    /// Safe writes are queued: they go before the contact.
+    /// Safe writes are queued; they go before the poll of the contact.
     making_safe: bool,
     ticket: u64,
     now: RigTime,
 }
 
 impl Traffic {
-    /// Nothing under way, every heartbeat due.
+    /// Starts with empty queues and every heartbeat due.
     pub fn new(wiring: &Arc<Wiring>, lines: Vec<LineEnds>) -> Self {
         let estop = wiring.emergency_stop_module();
         let estop_line = wiring.module(estop).line;
@@ -144,12 +145,12 @@ impl Traffic {
         }
     }
 
-    /// Lines with points of a fixture.
+    /// Returns the lines with points of a fixture.
     pub fn measuring_lines(&self) -> &[LineId] {
         &self.measuring
     }
 
-    /// Reset status of every module with outputs on the measuring lines.
+    /// Returns the reset-status command of every module with outputs on the measuring lines.
     pub fn measuring_resets(&self) -> Vec<(LineId, Command)> {
         let slots = self.slots.iter();
         let measuring = slots.filter(|slot| self.measuring.contains(&slot.ends.line));
@@ -161,7 +162,7 @@ impl Traffic {
         measuring.flat_map(resets).collect()
     }
 
-    /// How often a command of this line is tried.
+    /// Returns how many times this line tries a command.
     pub fn tries(&self, line: LineId) -> u8 {
         self.slots
             .iter()
@@ -169,22 +170,22 @@ impl Traffic {
             .map_or(1, |slot| slot.tries)
     }
 
-    /// The time of this turn.
+    /// Sets the time of this turn.
     pub fn note_time(&mut self, now: RigTime) {
         self.now = now;
     }
 
-    /// From now on the motion sensors are scanned.
+    /// Starts the scan of the motion sensors.
     pub fn start_scan(&mut self) {
         self.scanning = true;
     }
 
-    /// From now on nothing but writes and heartbeats.
+    /// Allows only writes and heartbeats from now on.
     pub fn only_writes(&mut self) {
         self.scanning = false;
     }
 
-    /// Puts a command at the end of a line's queue.
+    /// Appends a command to a line's queue.
     pub fn queue(&mut self, line: LineId, command: Command, purpose: Purpose) {
         if matches!(purpose, Purpose::Job | Purpose::Write { job: true, .. })
             && let Some(job) = &mut self.job
@@ -193,46 +194,46 @@ impl Traffic {
         }
         if let Some(slot) = self.slots.iter_mut().find(|slot| slot.ends.line == line) {
             slot.queue.push_back((command, purpose));
-            assert!(slot.queue.len() <= DEEPEST, "a queue grows without end");
+            assert!(slot.queue.len() <= MAX_QUEUE, "a queue grows without end");
         }
     }
 
-    /// Event counter to read with the scan, or none.
+    /// Adds the counter of a beam to the scan, or removes it.
     pub fn watch_beam(&mut self, command: Option<Command>) {
         self.beam = command;
     }
 
-    /// Turns the restart check on or off. When it turns on, the scan asks every scanned module at once whether it has
-    /// restarted, so that the answers arrive before the debounce time of a sensor ends.
+    /// Turns the restart check on or off. When it turns on, the scan reads the reset status of every scanned module at
+    /// once, so that the answers arrive before the debounce time of a sensor ends.
     pub fn check_restarts(&mut self, restart_check: bool) {
         if restart_check && !self.restart_check {
             for slot in &mut self.slots {
-                slot.scan_schedule.ask_for_resets();
+                slot.scan_schedule.require_resets();
             }
         }
         self.restart_check = restart_check;
     }
 
-    /// A lost write of the job will be written again; the job waits for it.
+    /// Makes the job wait for the repetition of a lost write.
     pub fn rewrite_for_job(&mut self, module: ModuleId) {
         if let Some(job) = &mut self.job {
             job.rewrites(module);
         }
     }
 
-    /// True once for a module whose lost write the job waits for.
+    /// Returns true once for a module whose lost write the job waits for.
     pub fn is_rewrite_for_job(&mut self, module: ModuleId) -> bool {
         self.job.as_mut().is_some_and(|job| job.waits_for(module))
     }
 
-    /// A new measuring job.
+    /// Begins a measuring job; panics while another one is open.
     pub fn begin_job(&mut self) {
         assert!(self.job.is_none(), "two measuring jobs at once");
-        self.job = Some(JobUnderway::default());
+        self.job = Some(OpenJob::default());
     }
 
-    /// Forgets the job and everything that was queued, writes too: safe ones come in their place, and before any poll.
-    /// Gives the module of each write that was forgotten.
+    /// Drops the job and all queued commands, writes too: safe writes replace them. Returns the modules of the dropped
+    /// writes.
     pub fn drop_all(&mut self) -> Vec<ModuleId> {
         self.job = None;
         self.making_safe = true;
@@ -245,14 +246,14 @@ impl Traffic {
         written.collect()
     }
 
-    /// A job that needed no transaction is done at once.
+    /// Returns the result of a job that needed no transaction.
     pub fn job_if_empty(&mut self, now: RigTime) -> Option<JobDone> {
         let done = self.job.as_ref()?.if_empty(now)?;
         self.job = None;
         Some(done)
     }
 
-    /// One transaction of the job is over; the answer of the job when it was the last.
+    /// Closes one transaction of the job; returns the job's result after the last one.
     pub fn job_part_done(&mut self, at: RigTime, trouble: Option<String>) -> Option<JobDone> {
         let done = self.job.as_mut()?.part_done(at, trouble)?;
         self.job = None;
@@ -287,7 +288,8 @@ impl Traffic {
                 command,
                 tries,
             };
-            // The queue is one deep and the slot idle, so there is room; a closed queue means the line's task ended.
+            // The queue holds one request and the slot is idle, so there is room; a closed queue means the line's task
+            // ended.
             if slot.ends.requests.try_send(request).is_ok() {
                 slot.busy = Some(purpose);
             }
@@ -305,7 +307,7 @@ impl Traffic {
             return Some((poll, Purpose::Scan));
         }
         if waits {
-            slot.scan_schedule.something_else();
+            slot.scan_schedule.note_other();
         }
         let write = slot
             .queue
@@ -326,15 +328,15 @@ impl Traffic {
         }
         let beam = self.beam.filter(|_| slot.ends.line == self.beam_line);
         match slot.scan_schedule.next(beam)? {
-            Next::Priority(command) => Some((command, Purpose::Scan)),
-            Next::Other(command) => {
+            ScanPoll::Priority(command) => Some((command, Purpose::Scan)),
+            ScanPoll::Other(command) => {
                 slot.scan_due = now + self.scan_period;
                 Some((command, Purpose::Scan))
             }
         }
     }
 
-    /// The next answer that has come in.
+    /// Returns the next answer that has arrived.
     pub fn next_answer(&mut self) -> Option<(LineId, Purpose, Answer)> {
         for slot in &mut self.slots {
             let Some(answer) = slot
@@ -344,14 +346,14 @@ impl Traffic {
             else {
                 continue;
             };
-            assert!(slot.busy.is_some(), "an answer that nobody asked for");
+            assert!(slot.busy.is_some(), "an answer without a request");
             let purpose = slot.busy.take().unwrap_or(Purpose::Check);
             return Some((slot.ends.line, purpose, answer));
         }
         None
     }
 
-    /// Resolves when an answer has come in on any line.
+    /// Resolves when an answer has arrived on any line.
     pub async fn answer(&mut self) {
         let slots = &mut self.slots;
         poll_fn(|context| {
@@ -369,7 +371,7 @@ impl Traffic {
         .await;
     }
 
-    /// When an idle line has something to do without being asked.
+    /// Returns when an idle line next has a heartbeat or a scan due.
     pub fn next_due(&self, now: RigTime) -> Option<RigTime> {
         self.slots
             .iter()
@@ -385,7 +387,7 @@ impl Traffic {
             .min()
     }
 
-    /// Nothing queued, nothing under way.
+    /// Returns true when nothing is queued or under way.
     pub fn is_quiet(&self) -> bool {
         self.slots
             .iter()

@@ -1,58 +1,58 @@
-//! A made-up history as large as a plant fills in weeks, for trying queries and reports.
+//! Generates a history as large as that of weeks in a plant, for trying queries and reports.
 //!
-//! Parts follow the lot of the default world (means, scatter, 4 % defects), are judged by the recipe with
-//! the very rules of a run, and come in lots of [`LOT`], at the pace of the rig, ending at [`Wanted::until`]. Five
-//! of a hundred values took a second attempt. Rejects carry raw replies, good parts do not: a rig keeps
-//! about thirty replies per part, which would make the file three times as large and no query slower.
-//! Runs are marked as simulated. The same seed gives the same values.
+//! Parts follow the lot of the default world (means, scatter, 4 % defects) and the recipe judges them by the rules of a
+//! run. They come in lots of [`LOT`] at the pace of the rig and end at [`GenerateOptions::until`]. Five of a hundred values have
+//! a second attempt. Only rejects carry raw replies: a rig keeps about thirty replies per part, which would make the
+//! file three times as large and no query slower. The history marks the runs as simulated. The same seed gives the same
+//! values.
 
-mod made_up;
+mod parts;
 
 use config::load_recipe;
 use history::{Identity, LotRecord, Moment, Row, Store};
-use made_up::Line;
+use parts::PartGenerator;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Parts of a lot: four hours of the line.
+/// Parts per lot: four hours of the line.
 const LOT: u64 = 10_000;
-/// Parts of one transaction.
+/// Parts per transaction.
 pub const BATCH: u64 = 1_000;
-/// Between two parts: 2,500 parts an hour.
+/// Time between two parts, microseconds: 2,500 parts an hour.
 const CYCLE_US: i64 = 1_440_000;
 
-/// What is to be made up.
+/// Size and seed of the history to generate.
 #[derive(Debug, Clone)]
-pub struct Wanted {
-    /// How many parts.
+pub struct GenerateOptions {
+    /// Number of parts.
     pub parts: u64,
     /// Seed of all values.
     pub seed: u64,
-    /// Recipe that the parts are judged by.
+    /// Recipe that judges the parts.
     pub recipe: String,
-    /// Instant of the last part; none: now.
+    /// Instant of the last part; `None`: now.
     pub until: Option<Moment>,
 }
 
-/// What was written, and how fast.
+/// Number of rows written, and the time that writing took.
 #[derive(Debug, Clone, Copy)]
 pub struct Generated {
-    /// Parts.
+    /// Number of parts.
     pub parts: u64,
-    /// Measurement rows.
+    /// Number of measurement rows.
     pub measurements: u64,
-    /// Wall time of the transactions, disk flushes included; making the values up is not counted.
+    /// Wall time of the transactions, disk flushes included, drawing of values excluded.
     pub writing: Duration,
 }
 
-/// Writes the parts into `db`, which may hold others already; `done_so_far` hears how many there are.
+/// Writes the parts into `db`, which may hold others already; calls `done_so_far` with the number of parts written.
 ///
 /// # Errors
-/// A recipe that is refused, or a history that cannot be written.
+/// Fails on an invalid recipe, or when the history cannot be written.
 pub fn generate(
     config: &Path,
     db: &Path,
-    wanted: &Wanted,
+    wanted: &GenerateOptions,
     mut done_so_far: impl FnMut(u64),
 ) -> anyhow::Result<Generated> {
     let recipe = load_recipe(config, &wanted.recipe)?;
@@ -61,7 +61,7 @@ pub fn generate(
         .until
         .map_or_else(|| jiff::Timestamp::now().as_microsecond(), |until| until.0);
     let begin = until - CYCLE_US * i64::try_from(wanted.parts)?;
-    let mut line = Line::new(&recipe, wanted.seed);
+    let mut parts = PartGenerator::new(&recipe, wanted.seed);
     let mut done = Generated {
         parts: 0,
         measurements: 0,
@@ -85,7 +85,7 @@ pub fn generate(
         let mut seq = 0;
         while seq < of_lot {
             let rows: Vec<Row> = (0..BATCH.min(of_lot - seq))
-                .map(|n| line.part(&name, seq + n + 1, opened_at_us, CYCLE_US))
+                .map(|n| parts.part(&name, seq + n + 1, opened_at_us, CYCLE_US))
                 .inspect(|part| done.measurements += part.measurements.len() as u64)
                 .map(Row::Part)
                 .collect();

@@ -1,7 +1,7 @@
-//! Puts a cycle together from configuration, recipe and calibration.
+//! Builds a cycle from configuration, recipe and calibration.
 
 use super::LotContext;
-use super::taken_over::TakenOver;
+use super::prior_state::PriorState;
 use crate::cycle::{Cycle, CycleLinks, LineEnds, mimic};
 use anyhow::Context;
 use bus::Pace;
@@ -20,21 +20,20 @@ use machine::view::Mimic;
 use std::sync::Arc;
 use units::{RigTime, Span};
 
-/// A cycle that is ready to run.
 pub(super) fn cycle(
     context: &LotContext,
-    taken_over: TakenOver,
+    prior_state: PriorState,
     pace: Pace,
     lines: Vec<LineEnds>,
     links: CycleLinks,
     attended: bool,
 ) -> anyhow::Result<Cycle> {
-    let TakenOver {
+    let PriorState {
         calibration,
-        worn,
+        uses,
         alarms,
         left,
-    } = taken_over;
+    } = prior_state;
     let plant = context.plant;
     let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
     let wiring = Arc::clone(&plant.wiring);
@@ -48,14 +47,18 @@ pub(super) fn cycle(
             .collect::<Vec<(AxisStation, f64)>>(),
     };
     let calibrated = calibration.is_some();
-    let device = recipe
-        .device
-        .on_rig(Arc::clone(&recipe), &plant.rig(), calibration)?;
+    let rig = Rig {
+        wiring: &wiring,
+        reference: plant.reference.as_ref(),
+        accuracy: &plant.accuracy,
+        reference_parts: &plant.reference_parts,
+    };
+    let device = Device::new(Arc::clone(&recipe), &rig, calibration)?;
     let plan = Plan {
         attended,
-        between_lots: context.purpose.rests_in(),
+        between_lots: context.purpose.rest_state(),
         count: context.order.count,
-        reference_serials: match context.purpose.rests_in() {
+        golden: match context.purpose.rest_state() {
             Some(_) => Vec::new(),
             None => device.reference_serials(),
         },
@@ -64,28 +67,28 @@ pub(super) fn cycle(
         epoch_us: context.epoch_us,
         simulated: context.is_simulated(),
         lot: plant.lot.clone(),
-        worn,
+        worn: uses,
         left,
     };
     let mechanism = Mechanism::new(strokes, timeouts(&wiring.strokes), size_of(context.recipe));
     let mut station = Station::new(plan, device, wiring.axis.clone(), mechanism);
-    // Without a person nobody could see them.
+    // An unattended run cannot acknowledge alarms of an earlier one.
     for left in alarms.into_iter().filter(|_| attended) {
-        inherit(&mut station, left, context.epoch_us);
+        raise_again(&mut station, left, context.epoch_us);
     }
     Ok(Cycle::new(wiring, pace, station, guard, lines, links))
 }
 
-/// The machine as a screen draws it, with parts of the size that `recipe` gives.
+/// Returns the machine as a screen draws it, with parts of the size in `recipe`.
 pub fn mimic(plant: &Plant, recipe: &Recipe) -> anyhow::Result<Mimic> {
     let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
     Ok(mimic::mimic(guard.drawing(&size_of(recipe))))
 }
 
-/// An alarm of a run before stands again, unseen.
-fn inherit(station: &mut Station, left: UnacknowledgedAlarm, epoch_us: i64) {
+/// Raises an unacknowledged alarm of an earlier run again.
+fn raise_again(station: &mut Station, left: UnacknowledgedAlarm, epoch_us: i64) {
     let Some(code) = AlarmCode::from_name(&left.code) else {
-        return tracing::warn!(code = left.code, "an alarm of another version is left out");
+        return tracing::warn!(code = left.code, "skipped an unknown alarm");
     };
     let until = left.shelved_until_us.map(|until_us| until_us - epoch_us);
     let until = until.and_then(|us| u64::try_from(us).ok()).map(RigTime);

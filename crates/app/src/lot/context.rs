@@ -1,4 +1,4 @@
-//! What a run was started with.
+//! Input of a run: configuration, recipe, order, rig and purpose.
 
 use crate::order::LotOrder;
 use crate::source::RigSource;
@@ -8,54 +8,55 @@ use machine::station::packml::State;
 use std::sync::Arc;
 use units::RigTime;
 
-/// Lot of parts that were found inside of the rig between lots.
-pub const FOUND: &str = "found in the rig";
+/// Lot of parts found inside the rig between lots.
+pub const FOUND_LOT: &str = "found in the rig";
 
-/// What a run is for.
+/// Purpose of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
-    /// Calibration when it is due, golden parts, then the parts of the lot.
+    /// Calibration when it is due, reference parts, then the parts of the lot.
     Lot,
-    /// No lot: the machine rests in this state, and parts found inside are discharged as lot [`FOUND`].
+    /// No lot: the machine rests in this state and discharges parts found inside as lot [`FOUND_LOT`].
     BetweenLots(State),
-    /// References and golden parts only, whatever is stored; the history keeps no calibration of it.
+    /// References and reference parts only, even with a valid calibration; the history keeps no calibration of this
+    /// run.
     Calibration,
 }
 
 impl Purpose {
-    /// The state in which the machine rests; none while a lot is under way.
-    pub const fn rests_in(self) -> Option<State> {
+    /// Returns the state in which the machine rests; `None` while a lot is under way.
+    pub const fn rest_state(self) -> Option<State> {
         match self {
             Self::BetweenLots(state) => Some(state),
             Self::Lot | Self::Calibration => None,
         }
     }
 
-    /// No lot is under way.
+    /// Returns true while no lot is under way.
     pub const fn is_between_lots(self) -> bool {
-        self.rests_in().is_some()
+        self.rest_state().is_some()
     }
 }
 
-/// What a run was started with.
+/// Input of a run.
 #[derive(Debug, Clone, Copy)]
 pub struct LotContext<'a> {
-    /// Configuration.
+    /// Configuration of the plant.
     pub plant: &'a Plant,
     /// Recipe of the lot.
     pub recipe: &'a Arc<Recipe>,
-    /// The lot.
+    /// Order of the lot.
     pub order: &'a LotOrder,
-    /// The rig.
+    /// Rig of the run.
     pub source: &'a RigSource,
-    /// What it is for.
+    /// Purpose of the run.
     pub purpose: Purpose,
     /// Wall clock at rig time zero, microseconds since 1970 UTC.
     pub epoch_us: i64,
 }
 
 impl<'a> LotContext<'a> {
-    /// Rig time begins where a live rig stands, else now.
+    /// Starts rig time at the epoch of a live rig, else now.
     pub fn new(
         plant: &'a Plant,
         (order, recipe): (&'a LotOrder, &'a Arc<Recipe>),
@@ -77,12 +78,12 @@ impl<'a> LotContext<'a> {
         }
     }
 
-    /// The rig is simulated.
+    /// Returns true on a simulated rig.
     pub fn is_simulated(&self) -> bool {
         self.source.is_simulated()
     }
 
-    /// Rig time on the wall clock, microseconds since 1970 UTC.
+    /// Converts rig time to microseconds since 1970 UTC.
     pub fn wall_us(&self, at: RigTime) -> i64 {
         self.epoch_us + i64::try_from(at.0).unwrap_or(i64::MAX)
     }

@@ -1,48 +1,48 @@
-//! What a lot has come to so far, in numbers.
+//! Counts the parts and alarms of a lot.
 
 use std::collections::BTreeMap;
 
-/// Counts of the lot.
+/// Parts of the lot by verdict and bin, and alarms of the run.
 #[derive(Debug, Default)]
 pub struct Counts {
     /// Judged parts of the lot by verdict.
     pub verdicts: BTreeMap<&'static str, u64>,
-    /// Confirmed parts of the lot by bin.
+    /// Parts of the lot that a beam has confirmed, by bin.
     pub bins: BTreeMap<String, u64>,
     /// Alarms of the run.
     pub alarms: u64,
 }
 
 impl Counts {
-    /// One more judged part with this verdict.
+    /// Counts one more judged part with this verdict.
     pub(super) fn add(&mut self, verdict: &'static str) {
         *self.verdicts.entry(verdict).or_insert(0) += 1;
     }
 
-    /// The verdict of a part does not hold any more.
+    /// Removes a part whose verdict became invalid.
     pub(super) fn remove(&mut self, verdict: &str) {
         if let Some(count) = self.verdicts.get_mut(verdict) {
             *count -= 1;
         }
     }
 
-    /// Judged parts with this verdict.
+    /// Returns the number of judged parts with this verdict.
     pub fn of(&self, verdict: &str) -> u64 {
         self.verdicts.get(verdict).copied().unwrap_or(0)
     }
 
-    /// Judged parts.
+    /// Returns the number of judged parts.
     pub fn parts(&self) -> u64 {
         self.verdicts.values().sum()
     }
 
-    /// Judged parts per hour of rig time; none before any has passed.
+    /// Returns judged parts per hour of rig time; `None` when `elapsed_s` is 0.
     pub fn per_hour(&self, elapsed_s: f64) -> Option<f64> {
         (elapsed_s > 0.0).then(|| self.parts() as f64 / elapsed_s * 3600.0)
     }
 
-    /// Pace and yield in one line.
-    pub fn in_short(&self, per_hour: Option<f64>) -> String {
+    /// Formats pace and yield in one line.
+    pub fn pace_and_yield(&self, per_hour: Option<f64>) -> String {
         let good = 100.0 * self.of("pass") as f64 / self.parts().max(1) as f64;
         format!("{:.0} parts/h, yield {good:.1} %", per_hour.unwrap_or(0.0))
     }

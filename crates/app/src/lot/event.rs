@@ -1,4 +1,4 @@
-//! The stream of events of a run, and who hears it.
+//! The stream of events of a run, and the trait of its receivers.
 
 use super::progress::{LotProgress, PartUnderWay};
 use super::summary::Summary;
@@ -9,16 +9,16 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 use tokio::sync::mpsc;
 
-/// What happens in a run, in order.
+/// Event of a run, in order of occurrence.
 #[derive(Debug)]
 pub enum LotEvent {
-    /// The run begins; nothing was sent to the rig yet.
+    /// The run begins; the rig has received nothing yet.
     Begun,
-    /// The cycle tells this.
+    /// An event of the control cycle.
     Cycle(Event),
-    /// Nothing more happens to a judged part: it has landed, or the run is over and it never will.
+    /// A judged part is done: it has landed, or the run is over and it never will.
     PartDone(Box<PartUnderWay>, Option<Landed>),
-    /// The last traffic of every line before an alarm is in these files.
+    /// These files hold the last traffic of every line before an alarm.
     TracesKept(Vec<PathBuf>),
     /// The run is over.
     Ended(Box<Summary>),
@@ -26,32 +26,32 @@ pub enum LotEvent {
 
 /// Receives the events of a run: a page, a terminal, a script.
 pub trait Subscriber {
-    /// Hears an event that `lot` has already taken in.
-    fn hear(&mut self, event: &LotEvent, lot: &LotProgress<'_>);
+    /// Receives an event that `lot` already includes.
+    fn receive(&mut self, event: &LotEvent, lot: &LotProgress<'_>);
 }
 
 /// Ignores every event.
 impl Subscriber for () {
-    fn hear(&mut self, _: &LotEvent, _: &LotProgress<'_>) {}
+    fn receive(&mut self, _: &LotEvent, _: &LotProgress<'_>) {}
 }
 
-/// Both hear every event, the first one first.
+/// Passes every event to both, the first one first.
 impl<A: Subscriber, B: Subscriber> Subscriber for (A, B) {
-    fn hear(&mut self, event: &LotEvent, lot: &LotProgress<'_>) {
-        self.0.hear(event, lot);
-        self.1.hear(event, lot);
+    fn receive(&mut self, event: &LotEvent, lot: &LotProgress<'_>) {
+        self.0.receive(event, lot);
+        self.1.receive(event, lot);
     }
 }
 
 impl<S: Subscriber + ?Sized> Subscriber for &mut S {
-    fn hear(&mut self, event: &LotEvent, lot: &LotProgress<'_>) {
-        (**self).hear(event, lot);
+    fn receive(&mut self, event: &LotEvent, lot: &LotProgress<'_>) {
+        (**self).receive(event, lot);
     }
 }
 
 /// Keeps the first calibration of a run.
 impl Subscriber for OnceLock<Calibration> {
-    fn hear(&mut self, event: &LotEvent, _: &LotProgress<'_>) {
+    fn receive(&mut self, event: &LotEvent, _: &LotProgress<'_>) {
         if let LotEvent::Cycle(Event::Calibrated(calibration)) = event {
             self.get_or_init(|| (**calibration).clone());
         }
@@ -60,9 +60,9 @@ impl Subscriber for OnceLock<Calibration> {
 
 /// Passes the events of the cycle on to another task.
 impl Subscriber for mpsc::UnboundedSender<Event> {
-    fn hear(&mut self, event: &LotEvent, _: &LotProgress<'_>) {
+    fn receive(&mut self, event: &LotEvent, _: &LotProgress<'_>) {
         if let LotEvent::Cycle(event) = event {
-            // One who has gone misses nothing.
+            // A closed receiver needs no events.
             let _ = self.send(event.clone());
         }
     }

@@ -1,4 +1,4 @@
-//! Rows of a run beside its parts: the state of its lot, alarms and what becomes of them, golden checks, wear.
+//! Rows of a run other than its parts: state of the lot, alarms and their acknowledgement, reference checks, wear.
 
 use crate::alarm_order;
 use crate::exit::Exit;
@@ -15,26 +15,26 @@ use machine::station::turn::{Checked, Ending};
 use machine::view::AnsweredOrder;
 use texts::Lang;
 
-/// Alarms after which a lot takes no run before somebody releases it.
-const HOLDS: [AlarmCode; 2] = [AlarmCode::ReferenceCheckFailed, AlarmCode::RejectRateLimit];
-/// The alarm that says that golden parts do not agree with their certificates.
+/// Alarms that put the lot on hold until a person releases it.
+const HOLD_ALARMS: [AlarmCode; 2] = [AlarmCode::ReferenceCheckFailed, AlarmCode::RejectRateLimit];
+/// Alarm of reference parts that disagree with their certificates.
 const NOT_CALIBRATED: AlarmCode = AlarmCode::CalibrationFailed;
 
-/// What was told of a run so far.
+/// State of a run as the history has it so far.
 #[derive(Debug)]
 pub struct Journal {
-    /// None between lots.
+    /// Name of the lot; `None` between lots.
     lot: Option<String>,
     simulated: bool,
-    /// Codes of alarms whose cause is there.
+    /// Codes of alarms whose cause is present.
     active: Vec<String>,
-    /// The code of the alarm that holds the lot.
+    /// Code of the alarm that holds the lot.
     held: Option<String>,
     uses: Uses,
 }
 
 impl Journal {
-    /// Of nothing but the rig.
+    /// Creates a journal without a lot.
     pub fn new(simulated: bool) -> Self {
         Self {
             lot: None,
@@ -45,18 +45,18 @@ impl Journal {
         }
     }
 
-    /// A run of `lot` begins.
+    /// Begins a run of `lot`.
     pub fn begin(&mut self, lot: &str, at_us: i64) -> Option<Row> {
         self.lot = Some(lot.to_owned());
         self.lot(LotState::Running, None, at_us)
     }
 
-    /// No run has begun.
-    pub fn is_of_no_lot(&self) -> bool {
+    /// Returns true until the run of a lot begins.
+    pub fn has_no_lot(&self) -> bool {
         self.lot.is_none()
     }
 
-    /// The lot is in this state from now on.
+    /// Returns the row that puts the lot into this state.
     fn lot(&self, state: LotState, why: Option<String>, at_us: i64) -> Option<Row> {
         let row = |lot: &String| {
             Row::LotState(LotStateRecord {
@@ -69,7 +69,7 @@ impl Journal {
         self.lot.as_ref().map(row)
     }
 
-    /// An alarm came.
+    /// Returns the rows of a new alarm.
     pub fn alarm(&mut self, alarm: &Alarm, at_us: i64) -> Vec<Row> {
         let text = alarm.text(Lang::En);
         let mut rows = vec![Row::Alarm(AlarmRecord {
@@ -84,15 +84,15 @@ impl Journal {
         if alarm.code == NOT_CALIBRATED {
             rows.extend(self.check(false, &text, at_us));
         }
-        if HOLDS.contains(&alarm.code) {
+        if HOLD_ALARMS.contains(&alarm.code) {
             self.held = Some(alarm.code.name());
             rows.extend(self.lot(LotState::Held, Some(text), at_us));
         }
         rows
     }
 
-    /// The alarms that stand have changed: some causes may have gone, and the lot may go on.
-    pub fn standing(&mut self, standing: &[ListedAlarm], at_us: i64) -> Vec<Row> {
+    /// Returns the rows of a changed alarm list: alarms that cleared, and a lot that continues.
+    pub fn standing(&mut self, standing: &[Standing], at_us: i64) -> Vec<Row> {
         let active: Vec<String> = standing
             .iter()
             .filter(|one| one.is_active())
@@ -116,7 +116,7 @@ impl Journal {
         })
     }
 
-    /// An order was answered; what it does to alarms is kept with them.
+    /// Returns the rows of an answered order, with its effect on alarms.
     pub fn ordered(&self, it: &AnsweredOrder, at_us: i64) -> Vec<Row> {
         let by = &it.by;
         let mut rows = vec![Row::Order(OrderRecord {
@@ -134,12 +134,12 @@ impl Journal {
         rows
     }
 
-    /// A golden check has come out.
+    /// Returns the row of a reference check.
     pub fn checked(&self, checked: &Checked, at_us: i64) -> Option<Row> {
         self.check(checked.passed, &checked.text, at_us)
     }
 
-    /// A calibration is complete, which is a check by itself.
+    /// Returns the row of a calibration, which is also a passed reference check.
     pub fn calibrated(&self, at_us: i64) -> Option<Row> {
         self.check(true, "calibration", at_us)
     }
@@ -156,7 +156,7 @@ impl Journal {
         self.lot.as_ref().map(row)
     }
 
-    /// Uses since the last time.
+    /// Returns the rows of the uses since the last call.
     pub fn uses(&mut self, uses: Uses) -> Vec<Row> {
         let before = std::mem::replace(&mut self.uses, uses);
         let each = uses.each().into_iter().zip(before.each());
@@ -171,7 +171,7 @@ impl Journal {
             .collect()
     }
 
-    /// Parts have moved on inside.
+    /// Returns the row of the machine's contents.
     pub fn inside(&self, inside: Inside) -> Row {
         Row::Inside(InsideRecord {
             simulated: self.simulated,
@@ -179,7 +179,7 @@ impl Journal {
         })
     }
 
-    /// How the run ended, and where the lot stands after it.
+    /// Returns the rows of the end of a run and of the state that the lot has after it.
     pub fn ended(&self, ending: &Ending, exit: &Exit, at_us: i64) -> Vec<Row> {
         let Some(lot) = &self.lot else {
             return Vec::new();
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn between_lots_an_alarm_belongs_to_the_rig_and_no_lot_changes() {
+    fn an_alarm_between_lots_belongs_to_no_lot() {
         let mut journal = Journal::new(false);
         let rows = journal.alarm(&Alarm::reference_check_failed(&fault()), 1);
         assert!(matches!(&rows[..], [Row::Alarm(it)] if it.lot.is_none()));
@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn an_acknowledgement_is_kept_with_who_gave_it_and_one_that_was_refused_changes_no_alarm() {
+    fn only_an_accepted_acknowledgement_changes_the_alarm() {
         let asked = |refused: Option<&str>| AnsweredOrder {
             order: machine::view::Order {
                 order: "acknowledge".into(),
@@ -290,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn wear_is_told_as_what_was_added() {
+    fn wear_rows_hold_the_increase() {
         let mut journal = journal();
         let uses = |probe_touches| Uses {
             probe_touches,

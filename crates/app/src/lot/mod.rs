@@ -1,27 +1,27 @@
-//! A run of a lot: one stream of events, and who hears it.
+//! Runs a lot: one stream of events, and its subscribers.
 //!
 //! | subscriber | does |
 //! |---|---|
-//! | `recorder` (with `journal`, `rows`) | history: durable before the sorter lets a part go |
-//! | `screen` | view of the page |
-//! | the caller's | progress bar, rows on stdout, a script, a calibration that is looked for |
+//! | `recorder` (with `journal`, `rows`) | writes the history, before the sorter may release a part |
+//! | `screen` | shows the run on the page |
+//! | the caller's | progress bar, rows on stdout, a script, a calibration to keep |
 //!
-//! The cycle tells what happens; `progress` takes it in, and every subscriber hears it together with the progress.
+//! The cycle sends events; `progress` includes each one, and every subscriber then receives it with the progress.
 
 mod assemble;
 mod context;
 mod counts;
 mod event;
 mod journal;
+mod prior_state;
 mod progress;
 mod recorder;
 mod rows;
 mod screen;
 mod summary;
-mod taken_over;
 
 pub use assemble::mimic;
-pub use context::{FOUND, LotContext, Purpose};
+pub use context::{FOUND_LOT, LotContext, Purpose};
 pub use counts::Counts;
 pub use event::{LotEvent, Subscriber};
 pub use progress::{LotProgress, PartUnderWay};
@@ -43,21 +43,21 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use tokio::sync::mpsc;
 
-/// Runs one lot on a rig.
+/// A lot with its rig, history and controls, ready to run.
 pub struct LotRunner<'a> {
     /// History file.
     pub db: &'a Path,
-    /// What the run was started with; the lot has passed the gates.
+    /// Input of the run; its lot has passed admission.
     pub context: LotContext<'a>,
     /// Controls shared with page, signals and scripts.
     pub controls: &'a Controls,
 }
 
 impl LotRunner<'_> {
-    /// Runs the lot until it ends; `outer` hears every event. Inside of a runtime of [`super::block_on`].
+    /// Runs the lot until it ends; `outer` receives every event. Panics outside a runtime of [`super::block_on`].
     ///
     /// # Errors
-    /// A history that cannot be opened or closed, a line that is not wired, a truth file that cannot be written.
+    /// Fails when the history cannot be opened or closed, a line has no wiring, or the truth file cannot be written.
     pub async fn run(
         &self,
         orders: OrderQueue,
@@ -66,11 +66,11 @@ impl LotRunner<'_> {
         let (context, controls) = (&self.context, self.controls);
         let pace = pace_of(context);
         let speed = context.source.speed();
-        let held_back = speed.map(|speed| tokio::spawn(pace.hold_back(speed)));
+        let limiter = speed.map(|speed| tokio::spawn(pace.limit_speed(speed)));
         let mut lines = links::open(context, &pace)?;
         let traces = Traces::new(self.db, context.plant, &lines.logs);
         controls.show_traffic(&traces);
-        let (recorder, taken_over) = Recorder::open(self.db, context)?;
+        let (recorder, prior_state) = Recorder::open(self.db, context)?;
         let mut stream = Stream {
             lot: LotProgress::new(*context, lines.eeprom_count()),
             recorder,
@@ -97,7 +97,7 @@ impl LotRunner<'_> {
         };
         let ends = std::mem::take(&mut lines.ends);
         let attended = controls.attended;
-        let cycle = assemble::cycle(context, taken_over, pace, ends, links, attended)?;
+        let cycle = assemble::cycle(context, prior_state, pace, ends, links, attended)?;
         let running = tokio::spawn(cycle.run());
         let kept = stream.keep(received, &recorded).await;
         if let Err(error) = &kept {
@@ -105,8 +105,8 @@ impl LotRunner<'_> {
             history_lost.store(true, Ordering::Release);
         }
         let ended = running.await;
-        if let Some(held_back) = held_back {
-            held_back.abort();
+        if let Some(limiter) = limiter {
+            limiter.abort();
         }
         let Ok((ending, profile)) = ended else {
             let cause = Cause::assertion();
@@ -126,7 +126,6 @@ impl LotRunner<'_> {
     }
 }
 
-/// The clock of a run.
 fn pace_of(context: &LotContext) -> Pace {
     if context.source.is_virtual() {
         Pace::virtual_time()
@@ -135,7 +134,7 @@ fn pace_of(context: &LotContext) -> Pace {
     }
 }
 
-/// The events of a run on their way to the subscribers.
+/// Carries the events of a run to the subscribers.
 struct Stream<'a, 'b> {
     lot: LotProgress<'a>,
     recorder: Recorder,
@@ -145,14 +144,13 @@ struct Stream<'a, 'b> {
 }
 
 impl Stream<'_, '_> {
-    /// Every subscriber hears the event.
     fn tell(&mut self, event: &LotEvent) -> anyhow::Result<()> {
-        self.screen.hear(event, &self.lot);
-        self.outer.hear(event, &self.lot);
-        self.recorder.hear(event, &self.lot)
+        self.screen.receive(event, &self.lot);
+        self.outer.receive(event, &self.lot);
+        self.recorder.receive(event, &self.lot)
     }
 
-    /// Takes in what the cycle tells until it ends; `recorded` follows what is durable.
+    /// Receives the events of the cycle until it ends; sets `recorded` to the last durable part.
     async fn keep(
         &mut self,
         mut events: mpsc::UnboundedReceiver<Event>,
@@ -171,7 +169,7 @@ impl Stream<'_, '_> {
     }
 
     fn take_in(&mut self, event: Event) -> anyhow::Result<()> {
-        let follows = self.lot.take_in(&event);
+        let follows = self.lot.apply(&event);
         let raised = match &event {
             Event::Alarm(_, at) => Some(self.lot.context.wall_us(*at)),
             _other => None,
@@ -187,7 +185,7 @@ impl Stream<'_, '_> {
         Ok(())
     }
 
-    /// Parts that never landed, the summary, and the end of the run in the history.
+    /// Ends the run in the history, after the parts that never landed and the summary.
     fn close(
         mut self,
         ending: &Ending,
@@ -195,7 +193,7 @@ impl Stream<'_, '_> {
         profile: &Profile,
         logs: &[(String, LineLog)],
     ) -> anyhow::Result<()> {
-        for left_behind in self.lot.take_left_behind() {
+        for left_behind in self.lot.take_unlanded() {
             self.tell(&left_behind)?;
         }
         let writing = self.recorder.writing;

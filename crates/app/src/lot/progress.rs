@@ -1,4 +1,4 @@
-//! What a run has come to so far.
+//! Tracks the progress of a run.
 
 use super::context::LotContext;
 use super::counts::Counts;
@@ -23,44 +23,44 @@ use units::RigTime;
 pub struct PartUnderWay {
     /// The part with its record and verdict.
     pub judged: Box<Judged>,
-    /// Since the nest exit of the part before, seconds of rig time; none before it has left the nest.
+    /// Time since the nest exit of the part before, seconds of rig time; `None` before such an exit.
     pub cycle_s: Option<f64>,
-    /// Golden parts up to and with this one.
-    pub golden: u64,
+    /// Number of reference parts judged, this one included.
+    pub reference_count: u64,
 }
 
 impl PartUnderWay {
-    /// Number within its kind, and the kind's name.
+    /// Returns the part's number within its kind, and the name of the kind.
     pub fn number(&self) -> (u64, &'static str) {
-        rows::number(&self.judged.part.kind, self.golden)
+        rows::number(&self.judged.part.kind, self.reference_count)
     }
 }
 
-/// What a run has come to so far.
+/// Progress of a run.
 pub struct LotProgress<'a> {
-    /// What the run was started with.
+    /// Plant, recipe, order and rig of the run.
     pub context: LotContext<'a>,
-    /// Parts and alarms.
+    /// Counts of parts and alarms.
     pub counts: Counts,
-    /// Golden parts judged.
-    pub golden: u64,
+    /// Number of reference parts judged.
+    pub reference_count: u64,
     began: Instant,
     lot_began: Option<RigTime>,
     last_landed: Option<RigTime>,
     under_way: BTreeMap<u64, PartUnderWay>,
     eeprom: EepromCount,
     eeprom_at_start: Option<u64>,
-    /// The alarm that began the trouble which is there, else the last one that came.
+    /// First alarm of the present trouble, else the last alarm.
     trouble: Option<Alarm>,
 }
 
 impl<'a> LotProgress<'a> {
-    /// Nothing has happened yet.
+    /// Creates the progress of a run before its first event.
     pub fn new(context: LotContext<'a>, eeprom: EepromCount) -> Self {
         Self {
             context,
             counts: Counts::default(),
-            golden: 0,
+            reference_count: 0,
             began: Instant::now(),
             lot_began: None,
             last_landed: None,
@@ -71,24 +71,24 @@ impl<'a> LotProgress<'a> {
         }
     }
 
-    /// The part with this ordinal, between verdict and beam.
+    /// Returns the part with this ordinal, between verdict and beam.
     pub fn part(&self, ordinal: u64) -> Option<&PartUnderWay> {
         self.under_way.get(&ordinal)
     }
 
-    /// Judged parts per hour of rig time at `now`; none before the lot has begun.
+    /// Returns judged parts per hour of rig time at `now`; `None` before the lot begins.
     pub fn per_hour(&self, now: RigTime) -> Option<f64> {
         let began = self.lot_began?;
         self.counts.per_hour(now.since(began).as_seconds())
     }
 
-    /// When the last part landed, else when the lot began, else rig time zero.
+    /// Returns when the last part landed, else when the lot began, else rig time zero.
     pub fn end(&self) -> RigTime {
         self.last_landed.or(self.lot_began).unwrap_or_default()
     }
 
-    /// Takes an event of the cycle in; the result follows from it.
-    pub fn take_in(&mut self, event: &Event) -> Option<LotEvent> {
+    /// Includes an event of the cycle; returns the event of the lot that follows from it.
+    pub fn apply(&mut self, event: &Event) -> Option<LotEvent> {
         match event {
             Event::Judged(judged) => self.judged(judged),
             Event::Left(left) => {
@@ -122,19 +122,19 @@ impl<'a> LotProgress<'a> {
     fn judged(&mut self, judged: &Judged) {
         let ordinal = judged.part.ordinal;
         match judged.part.kind {
-            Kind::Reference(_) => self.golden += 1,
+            Kind::Reference(_) => self.reference_count += 1,
             Kind::Lot(_) => self.counts.add(judged.verdict.name()),
         }
         let part = PartUnderWay {
             judged: Box::new(judged.clone()),
             cycle_s: None,
-            golden: self.golden,
+            reference_count: self.reference_count,
         };
         let before = self.under_way.insert(ordinal, part);
         assert!(before.is_none(), "part {ordinal} was judged twice");
     }
 
-    /// A judged part that goes to retest.
+    /// Turns a judged part into a void one that goes to retest.
     fn interrupted(&mut self, interrupted: &Interrupted) {
         let Some(part) = self.under_way.get_mut(&interrupted.ordinal) else {
             return;
@@ -158,13 +158,13 @@ impl<'a> LotProgress<'a> {
         Some(LotEvent::PartDone(Box::new(part), Some(landed.clone())))
     }
 
-    /// Parts that will never land, once.
-    pub fn take_left_behind(&mut self) -> impl Iterator<Item = LotEvent> + use<> {
+    /// Removes and returns the parts that will never land.
+    pub fn take_unlanded(&mut self) -> impl Iterator<Item = LotEvent> + use<> {
         let parts = std::mem::take(&mut self.under_way).into_values();
         parts.map(|part| LotEvent::PartDone(Box::new(part), None))
     }
 
-    /// Why the run ended: as the station says it, and of an alarm which one.
+    /// Returns why the run ended, with the alarm that ended it.
     pub fn exit(&self, ending: &Ending) -> Exit {
         match ending {
             Ending::Complete => Exit::Done,
@@ -176,7 +176,7 @@ impl<'a> LotProgress<'a> {
         }
     }
 
-    /// The whole run in numbers; `writing` is the wall time of the history.
+    /// Summarises the run; `writing` is the wall time that the history took.
     pub fn summary(
         &self,
         ending: &Ending,

@@ -1,15 +1,13 @@
-//! The subscriber that takes the events of a run to the history.
+//! Writes the events of a run to the history.
 //!
-//! Between lots there is no run in the history, until a part that was found inside needs a row: then the lot
-//! [`FOUND`](super::FOUND) gets one.
-//! Everything that has come in goes into one transaction; then the ordinal of the last judged part is
-//! published, which is what lets the sorter open its gripper. The database works on a blocking thread,
-//! one short task per transaction.
+//! Between lots the history has no run until a part found inside needs a row: the lot [`FOUND_LOT`](super::FOUND_LOT) then gets
+//! one. One transaction takes all pending rows; the recorder then publishes the ordinal of the last judged part, which
+//! allows the sorter to open its gripper. The database works on a blocking thread, one short task per transaction.
 
 use super::event::LotEvent;
 use super::journal::Journal;
+use super::prior_state::PriorState;
 use super::progress::{LotProgress, PartUnderWay};
-use super::taken_over::TakenOver;
 use super::{LotContext, Purpose, rows};
 use crate::cycle::Event;
 use crate::exit::Exit;
@@ -26,7 +24,7 @@ use machine::station::turn::Ending;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// The recorder of one run.
+/// Recorder of one run.
 pub(super) struct Recorder {
     store: Option<Store>,
     journal: Journal,
@@ -34,36 +32,35 @@ pub(super) struct Recorder {
     rows: Vec<Row>,
     /// Ordinal of the last judged part among them.
     judged: Option<u64>,
-    aside: Option<(Inside, Uses)>,
-    /// Wall time of the transactions.
+    contents: Option<(Inside, Uses)>,
+    /// Wall time of all transactions.
     pub writing: Duration,
 }
 
 impl Recorder {
-    /// Opens the history and the lot's run; on a rig, a calibration that is still valid comes back.
-    pub fn open(db: &Path, context: &LotContext) -> anyhow::Result<(Self, TakenOver)> {
+    /// Opens the history and begins the lot's run; returns what the run takes over, on a rig a valid calibration.
+    pub fn open(db: &Path, context: &LotContext) -> anyhow::Result<(Self, PriorState)> {
         let mut store = Store::open(db, &Identity::of_this_program())?;
         store.cut_off(context.is_simulated(), context.epoch_us)?;
-        let taken_over = TakenOver::read(&store, context)?;
+        let prior_state = PriorState::read(&store, context)?;
         let mut recorder = Self {
             store: Some(store),
             journal: Journal::new(context.is_simulated()),
             rows: Vec::new(),
             judged: None,
-            aside: None,
+            contents: None,
             writing: Duration::ZERO,
         };
         if !context.purpose.is_between_lots() {
-            recorder.begin(context, taken_over.calibration.as_ref())?;
+            recorder.begin(context, prior_state.calibration.as_ref())?;
         }
-        Ok((recorder, taken_over))
+        Ok((recorder, prior_state))
     }
 
     fn store(&mut self) -> anyhow::Result<&mut Store> {
         self.store.as_mut().context("the history is closed")
     }
 
-    /// The run begins in the history.
     fn begin(
         &mut self,
         context: &LotContext,
@@ -89,8 +86,8 @@ impl Recorder {
     /// Turns an event into rows of the next transaction.
     ///
     /// # Errors
-    /// A run or a calibration that cannot be written.
-    pub fn hear(&mut self, event: &LotEvent, lot: &LotProgress) -> anyhow::Result<()> {
+    /// Fails when a run or a calibration cannot be written.
+    pub fn receive(&mut self, event: &LotEvent, lot: &LotProgress) -> anyhow::Result<()> {
         match event {
             LotEvent::Cycle(event) => self.of_the_cycle(event, lot)?,
             LotEvent::PartDone(part, Some(landed)) => self.landed(part, landed, lot),
@@ -106,7 +103,7 @@ impl Recorder {
         let wall_us = |at| lot.context.wall_us(at);
         match event {
             Event::Judged(judged) => {
-                if self.journal.is_of_no_lot() {
+                if self.journal.has_no_lot() {
                     self.begin(&lot.context, None)?;
                 }
                 self.judged(judged, lot);
@@ -126,25 +123,25 @@ impl Recorder {
                     .extend(self.journal.ordered(answered, wall_us(*at)));
             }
             Event::Inside(inside, uses) => {
-                self.aside = Some((*inside, *uses));
+                self.contents = Some((*inside, *uses));
                 if inside.needs_record() {
-                    self.take_aside();
+                    self.queue_contents();
                 }
             }
             Event::Calibrated(calibration) => self.calibrated(calibration, &lot.context)?,
-            // What landed comes as a part that is done.
+            // `PartDone` covers a landed part.
             Event::State(_) | Event::Left(_) | Event::Landed(_) | Event::LotBegan(_) => {}
         }
         Ok(())
     }
 
     fn judged(&mut self, judged: &Judged, lot: &LotProgress) {
-        let row = rows::part(&lot.context, judged, lot.golden);
+        let row = rows::part(&lot.context, judged, lot.reference_count);
         self.rows.push(Row::Part(row));
         self.judged = Some(judged.part.ordinal);
     }
 
-    /// A judged part that goes to retest: its row follows.
+    /// Adds the row of a judged part that goes to retest.
     fn interrupted(&mut self, interrupted: &Interrupted, lot: &LotProgress) {
         let Some(part) = lot.part(interrupted.ordinal) else {
             return;
@@ -193,22 +190,21 @@ impl Recorder {
         Ok(store.calibrated(&context.order.lot, &record.hash)?)
     }
 
-    /// What is inside: written with the next rows, when a part is let go, when the next one stands behind a lifted one, and
-    /// at the end.
-    fn take_aside(&mut self) {
-        if let Some((inside, uses)) = self.aside.take() {
+    /// Queues the machine's contents, for the next transaction and the end of the run.
+    fn queue_contents(&mut self) {
+        if let Some((inside, uses)) = self.contents.take() {
             self.rows.extend(self.journal.uses(uses));
             self.rows.push(self.journal.inside(inside));
         }
     }
 
-    /// Writes what has come in, and returns the ordinal up to which parts are durable when it has grown.
+    /// Writes the pending rows; returns the ordinal up to which parts are durable when it has grown.
     ///
     /// # Errors
-    /// The transaction failed: nothing of it is written.
+    /// Fails when the transaction fails, which then writes nothing.
     pub async fn commit(&mut self) -> anyhow::Result<Option<u64>> {
         if !self.rows.is_empty() {
-            self.take_aside();
+            self.queue_contents();
             let from = Instant::now();
             let rows = std::mem::take(&mut self.rows);
             let mut store = self.store.take().context("the history is closed")?;
@@ -228,16 +224,16 @@ impl Recorder {
     /// Writes how the run ended, and closes it.
     ///
     /// # Errors
-    /// A run that stays open in the history.
+    /// Fails when the history cannot be written; the run then stays open in it.
     pub fn close(mut self, ending: &Ending, exit: &Exit, lot: &LotProgress) -> anyhow::Result<()> {
-        self.take_aside();
+        self.queue_contents();
         let end_us = lot.context.wall_us(lot.end());
         self.rows.extend(self.journal.ended(ending, exit, end_us));
         let Some(store) = &mut self.store else {
             return Ok(());
         };
         store.record(&self.rows)?;
-        if !self.journal.is_of_no_lot() {
+        if !self.journal.has_no_lot() {
             store.close_lot(&lot.context.order.lot, end_us)?;
         }
         Ok(())

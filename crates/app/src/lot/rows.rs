@@ -1,4 +1,4 @@
-//! A judged part as rows of the history and as a JSON object.
+//! Converts a judged part into rows of the history and a JSON object.
 
 use super::LotContext;
 use history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord};
@@ -10,17 +10,17 @@ use machine::instrument::trace::Trace;
 use serde_json::{Map, Value, json};
 use units::RigTime;
 
-/// Number of a part within its kind, and the kind's name.
-pub fn number(kind: &Kind, golden: u64) -> (u64, &'static str) {
+/// Returns the part's number within its kind, and the name of the kind.
+pub fn number(kind: &Kind, reference_count: u64) -> (u64, &'static str) {
     match kind {
         Kind::Lot(seq) => (*seq, "lot"),
-        Kind::Reference(_) => (golden, "golden"),
+        Kind::Reference(_) => (reference_count, "golden"),
     }
 }
 
-/// Row of a part with its measurements and the replies behind them.
-pub fn part(context: &LotContext, judged: &Judged, golden: u64) -> PartRecord {
-    let (seq, kind) = number(&judged.part.kind, golden);
+/// Returns the row of a part with its measurements and their raw replies.
+pub fn part(context: &LotContext, judged: &Judged, reference_count: u64) -> PartRecord {
+    let (seq, kind) = number(&judged.part.kind, reference_count);
     let at = |time: RigTime| context.wall_us(time);
     PartRecord {
         lot: context.order.lot.clone(),
@@ -53,7 +53,7 @@ pub fn part(context: &LotContext, judged: &Judged, golden: u64) -> PartRecord {
     }
 }
 
-/// What the test saw, a curve per signal, in the order the signals were first looked at.
+/// Returns the curves of the test, one per signal, in the order of the signals' first samples.
 fn curves(trace: &Trace, at: impl Fn(RigTime) -> i64) -> Vec<CurveRecord> {
     let mut curves: Vec<CurveRecord> = Vec::new();
     for look in trace.samples() {
@@ -112,7 +112,7 @@ fn measurement(
     })
 }
 
-/// The budget as JSON; `None` while it holds a term that is not a number (JSON has no infinity).
+/// Returns the budget as JSON; `None` while it holds a term that is not a number (JSON has no infinity).
 fn budget(reading: &Reading) -> Option<String> {
     if !reading.expanded().is_finite() {
         return None;
@@ -120,7 +120,7 @@ fn budget(reading: &Reading) -> Option<String> {
     serde_json::to_string(&reading.budget).ok()
 }
 
-/// The part as one JSON object of `run --json`.
+/// Returns the part as a JSON object of `run --json`.
 pub fn json(context: &LotContext, judged: &Judged, cycle_s: Option<f64>, bin: &str) -> Value {
     let mut values = Map::new();
     let mut uncertainty = Map::new();
@@ -158,7 +158,7 @@ pub fn json(context: &LotContext, judged: &Judged, cycle_s: Option<f64>, bin: &s
     })
 }
 
-/// Seven digits are enough to read and to compare.
+/// Rounds to seven significant digits, for reading and comparing.
 pub fn rounded(value: f64) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;

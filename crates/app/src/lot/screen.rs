@@ -1,5 +1,5 @@
-//! The subscriber that shows a run on the page: the lot when it begins, then every judged part. What a lot has come
-//! to stays on the screen until the next one begins.
+//! Shows a run on the page: the lot when it begins, then every judged part. The results of a lot stay until the next
+//! one begins.
 
 use super::event::{LotEvent, Subscriber};
 use super::progress::LotProgress;
@@ -11,19 +11,19 @@ use machine::handling::output::Judged;
 use machine::view::{LastPart, RecentPart, RunEnd, View};
 use tokio::sync::watch;
 
-/// Parts in the strip of the last ones: two rows of ten.
+/// Number of parts in the strip of recent ones: two rows of ten.
 const RECENT: usize = 20;
 
-/// Shows one run.
+/// The page's subscriber to the events of one run.
 pub(super) struct Screen {
-    /// What screens see.
+    /// Sends the view to the screens.
     pub view: watch::Sender<View>,
-    /// Tells how the lines are doing.
+    /// Traffic and health of the lines.
     pub traces: Traces,
 }
 
 impl Subscriber for Screen {
-    fn hear(&mut self, event: &LotEvent, lot: &LotProgress<'_>) {
+    fn receive(&mut self, event: &LotEvent, lot: &LotProgress<'_>) {
         let lines = || self.traces.health();
         let between = lot.context.purpose.is_between_lots();
         match event {
@@ -66,12 +66,12 @@ impl Subscriber for Screen {
     }
 }
 
-/// A part of the lot under way.
+/// Returns true for a part of the lot under way.
 fn is_shown(judged: &Judged, between_lots: bool) -> bool {
     !between_lots && matches!(judged.part.kind, Kind::Lot(_))
 }
 
-/// The lot and the limits it is judged by.
+/// Shows the lot and its limits.
 fn begun(view: &mut View, context: &LotContext) {
     let limits = context.recipe.limits();
     *view = View {
@@ -91,7 +91,7 @@ fn begun(view: &mut View, context: &LotContext) {
     };
 }
 
-/// The part judged last, and the counts with it.
+/// Shows the part judged last, with the counts.
 fn judged(view: &mut View, lot: &LotProgress, judged: &Judged) {
     let verdicts = lot.counts.verdicts.iter();
     view.judged = lot.counts.parts();

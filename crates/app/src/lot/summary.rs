@@ -1,4 +1,4 @@
-//! The whole run in numbers: the object that ends `run --json`.
+//! Summary of a run: the object that ends `run --json`.
 
 use super::counts::Counts;
 use super::rows::rounded;
@@ -10,7 +10,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// Counts, pace and how a run ended.
+/// Counts, pace and end of a run.
 #[derive(Debug, Clone, Serialize)]
 pub struct Summary {
     /// Always `summary`.
@@ -18,11 +18,11 @@ pub struct Summary {
     kind: &'static str,
     /// Judged parts of the lot.
     pub parts: u64,
-    /// Good ones.
+    /// Parts that passed.
     pub pass: u64,
-    /// Bad ones.
+    /// Parts that failed.
     pub fail: u64,
-    /// Those that could not be judged.
+    /// Parts without a valid measurement.
     pub void: u64,
     /// Parts that a beam has confirmed, by bin.
     pub bins: BTreeMap<String, u64>,
@@ -32,21 +32,21 @@ pub struct Summary {
     pub wall_s: f64,
     /// Judged parts per hour of rig time, rounded.
     pub parts_per_hour: u64,
-    /// Alarms that came.
+    /// Number of alarms.
     pub alarms: u64,
     /// `complete`, `stopped` or `alarm`.
     pub ended: &'static str,
-    /// Why it ended with status 3; null when it did not.
+    /// Cause of exit status 3; null for every other status.
     pub cause: Option<Cause>,
     /// EEPROM writes of all modules since the lot began; absent on a real rig, whose modules keep no count.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub eeprom_writes: Option<u64>,
-    /// Whether the simulated rig looked for bodies that touch; absent on a real rig.
+    /// True when the simulated rig checks bodies for contact; absent on a real rig.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bodies_watched: Option<bool>,
-    /// Where the wall time went.
+    /// Wall time by phase of the control cycle.
     pub wall_profile: WallProfile,
-    /// Fingerprint of everything that each line carried.
+    /// Fingerprint of all bytes on each line, by its name.
     pub bytes: BTreeMap<String, String>,
 }
 
@@ -83,7 +83,7 @@ impl Summary {
     }
 }
 
-/// Where the wall time of a run went, seconds by phase.
+/// Wall time of a run by phase, seconds.
 #[derive(Debug, Clone, Copy, Default, Serialize)]
 pub struct WallProfile {
     scan: f64,

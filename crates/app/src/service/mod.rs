@@ -1,30 +1,30 @@
-//! The rig under one program for a whole day. Page and API stand over the rig; lots come and go.
+//! Keeps the rig under one program for a whole day: page and API over the rig, one lot after another.
 //!
-//! The rig is always under one *run*, as the command `run` has it. Between lots it is one without a lot: the machine
-//! stays as it is until an operator resets it, inputs and alarms are shown, motions by hand are possible, and what is found
-//! inside is discharged. A lot that is ordered at the page ([`router`]) and passes the gates ends that run in a turn of
-//! its station; then the run of the lot begins with what every lot begins with: the modules are verified, the machine
-//! is brought home, and the rig is calibrated unless it is. When the lot ends the rig is between lots again.
+//! The rig is always under one *run*, as the command `run` has it. Between lots this run has no lot: the machine keeps
+//! its state until an operator resets it, the page shows inputs and alarms, motions by hand are possible, and the rig
+//! discharges parts found inside. An admitted lot ordered at the page ([`router`]) ends that run. The run of the lot
+//! then begins as every lot does: it verifies the modules, homes the machine and calibrates the rig if necessary. After
+//! the lot the rig is between lots again.
 //!
-//! | what | becomes of the lot | of the program |
+//! | event | the lot | the program |
 //! |---|---|---|
-//! | the count is reached, or it is closed | complete | between lots |
-//! | an alarm, a stop | goes on after clear, reset and start | stays with the lot |
-//! | another lot is started, or it is held, while the machine rests | open, or held | the other lot, or between lots |
-//! | a port or module is missing | shown as an alarm that names it | tries again at every clear |
-//! | Ctrl-C | finishes the parts inside, open | ends: 4 when it stopped a lot, 3 when that stood in alarm, else 0 |
-//! | the history cannot be written, an assertion | outputs safe, open | ends: 3 |
+//! | the count is reached, or a person closes the lot | is complete | goes between lots |
+//! | an alarm, a stop | continues after clear, reset and start | stays with the lot |
+//! | a person starts another lot, or holds this one, while the machine rests | is open, or held | runs the other lot, or goes between lots |
+//! | a port or module is missing | shows an alarm that names it | tries again at every clear |
+//! | Ctrl-C | finishes the parts inside, is open | ends: 4 when it stopped a lot, 3 when the lot had an active alarm, else 0 |
+//! | the history cannot be written, an assertion fails | makes outputs safe, is open | ends: 3 |
 //!
-//! The simulated rig is one rig all the time. Its magazine is emptied and loaded for every lot, golden parts first, as
-//! a person would do it.
+//! A simulated rig stays the same throughout. Before every lot the program empties its magazine and loads it, reference
+//! parts first, as a person would.
 
 mod page;
 mod router;
 
-use super::admission::{NotAdmitted, admit};
+use super::admission::{AdmissionError, admit};
 use super::controls::Controls;
 use super::exit::Exit;
-use super::lot::{FOUND, LotContext, LotRunner, Purpose, Subscriber, mimic};
+use super::lot::{FOUND_LOT, LotContext, LotRunner, Purpose, Subscriber, mimic};
 use super::order::{Files, LotOrder};
 use super::order_queue::OrderQueue;
 use super::source::RigSource;
@@ -39,23 +39,23 @@ use machine::station::packml::State;
 use machine::view::OrderRequest;
 pub use page::FirstLogin;
 use page::Page;
-use router::{Next, OrderRouter};
+use router::{AfterRun, OrderRouter};
 use std::net::{SocketAddr, TcpListener};
 use std::path::Path;
 use std::sync::Arc;
 use tokio::sync::mpsc;
 
-/// A lot that has passed the gates, with its recipe.
+/// An admitted lot with its recipe.
 type AdmittedLot = (LotOrder, Arc<Recipe>);
 
-/// The rig under one program: everything that stays from lot to lot.
+/// A rig under one program: all that stays from lot to lot.
 pub struct Service {
     files: Files,
     plant: Arc<Plant>,
     /// The rig; a simulated one lives from the start of the program to its end.
     source: RigSource,
     router: OrderRouter,
-    /// What the rig runs between lots.
+    /// Order and recipe of the run between lots.
     between: AdmittedLot,
     first: Option<AdmittedLot>,
     controls: Controls,
@@ -64,10 +64,10 @@ pub struct Service {
 }
 
 impl Service {
-    /// Opens the page at `listen` and the rig behind it; the day begins with `first`, if there is one.
+    /// Serves the page at `listen` and opens the rig behind it; the day begins with lot `first`, if given.
     ///
     /// # Errors
-    /// An address that is taken, a configuration or a lot that is refused, a rig that cannot be built.
+    /// Fails when the address is in use, the configuration or the lot is refused, or the rig cannot be built.
     pub fn open(
         files: &Files,
         source: RigSource,
@@ -84,7 +84,7 @@ impl Service {
         }
         let order = between(&files.config)?;
         let recipe = Arc::new(load_recipe(&files.config, &order.recipe)?);
-        let admitted = |order: LotOrder| -> Result<AdmittedLot, NotAdmitted> {
+        let admitted = |order: LotOrder| -> Result<AdmittedLot, AdmissionError> {
             let recipe = admit(&files.db, &plant, &order, Purpose::Lot)?;
             Ok((order, recipe))
         };
@@ -92,7 +92,7 @@ impl Service {
         let controls = Controls::new(true);
         let (orders, asked) = mpsc::channel(::page::WAITING);
         let mimic = mimic(&plant, &recipe)?;
-        let source = living(source, &plant, &order)?;
+        let source = with_live_rig(source, &plant, &order)?;
         let page = Page::start(listener, files, &controls, orders, mimic)?;
         Ok(Self {
             router: OrderRouter::new(&files.db, &plant, &source),
@@ -107,12 +107,12 @@ impl Service {
         })
     }
 
-    /// Where the page is served.
+    /// Returns the address of the page.
     pub fn address(&self) -> SocketAddr {
         self.page.address
     }
 
-    /// The engineer that a first start has made, once.
+    /// Returns, once, the engineer that a first start created.
     pub fn take_first_login(&mut self) -> Option<FirstLogin> {
         self.page.first_login.take()
     }
@@ -120,12 +120,12 @@ impl Service {
     /// Serves until a signal ends the program; `outer` receives the events of every run.
     ///
     /// # Errors
-    /// A history that cannot be opened, or a rig that cannot be loaded.
+    /// Fails when the history cannot be opened or the rig cannot be loaded.
     pub fn run(mut self, outer: &mut dyn Subscriber) -> anyhow::Result<Exit> {
         let source = self.source.clone();
         let asked = std::mem::replace(&mut self.asked, mpsc::channel(1).1);
         let exit = super::block_on(&source, async {
-            self.controls.heed_signals();
+            self.controls.stop_on_signals();
             tokio::spawn(self.router.clone().work(asked));
             self.work(outer).await
         });
@@ -133,13 +133,13 @@ impl Service {
         exit
     }
 
-    /// Runs one lot after the other until a signal ends the program.
+    /// Runs one lot after another until a signal ends the program.
     async fn work(&mut self, outer: &mut dyn Subscriber) -> anyhow::Result<Exit> {
         let mut next = self.first.take();
         let mut rests = State::Stopped;
         loop {
             let lot = next.take();
-            let exit = self.one_run(lot.as_ref(), rests, outer).await?;
+            let exit = self.run_once(lot.as_ref(), rests, outer).await?;
             rests = if exit == Exit::Done {
                 State::Complete
             } else {
@@ -151,8 +151,8 @@ impl Service {
             match exit {
                 Exit::Trouble(_) => return Ok(exit),
                 Exit::Stopped => match self.router.next() {
-                    Some(Next::Lot(lot)) => next = Some(*lot),
-                    Some(Next::Hold(held)) => {
+                    Some(AfterRun::Lot(lot)) => next = Some(*lot),
+                    Some(AfterRun::Hold(held)) => {
                         let row = lot_decision::state(&held.0, &held.1, Decision::Hold);
                         Store::open(&self.files.db, &Identity::of_this_program())?
                             .record(&[row])?;
@@ -164,14 +164,14 @@ impl Service {
         }
     }
 
-    /// The run of a lot, or the one between lots, in which the machine `rests`.
-    async fn one_run(
+    /// Runs a lot, or the run between lots, in which the machine `rests`.
+    async fn run_once(
         &self,
         lot: Option<&AdmittedLot>,
         rests: State,
         outer: &mut dyn Subscriber,
     ) -> anyhow::Result<Exit> {
-        let source = self.source_now(lot.map(|(order, _)| order))?;
+        let source = self.current_source(lot.map(|(order, _)| order))?;
         let purpose = match lot {
             Some(_) => Purpose::Lot,
             None => Purpose::BetweenLots(rests),
@@ -188,9 +188,8 @@ impl Service {
         runner.run(OrderQueue::from(taken), outer).await
     }
 
-    /// The rig as it is now, a simulated one loaded for the lot: what a lot before found out about its errors is
-    /// forgotten.
-    fn source_now(&self, lot: Option<&LotOrder>) -> anyhow::Result<RigSource> {
+    /// Returns the rig in its present state; loads a simulated one for the lot and drops its calibration.
+    fn current_source(&self, lot: Option<&LotOrder>) -> anyhow::Result<RigSource> {
         match &self.source {
             RigSource::Serial(_) => {}
             #[cfg(feature = "sim")]
@@ -216,8 +215,8 @@ impl Service {
     }
 }
 
-/// The source with a simulated rig that lives from now on, its magazine empty.
-fn living(source: RigSource, plant: &Plant, order: &LotOrder) -> anyhow::Result<RigSource> {
+/// Returns the source with a simulated rig that lives from now on, its magazine empty.
+fn with_live_rig(source: RigSource, plant: &Plant, order: &LotOrder) -> anyhow::Result<RigSource> {
     let _ = (plant, order);
     Ok(match source {
         RigSource::Serial(given) => RigSource::Serial(given),
@@ -236,7 +235,7 @@ fn living(source: RigSource, plant: &Plant, order: &LotOrder) -> anyhow::Result<
     })
 }
 
-/// What the rig runs between lots. The size of a part that is found inside is that of the first recipe there is.
+/// Returns the order of the run between lots; the first recipe gives the size of a part found inside.
 fn between(config: &Path) -> anyhow::Result<LotOrder> {
     let Some(recipe) = recipe_names(config).into_iter().next() else {
         bail!(
@@ -245,7 +244,7 @@ fn between(config: &Path) -> anyhow::Result<LotOrder> {
         );
     };
     Ok(LotOrder {
-        lot: FOUND.into(),
+        lot: FOUND_LOT.into(),
         recipe,
         count: Some(0),
         retest: None,

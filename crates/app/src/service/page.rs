@@ -1,4 +1,4 @@
-//! The page on a thread of its own, so that the line never waits for a screen.
+//! Serves the page on a thread of its own, so that no screen delays the line.
 
 use crate::controls::Controls;
 use crate::order::Files;
@@ -11,29 +11,26 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use tokio::sync::{mpsc, watch};
 
-/// The first engineer of a first start, who may log in.
+/// Login of the first engineer, created at the first start.
 #[derive(Debug)]
 pub struct FirstLogin {
-    /// Name.
+    /// Name of the engineer.
     pub name: String,
-    /// Password; it is stored nowhere.
+    /// Password; stored nowhere.
     pub password: String,
-    /// File of the people who may log in.
+    /// File of the logins.
     pub people: PathBuf,
 }
 
-/// The page, being served.
 pub(super) struct Page {
-    /// Where it listens.
     pub address: SocketAddr,
-    /// Made by a first start.
+    /// Login created at a first start.
     pub first_login: Option<FirstLogin>,
     ended: watch::Sender<bool>,
     thread: JoinHandle<()>,
 }
 
 impl Page {
-    /// Serves from now on.
     pub fn start(
         listener: TcpListener,
         files: &Files,
@@ -71,7 +68,7 @@ impl Page {
                 ::page::serve(listener, shared, seen).await
             });
             if let Err(error) = served {
-                tracing::error!("the page ended: {error}");
+                tracing::error!("the page failed: {error}");
             }
         });
         Ok(Self {
@@ -82,11 +79,11 @@ impl Page {
         })
     }
 
-    /// Ends it, with every stream.
+    /// Ends the server and all its streams.
     pub fn end(self) {
         self.ended.send_replace(true);
         if self.thread.join().is_err() {
-            tracing::error!("the page ended by an assertion");
+            tracing::error!("an assertion of the page failed");
         }
     }
 }

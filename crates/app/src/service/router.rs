@@ -1,13 +1,13 @@
-//! Orders of screens on their way to the rig: those about lots are looked at here first.
+//! Routes orders of screens to the rig; checks those about lots first.
 //!
-//! - `start` with a lot: the gates are asked; then it goes on to the station, which leaves its lot when the machine
-//!   rests. The run that ends by that is followed by the run of the new lot.
-//! - `hold_lot`, `close_lot` of the lot under way go to its station, too; of another lot they are written into the
-//!   history, as `release_lot` and `replaced` are.
-//! - Every other order goes straight on.
+//! - `start` with a lot: goes to the station once the lot is admitted. The station leaves its lot when the machine
+//!   rests; the run of the new lot follows.
+//! - `hold_lot`, `close_lot` of the lot under way go to its station; those of another lot go into the history, as
+//!   `release_lot` and `replaced` do.
+//! - Every other order goes straight to the station.
 //!
-//! Whatever is refused here goes to the station all the same, marked as denied: the audit has one writer while a run is
-//! under way. Orders about lots are attended to one after the other; nothing else waits for them.
+//! The router sends refused orders to the station too, marked as denied, because the audit has one writer during a run.
+//! It handles orders about lots one after another; other orders do not wait for them.
 
 use super::AdmittedLot;
 use crate::admission;
@@ -23,12 +23,12 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use texts::{Lang, Message};
 use tokio::sync::{mpsc, oneshot};
 
-/// What follows on a run that was left by order.
+/// The lot or hold that follows a run ended by an order.
 #[derive(Debug)]
-pub enum Next {
+pub enum AfterRun {
     /// Another lot.
     Lot(Box<AdmittedLot>),
-    /// The lot that was left is held.
+    /// A hold of the lot.
     Hold(Box<(Order, By)>),
 }
 
@@ -37,26 +37,26 @@ pub enum Next {
 struct ActiveRun {
     orders: Option<mpsc::Sender<OrderRequest>>,
     lot: Option<String>,
-    next: Option<Next>,
+    next: Option<AfterRun>,
 }
 
-/// State that all copies of the router share.
+/// State that all clones of the router share.
 #[derive(Debug)]
 struct RouterState {
     db: PathBuf,
     plant: Arc<Plant>,
     source: RigSource,
     run: Mutex<ActiveRun>,
-    /// One order about lots at a time.
+    /// Serialises the orders about lots.
     turn: tokio::sync::Mutex<()>,
 }
 
-/// Where orders of screens come in; copies are the same router.
+/// Entry point of the orders of screens; clones share their state.
 #[derive(Debug, Clone)]
 pub struct OrderRouter(Arc<RouterState>);
 
 impl OrderRouter {
-    /// Over the history in `db`.
+    /// Creates a router over the history in `db`.
     pub fn new(db: &Path, plant: &Arc<Plant>, source: &RigSource) -> Self {
         Self(Arc::new(RouterState {
             db: db.to_owned(),
@@ -67,7 +67,7 @@ impl OrderRouter {
         }))
     }
 
-    /// From now on orders go to this run.
+    /// Routes orders to this run from now on.
     pub fn route_to(&self, orders: mpsc::Sender<OrderRequest>, lot: Option<&str>) {
         *self.run() = ActiveRun {
             orders: Some(orders),
@@ -76,12 +76,12 @@ impl OrderRouter {
         };
     }
 
-    /// What the order wanted by which the run was left.
-    pub fn next(&self) -> Option<Next> {
+    /// Takes the lot or hold that follows the run ended by an order.
+    pub fn next(&self) -> Option<AfterRun> {
         self.run().next.take()
     }
 
-    /// Until nobody can order anything any more.
+    /// Routes orders until all their senders are gone.
     pub async fn work(self, mut asked: mpsc::Receiver<OrderRequest>) {
         while let Some(asked) = asked.recv().await {
             if asked.denied.is_some() || !is_about_lots(&asked.order) {
@@ -91,34 +91,34 @@ impl OrderRouter {
             let router = self.clone();
             tokio::spawn(async move {
                 let _turn = router.0.turn.lock().await;
-                router.attend(asked).await;
+                router.handle(asked).await;
             });
         }
     }
 
-    async fn attend(&self, asked: OrderRequest) {
+    async fn handle(&self, asked: OrderRequest) {
         let (order, by) = (asked.order.clone(), asked.by.clone());
         let decision = Decision::ordered(&order.order);
         let ours = order.lot.is_some() && self.run().lot == order.lot;
         let wanted = match decision {
             None if order.order == "start" => self.admitted(&order).await.map(Some),
             Some(Decision::Hold) if ours => {
-                held(&order).map(|()| Some(Next::Hold(Box::new((order, by)))))
+                require_reason(&order).map(|()| Some(AfterRun::Hold(Box::new((order, by)))))
             }
             Some(Decision::Close) if ours => Ok(None),
             Some(Decision::Release) if ours => Err(refused("lot_under_way")),
             _not_under_way => return self.write(asked).await,
         };
-        if let Err(why) = wanted.and_then(|next| self.expect(next)) {
+        if let Err(why) = wanted.and_then(|next| self.set_next(next)) {
             self.refuse(asked, why);
         } else if !self.pass_on(asked).await {
             self.run().next = None;
         }
     }
 
-    /// Noted before the station hears of it, for a run that is left ends at once. Refused while what was taken before
-    /// has not begun yet.
-    fn expect(&self, next: Option<Next>) -> Result<(), Message> {
+    /// Notes the lot or hold before the station gets the order, because the station ends the run at once. Fails while an
+    /// earlier one has not begun.
+    fn set_next(&self, next: Option<AfterRun>) -> Result<(), Message> {
         let mut run = self.run();
         if run.next.is_some() {
             return Err(not_now());
@@ -127,8 +127,8 @@ impl OrderRouter {
         Ok(())
     }
 
-    /// The lot of a `start`, once the gates have been asked.
-    async fn admitted(&self, order: &Order) -> Result<Next, Message> {
+    /// Returns the lot of a `start` once it is admitted.
+    async fn admitted(&self, order: &Order) -> Result<AfterRun, Message> {
         let order = LotOrder {
             lot: order.lot.clone().unwrap_or_default(),
             recipe: order.recipe.clone().unwrap_or_default(),
@@ -136,43 +136,43 @@ impl OrderRouter {
             retest: order.retest.clone(),
         };
         let router = self.clone();
-        let look = move || {
+        let check = move || {
             let RouterState {
                 db, plant, source, ..
             } = &*router.0;
             let recipe = admission::admit(db, plant, &order, Purpose::Lot)
-                .map_err(|why| why.at_the_screen())?;
-            match admission::uncalibrated(db, &recipe, source) {
-                Ok(None) => Ok(Next::Lot(Box::new((order, recipe)))),
+                .map_err(|why| why.screen_message())?;
+            match admission::calibration_refusal(db, &recipe, source) {
+                Ok(None) => Ok(AfterRun::Lot(Box::new((order, recipe)))),
                 Ok(Some(why)) => Err(refused("calibration_invalid").with("detail", why)),
                 Err(error) => Err(trouble(&error)),
             }
         };
-        beside(look).await
+        blocking(check).await
     }
 
-    /// What no run has to do with goes into the history.
+    /// Writes an order that no run handles into the history.
     async fn write(&self, asked: OrderRequest) {
         let (db, simulated) = (self.0.db.clone(), self.0.source.is_simulated());
         let (order, by) = (asked.order.clone(), asked.by.clone());
         let write = move || match Decision::ordered(&order.order) {
-            Some(decision) => decided(&db, &order, &by, decision),
-            None => replaced(&db, &order, &by, simulated),
+            Some(decision) => write_decision(&db, &order, &by, decision),
+            None => write_replacement(&db, &order, &by, simulated),
         };
-        match beside(write).await {
-            Ok(()) => asked.answer(Ok(())),
+        match blocking(write).await {
+            Ok(()) => asked.say(Ok(())),
             Err(why) => self.refuse(asked, why),
         }
     }
 
-    /// Refused, and so told to the audit.
+    /// Answers with the refusal and records it in the audit.
     fn refuse(&self, asked: OrderRequest, why: Message) {
         let (order, by) = (asked.order.clone(), asked.by.clone());
         self.pass(OrderRequest::denied(order, by, why.say(Lang::En)));
         asked.answer(Err(why));
     }
 
-    /// To the run under way, whose answer goes back; whether it was taken.
+    /// Passes the order to the current run and its answer back; returns whether the run accepted it.
     async fn pass_on(&self, asked: OrderRequest) -> bool {
         let (answer, answered) = oneshot::channel();
         let (order, by) = (asked.order.clone(), asked.by.clone());
@@ -184,7 +184,6 @@ impl OrderRouter {
         taken
     }
 
-    /// To the run under way.
     fn pass(&self, asked: OrderRequest) {
         let orders = self.run().orders.clone();
         let given = match orders {
@@ -206,9 +205,9 @@ fn is_about_lots(order: &Order) -> bool {
     start || machine::view::LOT_ORDERS.contains(&order.order.as_str())
 }
 
-fn decided(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<(), Message> {
+fn write_decision(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<(), Message> {
     if decision == Decision::Hold {
-        held(order)?;
+        require_reason(order)?;
     }
     let name = order.lot.as_deref().unwrap_or_default();
     let standing = match db.exists() {
@@ -218,14 +217,13 @@ fn decided(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<(), 
     let Some(standing) = standing.map_err(|error| trouble(&error))? else {
         return Err(refused("no_such_lot").with("lot", name));
     };
-    if let Some(why) = decision.why_not(standing.state) {
+    if let Some(why) = decision.refusal(standing.state) {
         return Err(why);
     }
     lot_decision::write(db, order, by, decision).map_err(|error| trouble(&error))
 }
 
-/// A lot is held for a reason.
-fn held(order: &Order) -> Result<(), Message> {
+fn require_reason(order: &Order) -> Result<(), Message> {
     let reason = order.reason.as_deref().unwrap_or_default();
     if reason.trim().is_empty() {
         return Err(refused("hold_without_reason"));
@@ -233,7 +231,7 @@ fn held(order: &Order) -> Result<(), Message> {
     Ok(())
 }
 
-fn replaced(db: &Path, order: &Order, by: &By, simulated: bool) -> Result<(), Message> {
+fn write_replacement(db: &Path, order: &Order, by: &By, simulated: bool) -> Result<(), Message> {
     let name = order.counter.as_deref().unwrap_or_default();
     let at_us = jiff::Timestamp::now().as_microsecond();
     let write = |mut store: Store| {
@@ -251,7 +249,7 @@ fn replaced(db: &Path, order: &Order, by: &By, simulated: bool) -> Result<(), Me
     }
 }
 
-async fn beside<T: Send + 'static>(
+async fn blocking<T: Send + 'static>(
     work: impl FnOnce() -> Result<T, Message> + Send + 'static,
 ) -> Result<T, Message> {
     let done = tokio::task::spawn_blocking(work).await;

@@ -1,4 +1,4 @@
-//! Between lots on a rig in which a life of the program before has left a part.
+//! Between lots on a rig in which an earlier run of the program left a part.
 
 #![allow(clippy::unwrap_used)]
 
@@ -25,12 +25,12 @@ async fn reset(orders: &mpsc::Sender<OrderRequest>) {
 }
 
 #[test]
-fn a_part_that_is_found_inside_between_lots_gets_a_row_in_a_lot_of_its_own() {
+fn a_part_found_between_lots_gets_its_own_lot() {
     let mut nobody = ();
     let folder = tempfile::tempdir().unwrap();
     let (config, db) = (Path::new("../../config"), folder.path().join("history.db"));
     let plant = Plant::load(config).unwrap();
-    let drawn = Simulated::drawn_by(1);
+    let drawn = Simulated::with_seed(1);
     let idle = between(config).unwrap();
     let recipe = Arc::new(load_recipe(config, "jzc-22f-012").unwrap());
     let lot = LotOrder {
@@ -104,9 +104,9 @@ fn a_part_that_is_found_inside_between_lots_gets_a_row_in_a_lot_of_its_own() {
     });
     assert_eq!(exit, Exit::Stopped);
     let archive = history::Archive::open(&db).unwrap();
-    let found = archive.show(FOUND, 1, "lot").unwrap();
+    let found = archive.show(FOUND_LOT, 1, "lot").unwrap();
     assert_eq!(found.len(), 1);
     assert_eq!(found[0].verdict, "void");
     assert_eq!(found[0].landed_bin.as_deref(), Some("retest"));
-    assert!(archive.standing(FOUND).unwrap().is_some());
+    assert!(archive.standing(FOUND_LOT).unwrap().is_some());
 }

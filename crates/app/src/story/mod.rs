@@ -1,11 +1,11 @@
-//! A story: a script of troubles and orders on the simulated rig, and what happened, line by line.
+//! Plays a story: scripted faults and orders on the simulated rig, and an account of what follows, line by line.
 //!
-//! A script ([`script`]) says which faults strike the rig and what a person at the screen does, each after an event,
-//! not at a time: so it tells the same story on a faster line. The `narrator` writes down what a mechanic
-//! beside the rig sees. It counts whole seconds from the first trouble and leaves out what has nothing to do with it.
+//! A script ([`script`]) names faults and operator orders, each after an event instead of at a time, so a faster line
+//! gives the same story. The `narrator` writes what a mechanic beside the rig sees. It counts whole seconds from the
+//! first trouble and leaves out unrelated events.
 //!
-//! A person is at the screen: alarms and stops end nothing. The story ends when the script has been played and the
-//! lot is complete, or when nothing has happened for [`PATIENCE`].
+//! A story is attended: alarms and stops do not end the run. It ends when the script is played and the lot complete, or
+//! after [`SILENCE_TIMEOUT`] without an event.
 
 mod narrator;
 mod play;
@@ -21,19 +21,19 @@ use super::simulated::{self, LiveRig};
 use super::source::{RigSource, Simulated};
 use bus::Pace;
 use config::Plant;
-use play::Play;
-pub use play::{PATIENCE, StoryReport};
+use play::Player;
+pub use play::{SILENCE_TIMEOUT, StoryReport};
 use script::Script;
 use std::fs::File;
 use std::sync::Arc;
 use tokio::sync::mpsc;
 
-/// Plays `script` beside the lot of `order` on a rig that is built for it; what the outputs did goes to `journal`.
-/// Returns the story, and how the run ended; `outer` hears every event.
+/// Plays `script` during the lot of `order` on a new rig; writes the actions of the outputs to `journal`. Returns the
+/// story and the exit; `outer` receives every event.
 ///
 /// # Errors
-/// Bad input, as of any lot.
-pub fn tell(
+/// Fails on bad input, as any lot does.
+pub fn run(
     files: &Files,
     rig: Simulated,
     order: &LotOrder,
@@ -58,11 +58,11 @@ pub fn tell(
         controls: &controls,
     };
     super::block_on(&source, async {
-        controls.heed_signals();
+        controls.stop_on_signals();
         let (onlooker, events) = mpsc::unbounded_channel();
         let (orders, asked) = mpsc::channel(1);
         let stop = Arc::clone(&controls.stop);
-        let play = Play::new(script, journal);
+        let play = Player::new(script, journal);
         let pace = Pace::virtual_time();
         let playing = tokio::spawn(play.run(events, orders, live, pace, stop));
         let mut both = (onlooker, outer);
@@ -70,11 +70,11 @@ pub fn tell(
         drop(both);
         let told = playing.await.ok();
         let played = match &told {
-            Some(told) if told.whole => Exit::Done,
+            Some(told) if told.complete => Exit::Done,
             Some(_) => Exit::AnswerIsNo,
             None => Exit::Trouble(Cause::script()),
         };
-        // An alarm is part of the story; trouble of the program itself is not.
+        // Alarms belong to the story; a failure of the program does not.
         let own = exit.cause().is_some_and(Cause::is_program_failure);
         Ok((told, if own { exit } else { played }))
     })

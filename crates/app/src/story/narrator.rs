@@ -1,10 +1,10 @@
-//! What happened, line by line.
+//! Writes the account of a story, line by line.
 //!
-//! Seconds are whole ones and count from the first thing that a script did or the first alarm; what is the ordinary
-//! course of a lot has none. The first alarm of a code comes with why it happens, what follows and what to do.
+//! Whole seconds count from the first action of the script or the first alarm; lines of the ordinary course of a lot
+//! carry none. The first alarm of each code comes with its cause, consequence and action.
 
 use super::play::Refusal;
-use super::script::{Awaited, Line, Script};
+use super::script::{Awaited, Script, Step};
 use crate::cycle::{Event, PANEL};
 use machine::handling::ledger::{Kind, Part};
 use machine::handling::output::Landed;
@@ -17,17 +17,16 @@ use std::collections::{BTreeMap, BTreeSet};
 use texts::Lang;
 use units::RigTime;
 
-/// Lines so far.
+/// Account of a story.
 #[derive(Debug)]
 pub struct Narrator {
     text: String,
-    /// When the trouble began.
+    /// Rig time of the first trouble.
     zero: Option<RigTime>,
     /// Name and verdict by ordinal.
     parts: BTreeMap<u64, (String, &'static str)>,
-    /// Alarms that were explained.
     explained: BTreeSet<AlarmCode>,
-    /// Alarms whose cause is there.
+    /// Alarms whose cause is present.
     active: BTreeSet<AlarmCode>,
     bins: BTreeMap<Bin, u64>,
 }
@@ -50,7 +49,7 @@ impl Narrator {
         }
     }
 
-    /// Something happened on the line at `now`.
+    /// Adds an event of the line at `now`.
     pub fn event(&mut self, event: &Event, now: RigTime) {
         match event {
             Event::LotBegan(_) => self.plain("the lot begins"),
@@ -91,9 +90,9 @@ impl Narrator {
         }
     }
 
-    /// The script has struck the rig.
-    pub fn fault(&mut self, fault: &str, struck: Result<(), SimError>, now: RigTime) {
-        let text = match struck {
+    /// Adds a fault of the script.
+    pub fn fault(&mut self, fault: &str, injected: Result<(), SimError>, now: RigTime) {
+        let text = match injected {
             Ok(()) => format!("rig       {fault}"),
             Err(why) => format!("rig       {fault}: {why}"),
         };
@@ -101,7 +100,7 @@ impl Narrator {
         self.stamped(now, &text);
     }
 
-    /// The script has ordered something.
+    /// Adds an order of the script with its answer.
     pub fn order(&mut self, words: &str, answer: Result<(), Refusal>, now: RigTime) {
         let text = match answer {
             Ok(()) => format!("operator  {words}"),
@@ -111,9 +110,9 @@ impl Narrator {
         self.stamped(now, &text);
     }
 
-    /// Nothing has happened for too long.
-    pub fn silence(&mut self, awaited: Option<&Line>, now: RigTime) {
-        let text = match awaited.map(|line| &line.event) {
+    /// Adds that no event came within the limit.
+    pub fn silence(&mut self, awaited: Option<&Step>, now: RigTime) {
+        let text = match awaited.map(|step| &step.event) {
             Some(event) => format!(
                 "nothing happens any more; the script waits for {}",
                 words(event)
@@ -123,7 +122,7 @@ impl Narrator {
         self.stamped(now, &text);
     }
 
-    /// Everything that was told, with where the parts are and who has touched whom.
+    /// Returns the account, with the parts in each bin and the collisions.
     pub fn end(mut self, crashes: &[String]) -> String {
         let bins: Vec<String> = self
             .bins

@@ -1,7 +1,7 @@
-//! Plays a script beside a running lot: waits, strikes, orders, and has the narrator describe what happens.
+//! Plays a script during a lot: waits, applies faults, sends orders, and passes events to the narrator.
 
 use super::narrator::Narrator;
-use super::script::{Awaited, Deed, Script};
+use super::script::{Action, Awaited, Script};
 use crate::cycle::Event;
 use bus::Pace;
 use machine::handling::ledger::Kind;
@@ -20,25 +20,25 @@ use thiserror::Error;
 use tokio::sync::{mpsc, oneshot};
 use units::{RigTime, Span};
 
-/// Nothing has happened for so long: nothing will any more.
-pub const PATIENCE: Span = Span::ms(180_000);
-/// What happened, line by line.
+/// Longest time without an event before the story ends.
+pub const SILENCE_TIMEOUT: Span = Span::ms(180_000);
+/// Account of a story, line by line.
 #[derive(Debug)]
 pub struct StoryReport {
-    /// The story.
+    /// The account.
     pub text: String,
-    /// Everything in the script came, and the journal was kept.
-    pub whole: bool,
+    /// True when the whole script was played and the journal was written.
+    pub complete: bool,
 }
 
-/// A script to be played.
+/// A script to play.
 #[derive(Debug)]
-pub(super) struct Play {
+pub(super) struct Player {
     script: Script,
     journal: Option<File>,
 }
 
-/// What a line of the script may wait for.
+/// Events so far that a line of the script may wait for.
 #[derive(Debug, Default)]
 struct Observed {
     lot: bool,
@@ -47,12 +47,12 @@ struct Observed {
     judged: BTreeSet<u64>,
     left: BTreeSet<u64>,
     landed: BTreeSet<u64>,
-    /// Number in the lot by ordinal.
+    /// Number of each part within the lot, by its ordinal in the run.
     numbers: BTreeMap<u64, u64>,
 }
 
-impl Play {
-    /// Ready to begin; what the outputs did goes to `journal`.
+impl Player {
+    /// Prepares a script; the actions of the outputs go to `journal`.
     pub fn new(script: Script, journal: Option<File>) -> Self {
         Self { script, journal }
     }
@@ -69,14 +69,14 @@ impl Play {
         let journal = self.journal.map(|file| (file, rig.journal()));
         let mut narrator = Narrator::new(&self.script);
         let mut observed = Observed::default();
-        let mut lines = self.script.lines.iter().peekable();
+        let mut steps = self.script.steps.iter().peekable();
         let (mut last, mut due) = (pace.now(), None);
-        let mut whole = true;
+        let mut complete = true;
         loop {
             let now = pace.now();
-            match lines.peek() {
-                Some(line) if due.is_none() && observed.holds(&line.event) => {
-                    due = Some(now + line.after)
+            match steps.peek() {
+                Some(step) if due.is_none() && observed.holds(&step.event) => {
+                    due = Some(now + step.after)
                 }
                 Some(_) => {}
                 None if observed.is_over() => stop.store(true, Ordering::Release),
@@ -93,32 +93,32 @@ impl Play {
                     }
                     None => break,
                 },
-                () = pace.sleep_until(due.unwrap_or(last + PATIENCE)) => {
-                    if let Some(line) = lines.next_if(|_| due.is_some()) {
+                () = pace.sleep_until(due.unwrap_or(last + SILENCE_TIMEOUT)) => {
+                    if let Some(step) = steps.next_if(|_| due.is_some()) {
                         (last, due) = (pace.now(), None);
-                        play(&line.deed, &orders, &rig, pace, &mut narrator).await;
-                    } else if std::mem::replace(&mut whole, false) {
-                        narrator.silence(lines.peek().copied(), pace.now());
+                        perform(&step.action, &orders, &rig, pace, &mut narrator).await;
+                    } else if std::mem::replace(&mut complete, false) {
+                        narrator.silence(steps.peek().copied(), pace.now());
                         stop.store(true, Ordering::Release);
                         last = RigTime(u64::MAX / 2);
                     }
                 }
             }
         }
-        whole &= lines.peek().is_none();
+        complete &= steps.peek().is_none();
         let text = narrator.end(&rig.crashes());
         if let Some((file, entries)) = journal
-            && let Err(error) = kept(file, &entries)
+            && let Err(error) = write_journal(file, &entries)
         {
             tracing::error!("--journal: {error}");
-            whole = false;
+            complete = false;
         }
-        StoryReport { text, whole }
+        StoryReport { text, complete }
     }
 }
 
-/// What the journal holds, one object per line.
-fn kept(file: File, entries: &Receiver<Entry>) -> std::io::Result<()> {
+/// Writes the journal, one JSON object per line.
+fn write_journal(file: File, entries: &Receiver<Entry>) -> std::io::Result<()> {
     let mut file = BufWriter::new(file);
     for entry in entries.try_iter() {
         writeln!(file, "{}", json!(entry))?;
@@ -126,36 +126,36 @@ fn kept(file: File, entries: &Receiver<Entry>) -> std::io::Result<()> {
     file.flush()
 }
 
-async fn play(
-    deed: &Deed,
+async fn perform(
+    action: &Action,
     orders: &mpsc::Sender<OrderRequest>,
     rig: &SharedRig,
     pace: Pace,
     narrator: &mut Narrator,
 ) {
-    match deed {
-        Deed::Fault(fault) => {
-            narrator.fault(fault, rig.strike(fault), pace.now());
+    match action {
+        Action::Fault(fault) => {
+            narrator.fault(fault, rig.inject(fault), pace.now());
         }
-        Deed::Order(words, order) => {
+        Action::Order(words, order) => {
             let answer = ask(order, orders).await;
             narrator.order(words, answer, pace.now());
         }
     }
 }
 
-/// Why an order of the script is not taken.
+/// Reason why an order of the script fails.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub(super) enum Refusal {
-    /// The line is gone.
+    /// The run has ended.
     #[error("the run has ended")]
     Ended,
-    /// The station's reason.
+    /// The station refused the order for this reason.
     #[error("{0}")]
-    Said(String),
+    Refused(String),
 }
 
-/// The station's answer.
+/// Sends an order and returns the station's answer.
 async fn ask(order: &Order, orders: &mpsc::Sender<OrderRequest>) -> Result<(), Refusal> {
     let (answer, answered) = oneshot::channel();
     let order = order.clone();
@@ -170,7 +170,7 @@ async fn ask(order: &Order, orders: &mpsc::Sender<OrderRequest>) -> Result<(), R
         .await
         .map_err(|_| Refusal::Ended)?;
     let answer = answered.await.map_err(|_| Refusal::Ended)?;
-    answer.map_err(|why| Refusal::Said(why.say(texts::Lang::En)))
+    answer.map_err(|why| Refusal::Refused(why.say(texts::Lang::En)))
 }
 
 impl Observed {
@@ -198,7 +198,7 @@ impl Observed {
         }
     }
 
-    /// The lot is done, or was ended before.
+    /// Returns true when the lot is complete or stopped.
     fn is_over(&self) -> bool {
         matches!(self.state, Some(State::Complete | State::Stopped))
     }

@@ -1,4 +1,4 @@
-//! What a script says, read from its text.
+//! Parses the script of a story.
 //!
 //! ```text
 //! # The door is opened while a part is under test.
@@ -9,79 +9,79 @@
 //! after state Aborted +5      order clear
 //! after state Stopped         order jog motion=probes_up
 //! ```
-//! The first comment is the title. Lines that begin with `after` are played one after the other.
+//! The first comment is the title. Lines that begin with `after` run in sequence.
 
 use anyhow::{Context, bail};
 use machine::station::packml::State;
 use machine::view::{ORDERS, Order};
 use units::Span;
 
-/// Parts of a lot whose script does not say.
+/// Parts of a lot unless the script gives a number.
 const PARTS: u64 = 4;
-/// Longest time after an event, seconds.
+/// Longest delay after an event, seconds.
 const LONGEST_S: f64 = 3600.0;
 
-/// A script.
+/// A parsed script.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Script {
-    /// What it is about.
+    /// Title, from the first comment.
     pub title: String,
-    /// Parts of the lot.
+    /// Number of parts in the lot.
     pub parts: u64,
-    /// Faults from the start.
+    /// Faults active from the start.
     pub faults: Vec<String>,
-    /// What is done, in this order.
-    pub lines: Vec<Line>,
+    /// Steps, in order.
+    pub steps: Vec<Step>,
 }
 
-/// One thing that is done.
+/// A step: an event, a delay and an action.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Line {
-    /// What it waits for.
+pub struct Step {
+    /// Event that triggers the step.
     pub event: Awaited,
-    /// And then for so long.
+    /// Delay after the event.
     pub after: Span,
-    /// What it does.
-    pub deed: Deed,
+    /// Action of the step.
+    pub action: Action,
 }
 
-/// What a line waits for; all of them go on being so once they were, but a state.
+/// Event that triggers a step. A past event triggers it too; a state must be the present one.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Awaited {
     /// The lot itself has begun.
     Lot,
     /// The outer machine is in this state.
     State(State),
-    /// An alarm of this code has come.
+    /// An alarm with this code has come.
     Alarm(String),
-    /// This part of the lot was judged.
+    /// This part of the lot has its verdict.
     Judged(u64),
-    /// It has left the nest.
+    /// This part has left the nest.
     Left(u64),
-    /// The beam of its bin has seen it.
+    /// The beam of its bin has seen this part.
     Landed(u64),
 }
 
-/// What a line does.
+/// Action of a step.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Deed {
-    /// A fault strikes the rig.
+pub enum Action {
+    /// A fault of the simulated rig, `NAME[=VALUE]`.
     Fault(String),
-    /// A person at the screen orders something; as written, and as the cycle takes it.
+    /// An order of a person at the screen: its words, and the parsed order.
     Order(String, Box<Order>),
 }
 
-/// Reads a script.
+/// Parses a script.
 ///
 /// # Errors
-/// The first line that is none, with its number.
+/// Fails on the first invalid line, with its number.
 pub fn parse(text: &str) -> anyhow::Result<Script> {
     let title = text.lines().find_map(|line| line.strip_prefix('#'));
     let mut script = Script {
         title: title.unwrap_or_default().trim().to_owned(),
         parts: PARTS,
         faults: Vec::new(),
-        lines: Vec::new(),
+        steps: Vec::new(),
     };
     for (number, text) in (1..).zip(text.lines()) {
         let text = text.split('#').next().unwrap_or_default().trim();
@@ -97,13 +97,13 @@ fn add(script: &mut Script, text: &str) -> anyhow::Result<()> {
     match words[..] {
         ["parts", count] => script.parts = number(count)?,
         ["fault", fault] => script.faults.push(fault.to_owned()),
-        ["after", ref rest @ ..] => script.lines.push(line(rest)?),
+        ["after", ref rest @ ..] => script.steps.push(step(rest)?),
         _ => bail!("found {text:?}, expected parts N, fault NAME[=VALUE] or after EVENT DEED"),
     }
     Ok(())
 }
 
-fn line(words: &[&str]) -> anyhow::Result<Line> {
+fn step(words: &[&str]) -> anyhow::Result<Step> {
     let (event, rest) = match *words {
         ["lot", ref rest @ ..] => (Awaited::Lot, rest),
         ["state", name, ref rest @ ..] => (Awaited::State(state(name)?), rest),
@@ -120,17 +120,21 @@ fn line(words: &[&str]) -> anyhow::Result<Line> {
         [first, rest @ ..] if first.starts_with('+') => (seconds(first)?, rest),
         rest => (Span(0), rest),
     };
-    let deed = match *rest {
-        ["fault", fault] => Deed::Fault(fault.to_owned()),
+    let action = match *rest {
+        ["fault", fault] => Action::Fault(fault.to_owned()),
         ["order", ref words @ ..] if !words.is_empty() => {
-            Deed::Order(words.join(" "), Box::new(order(words)?))
+            Action::Order(words.join(" "), Box::new(order(words)?))
         }
         _ => bail!(
             "found {:?}, expected fault NAME[=VALUE] or order WORD",
             rest.join(" ")
         ),
     };
-    Ok(Line { event, after, deed })
+    Ok(Step {
+        event,
+        after,
+        action,
+    })
 }
 
 fn number(text: &str) -> anyhow::Result<u64> {
@@ -154,7 +158,7 @@ fn seconds(text: &str) -> anyhow::Result<Span> {
     }
 }
 
-/// What the cycle does not know is refused there, as a screen's order would be.
+/// Parses an order; the cycle checks its arguments, as it does for a screen.
 fn order(words: &[&str]) -> anyhow::Result<Order> {
     let Some((word, members)) = words
         .split_first()
@@ -187,24 +191,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_script_is_a_title_a_lot_faults_and_what_is_done_after_what() {
+    fn a_script_parses_into_title_parts_faults_and_steps() {
         let text = "# By hand.\nparts 2\nfault fall=1\n\nafter judged 1 +1.5 fault door # now\n\
                     after state Idle order jog motion=pusher_extend\n";
         let script = parse(text).unwrap();
         assert_eq!((script.title.as_str(), script.parts), ("By hand.", 2));
         assert_eq!(script.faults, ["fall=1"]);
-        let [door, jog] = &script.lines[..] else {
-            panic!("{:?}", script.lines)
+        let [door, jog] = &script.steps[..] else {
+            panic!("{:?}", script.steps)
         };
         assert_eq!(
-            (&door.event, door.after, &door.deed),
+            (&door.event, door.after, &door.action),
             (
                 &Awaited::Judged(1),
                 Span::ms(1500),
-                &Deed::Fault("door".into())
+                &Action::Fault("door".into())
             )
         );
-        let Deed::Order(words, order) = &jog.deed else {
+        let Action::Order(words, order) = &jog.action else {
             panic!("{jog:?}")
         };
         assert_eq!(
@@ -215,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_line_is_refused_with_its_number_and_what_was_expected() {
+    fn an_invalid_line_is_named_with_what_is_expected() {
         for (text, expected) in [
             (
                 "parts 1\nparts none",

@@ -13,7 +13,7 @@ const TIME_OUT: Duration = Duration::from_secs(2);
 const LATE: Duration = Duration::from_micros(150);
 
 /// Sends each of `requests` and reads its reply; returns the time from the first request to the last.
-pub fn asked(path: &str, wire: Wire, requests: &[Vec<u8>]) -> io::Result<Duration> {
+pub fn exchange_all(path: &str, wire: Wire, requests: &[Vec<u8>]) -> io::Result<Duration> {
     let mut port = tokio_serial::new(path, wire.baud)
         .timeout(TIME_OUT)
         .open_native()?;

@@ -167,9 +167,9 @@ fn measured(baud: u32, commands: &[Command]) -> Result<Row, Box<dyn Error>> {
         .worker_threads(2)
         .enable_all()
         .build()?
-        .block_on(asked(ports.clone(), commands, count));
+        .block_on(exchange_all(ports.clone(), commands, count));
     let requests: Vec<Vec<u8>> = commands.iter().cycle().take(count).map(written).collect();
-    let peer = bare::asked(&ports.path, wire, &requests)?;
+    let peer = bare::exchange_all(&ports.path, wire, &requests)?;
     row(wire, &answers, count, peer)
 }
 
@@ -220,7 +220,7 @@ fn written(command: &Command) -> Vec<u8> {
 }
 
 /// Sends `commands` in turn until `count` have been answered; the next request always waits.
-async fn asked(ports: SerialPorts, commands: &[Command], count: usize) -> Vec<Answer> {
+async fn exchange_all(ports: SerialPorts, commands: &[Command], count: usize) -> Vec<Answer> {
     let mut settings = LineSettings::new("bench", ports.baud);
     settings.checksum = false;
     let (ask, to_line) = mpsc::channel(1);

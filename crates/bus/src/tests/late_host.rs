@@ -52,7 +52,7 @@ impl AsyncWrite for Unnoticed {
 }
 
 /// Sends one request through `port`.
-async fn asked<P: AsyncRead + AsyncWrite + Unpin + Send>(
+async fn exchange<P: AsyncRead + AsyncWrite + Unpin + Send>(
     port: P,
     pace: Pace,
     command: Command,
@@ -85,7 +85,7 @@ fn a_reply_that_waited_for_the_host_counts() {
                 awake: false,
                 reply,
             };
-            asked(port, pace, count()).await
+            exchange(port, pace, count()).await
         })
     };
     let heard = answer(THIRTY);
@@ -99,7 +99,7 @@ fn a_reply_that_waited_for_the_host_counts() {
 
 #[test]
 fn a_silent_module_must_name_itself_in_real_time() {
-    let asked_for_its_name = tokio::runtime::Builder::new_current_thread()
+    let name_requests = tokio::runtime::Builder::new_current_thread()
         .enable_time()
         .build()
         .unwrap()
@@ -116,9 +116,9 @@ fn a_silent_module_must_name_itself_in_real_time() {
                 }
                 names
             };
-            let (names, answer) = tokio::join!(module, asked(ours, pace, count()));
+            let (names, answer) = tokio::join!(module, exchange(ours, pace, count()));
             assert!(matches!(answer.outcome, Err(LineError::TimeOut { .. })));
             names
         });
-    assert_eq!(asked_for_its_name, 1);
+    assert_eq!(name_requests, 1);
 }

@@ -13,17 +13,17 @@ fn say(bytes: &'static [u8]) -> Vec<Say> {
     vec![(2_000, bytes)]
 }
 
-fn asked_of(script: Vec<Vec<Say>>, requests: &[(Command, u8)]) -> (Vec<Answer>, usize) {
-    let (got, asked) = in_virtual_time(played(settings(), script, requests));
-    (got, asked.len())
+fn played_count(script: Vec<Vec<Say>>, requests: &[(Command, u8)]) -> (Vec<Answer>, usize) {
+    let (got, sent) = in_virtual_time(played(settings(), script, requests));
+    (got, sent.len())
 }
 
 #[test]
 fn after_a_damaged_reply_an_address_is_read_twice() {
     let script = vec![say(DAMAGED), say(THIRTY), say(THIRTY)];
-    let (got, asked) = asked_of(script, &[(count(), 1), (count(), 1)]);
+    let (got, sent) = played_count(script, &[(count(), 1), (count(), 1)]);
     assert!(matches!(got[0].outcome, Err(LineError::Reply { .. })));
-    assert_eq!((got[1].outcome.clone(), asked), (Ok(Reply::Count(30)), 3));
+    assert_eq!((got[1].outcome.clone(), sent), (Ok(Reply::Count(30)), 3));
     assert_eq!(got[1].raw, ">0000001ED4");
 }
 
@@ -37,13 +37,13 @@ fn three_different_answers_to_one_request_are_rejected() {
         say(THIRTY),
         say(THIRTY),
     ];
-    let (got, asked) = asked_of(script, &[(count(), 1), (count(), 1), (count(), 1)]);
+    let (got, sent) = played_count(script, &[(count(), 1), (count(), 1), (count(), 1)]);
     let text = got[1].outcome.as_ref().unwrap_err().to_string();
     assert!(
         text.starts_with("line measure, 03: ") && text.contains("repeated reads disagree"),
         "{text}"
     );
-    assert_eq!((got[2].outcome.clone(), asked), (Ok(Reply::Count(30)), 6));
+    assert_eq!((got[2].outcome.clone(), sent), (Ok(Reply::Count(30)), 6));
 }
 
 #[test]
@@ -56,14 +56,14 @@ fn a_switched_input_needs_a_third_answer_that_agrees() {
             say(b">3B7F30\r"),
             say(third),
         ];
-        asked_of(script, &[(count(), 1), (port, 1)])
+        played_count(script, &[(count(), 1), (port, 1)])
     };
-    let (got, asked) = told(b">3B7F30\r");
+    let (got, sent) = told(b">3B7F30\r");
     let bits = Bits {
         first: 0x3B,
         second: 0x7F,
     };
-    assert_eq!((got[1].outcome.clone(), asked), (Ok(Reply::Bits(bits)), 4));
+    assert_eq!((got[1].outcome.clone(), sent), (Ok(Reply::Bits(bits)), 4));
     // The time is that of the second answer, the first that shows the new input.
     assert!(got[1].asked_at >= got[0].answered_at + Span(2_000));
     assert!(got[1].answered_at.since(got[1].asked_at) < Span(3_000));
@@ -79,8 +79,8 @@ fn a_falling_count_or_frequency_needs_a_third_answer() {
     let frequency = Counter::ReadFrequency(UpTo::new(0).unwrap()).to(Address(3));
     for (command, nine) in [(count(), Reply::Count(9)), (frequency, Reply::Frequency(9))] {
         let script = vec![say(DAMAGED), say(THIRTY), say(NINE), say(NINE)];
-        let (got, asked) = asked_of(script, &[(count(), 1), (command, 1)]);
-        assert_eq!((got[1].outcome.clone(), asked), (Ok(nine), 4));
+        let (got, sent) = played_count(script, &[(count(), 1), (command, 1)]);
+        assert_eq!((got[1].outcome.clone(), sent), (Ok(nine), 4));
         assert_eq!(got[1].raw, ">00000009C7");
     }
 }
@@ -89,9 +89,9 @@ fn a_falling_count_or_frequency_needs_a_third_answer() {
 fn a_rising_frequency_needs_a_third_answer() {
     let frequency = Counter::ReadFrequency(UpTo::new(0).unwrap()).to(Address(3));
     let script = vec![say(DAMAGED), say(THIRTY), say(SOON), say(SOON)];
-    let (got, asked) = asked_of(script, &[(count(), 1), (frequency, 1)]);
+    let (got, sent) = played_count(script, &[(count(), 1), (frequency, 1)]);
     assert_eq!(
-        (got[1].outcome.clone(), asked),
+        (got[1].outcome.clone(), sent),
         (Ok(Reply::Frequency(31)), 4)
     );
 }
@@ -100,12 +100,12 @@ fn a_rising_frequency_needs_a_third_answer() {
 fn a_slow_module_is_not_read_a_third_time() {
     let late = |bytes| vec![(30_000, bytes)];
     let script = vec![say(DAMAGED), late(THIRTY), late(NINE), late(NINE)];
-    let (got, asked) = asked_of(script, &[(count(), 1), (count(), 1)]);
+    let (got, sent) = played_count(script, &[(count(), 1), (count(), 1)]);
     assert!(matches!(
         got[1].outcome,
         Err(LineError::Contradicted { .. })
     ));
-    assert_eq!(asked, 3);
+    assert_eq!(sent, 3);
 }
 
 #[test]
@@ -113,19 +113,19 @@ fn other_addresses_and_outputs_need_no_confirmation() {
     let other = Counter::Read(UpTo::new(0).unwrap()).to(Address(5));
     let write = Digital::Write(OutputWord::sixteen(0x1234)).to(Address(3));
     let script = vec![say(DAMAGED), say(THIRTY), say(b">3E\r")];
-    let (got, asked) = asked_of(script, &[(count(), 1), (other, 1), (write, 1)]);
+    let (got, sent) = played_count(script, &[(count(), 1), (other, 1), (write, 1)]);
     assert_eq!(got[1].outcome, Ok(Reply::Count(30)));
-    assert_eq!((got[2].outcome.clone(), asked), (Ok(Reply::Accepted), 3));
+    assert_eq!((got[2].outcome.clone(), sent), (Ok(Reply::Accepted), 3));
 }
 
 #[test]
 fn the_probation_ends_with_a_hundred_whole_answers() {
     let mut script = vec![say(DAMAGED)];
     script.extend(vec![say(THIRTY); 300]);
-    let (got, asked) = asked_of(script, &[(count(), 1); 61]);
+    let (got, sent) = played_count(script, &[(count(), 1); 61]);
     assert!(got[1..].iter().all(|answer| answer.outcome.is_ok()));
     // The line asks fifty of them twice, ten once.
-    assert_eq!(asked, 1 + usize::from(PROBATION_ANSWERS) + 10);
+    assert_eq!(sent, 1 + usize::from(PROBATION_ANSWERS) + 10);
 }
 
 fn volts() -> Command {
@@ -138,15 +138,15 @@ fn volts() -> Command {
 fn read_of(said: [&'static [u8]; 3]) -> (Answer, usize) {
     let mut script = vec![say(b">1000FE\r")];
     script.extend(said.map(say));
-    let (mut got, asked) = asked_of(script, &[(volts(), 1), (volts(), 1)]);
+    let (mut got, sent) = played_count(script, &[(volts(), 1), (volts(), 1)]);
     assert!(matches!(got[0].outcome, Err(LineError::Reply { .. })));
-    (got.remove(1), asked)
+    (got.remove(1), sent)
 }
 
 #[test]
 fn of_three_moving_readings_the_middle_one_counts() {
-    let (got, asked) = read_of([b">1000FF\r", b">200000\r", b">300001\r"]);
-    assert_eq!((&*got.raw, asked), (">200000", 4));
+    let (got, sent) = read_of([b">1000FF\r", b">200000\r", b">300001\r"]);
+    assert_eq!((&*got.raw, sent), (">200000", 4));
     assert!(got.outcome.is_ok(), "{got:?}");
     assert!(got.answered_at.since(got.asked_at) < Span(3_000));
 }
@@ -168,6 +168,6 @@ fn damage_within_the_noise_of_a_reading_is_rejected() {
 
 #[test]
 fn a_silent_module_is_not_put_on_probation() {
-    let (got, asked) = asked_of(vec![vec![], say(THIRTY)], &[(count(), 1), (count(), 1)]);
-    assert_eq!((got[1].outcome.clone(), asked), (Ok(Reply::Count(30)), 2));
+    let (got, sent) = played_count(vec![vec![], say(THIRTY)], &[(count(), 1), (count(), 1)]);
+    assert_eq!((got[1].outcome.clone(), sent), (Ok(Reply::Count(30)), 2));
 }

@@ -1,7 +1,7 @@
 //! Replays a recorded trace to the line: the same bytes at the same distances give the same conclusions.
 
 use super::*;
-use dcon::understand;
+use dcon::interpret;
 
 /// Plays the modules' side of `recorded`: after each request, the bytes recorded after it, with the same delay.
 async fn play(mut stream: DuplexStream, pace: Pace, recorded: Recorded) -> (bool, DuplexStream) {
@@ -110,7 +110,7 @@ fn a_trace_as_text_parses_back_byte_for_byte() {
         (115_200, true, "measure")
     );
     assert_eq!(back.entries, recorded.entries);
-    let said = understand(
+    let said = interpret(
         back.entries[0].bytes(),
         back.entries[1].bytes(),
         back.checksum,

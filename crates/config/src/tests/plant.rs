@@ -1,4 +1,4 @@
-//! The folder as a whole: missing files, the scene, golden parts, unknown recipes.
+//! The folder as a whole: missing files, the scene, reference parts, unknown recipes.
 
 use super::{GOLDEN, RIG, changed, line_of};
 use crate::{Plant, load_recipe, recipe_names};
@@ -38,7 +38,7 @@ impl Copy {
 fn the_whole_plant_is_loaded_from_its_folder() {
     let copy = Copy::with("", str::to_owned);
     let plant = Plant::load(copy.0.path()).unwrap();
-    assert_eq!(plant.golden.of_nominal(12.0).count(), 5);
+    assert_eq!(plant.reference_parts.of_nominal(12.0).count(), 5);
     assert_eq!(plant.reference.unwrap().coil_ohm, 400.0);
     assert_eq!(plant.accuracy.conversions_per_s, 75.0);
     assert_eq!(

@@ -1,7 +1,7 @@
 //! Conformance vectors of the named modules, from their manuals: decoded whole, cut off, and with each bit damaged.
 
 use super::sealed;
-use crate::{Family, ReplyError, readings, understand};
+use crate::{Family, ReplyError, decode_request, interpret};
 use proptest::prelude::*;
 
 /// Model, request, reply and meaning, separated by tabs; frames without checksum and CR.
@@ -35,9 +35,9 @@ fn vectors() -> Vec<Vector> {
 fn said(vector: &Vector, reply: &[u8], checksum: bool) -> Vec<String> {
     let family = Family::of_name(vector.model).unwrap();
     let request = sealed(vector.request, checksum);
-    let mut said: Vec<String> = understand(&request, reply, checksum)
+    let mut said: Vec<String> = interpret(&request, reply, checksum)
         .into_iter()
-        .filter(|(command, _)| family.knows(command))
+        .filter(|(command, _)| family.has_command(command))
         .map(|(_, reply)| match reply {
             Ok(reply) => reply.to_string(),
             Err(ReplyError::Refused) => "refused".to_owned(),
@@ -73,9 +73,9 @@ fn no_truncated_vector_decodes_to_a_value() {
         let family = Family::of_name(vector.model).unwrap();
         for checksum in [false, true] {
             let whole = sealed(vector.reply, checksum);
-            for command in readings(vector.request.as_bytes())
+            for command in decode_request(vector.request.as_bytes())
                 .into_iter()
-                .filter(|it| family.knows(it))
+                .filter(|it| family.has_command(it))
             {
                 // Skips commands that do not accept the whole reply either.
                 if command.decode(&whole, checksum).is_err() {
@@ -98,7 +98,7 @@ fn no_truncated_vector_decodes_to_a_value() {
 fn no_vector_with_one_wrong_bit_passes_the_checksum() {
     for vector in vectors() {
         let whole = sealed(vector.reply, true);
-        for command in readings(vector.request.as_bytes()) {
+        for command in decode_request(vector.request.as_bytes()) {
             for (at, bit) in (0..whole.len()).flat_map(|at| (0..8).map(move |bit| (at, bit))) {
                 let mut damaged = whole.clone();
                 damaged[at] ^= 1 << bit;
@@ -141,7 +141,7 @@ fn without_checksum_the_range_still_refuses_damaged_values() {
 
 #[test]
 fn factory_commands_are_recognised_by_their_characters() {
-    use crate::factory;
+    use crate::factory_command;
     for request in [
         "$010",
         "$011",
@@ -154,11 +154,11 @@ fn factory_commands_are_recognised_by_their_characters() {
         "$010C2",
         "~01E0",
     ] {
-        assert!(factory(request.as_bytes()).is_some(), "{request}");
+        assert!(factory_command(request.as_bytes()).is_some(), "{request}");
     }
     for vector in vectors() {
         assert_eq!(
-            factory(vector.request.as_bytes()),
+            factory_command(vector.request.as_bytes()),
             None,
             "{}",
             vector.request
@@ -169,14 +169,14 @@ fn factory_commands_are_recognised_by_their_characters() {
 proptest! {
     #[test]
     fn no_bytes_make_the_reading_of_a_request_panic(request in "[#$%@~]?[\\x00-\\x7F]{0,24}", reply in "[!>?]?[ -~]{0,20}\r?", sum: bool) {
-        for command in readings(request.as_bytes()) {
+        for command in decode_request(request.as_bytes()) {
             let mut written = Vec::new();
             command.encode(false, &mut written);
             let written = written.strip_suffix(b"\r").unwrap_or_default();
             // `#AABBDD` (7 characters) has two spellings.
             prop_assert!(written == request.as_bytes() || request.len() == 7);
-            prop_assert!(readings(written).contains(&command));
+            prop_assert!(decode_request(written).contains(&command));
         }
-        let _ = understand(request.as_bytes(), reply.as_bytes(), sum);
+        let _ = interpret(request.as_bytes(), reply.as_bytes(), sum);
     }
 }

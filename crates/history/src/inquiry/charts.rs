@@ -44,7 +44,7 @@ pub fn charts(
         None => of_bins(&archive.lots(filter)?),
     };
     if charts.is_empty() {
-        return Err(InquiryError::not_there(
+        return Err(InquiryError::missing(
             "too few parts for a control chart: it takes two values, or two runs",
         ));
     }

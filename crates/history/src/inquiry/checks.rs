@@ -70,7 +70,7 @@ pub fn known_runs(archive: &Archive, filter: &Filter) -> Result<()> {
     let named = filter.lot.is_some() || filter.recipe.is_some() || filter.run.is_some();
     if named && !archive.has_runs(filter)? {
         let what = "no run has this lot, run and recipe; `history list` shows those there are";
-        return Err(InquiryError::not_there(what));
+        return Err(InquiryError::missing(what));
     }
     Ok(())
 }

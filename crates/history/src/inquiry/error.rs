@@ -15,7 +15,7 @@ pub enum InquiryError {
     },
     /// The lot, recipe or part does not exist.
     #[error("{what}")]
-    NotThere {
+    Missing {
         /// Description of the missing thing.
         what: String,
     },
@@ -41,7 +41,7 @@ impl InquiryError {
     }
 
     /// Makes the error of a missing lot, recipe or part.
-    pub fn not_there(what: impl Into<String>) -> Self {
-        Self::NotThere { what: what.into() }
+    pub fn missing(what: impl Into<String>) -> Self {
+        Self::Missing { what: what.into() }
     }
 }

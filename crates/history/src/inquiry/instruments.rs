@@ -84,22 +84,23 @@ pub struct CertifiedReading {
     pub uncertainty: Option<f64>,
 }
 
-/// Collects calibrations and readings of a rig; `golden` are the certificates of the plant.
+/// Collects calibrations and readings of a rig; `reference_parts` are the certificates of the plant.
 ///
 /// # Errors
 /// The history cannot be read.
 pub fn instruments(
     archive: &Archive,
     simulated: bool,
-    golden: &[Certificate],
+    reference_parts: &[Certificate],
 ) -> Result<Instruments> {
     let now_us = Timestamp::now().as_microsecond();
     let stored = archive.calibrations(simulated)?;
     let held = stored.into_iter().map(|it| held(it, now_us));
-    let golden = golden.iter().map(|part| reference_part(archive, part));
+    let parts = reference_parts.iter();
+    let parts = parts.map(|part| reference_part(archive, part));
     Ok(Instruments {
         calibrations: held.collect(),
-        golden: golden.collect::<Result<_>>()?,
+        golden: parts.collect::<Result<_>>()?,
         check: archive.last_reference_check(simulated)?,
     })
 }

@@ -92,7 +92,7 @@ pub fn part_certificate(
     let run = part.and_then(|part| runs.iter().find(|run| run.run == part.run));
     match (part, run) {
         (Some(part), Some(run)) => Ok(certificate(paper, part, run)),
-        _ => Err(InquiryError::not_there(format!(
+        _ => Err(InquiryError::missing(format!(
             "lot {lot:?} has no part {seq} (in this run and of this recipe)"
         ))),
     }

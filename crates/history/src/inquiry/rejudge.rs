@@ -27,7 +27,7 @@ pub struct RejudgedPart {
     pub verdict: &'static str,
     /// Bin of that verdict.
     pub bin: String,
-    /// Reasons against a pass, in the strings of rows.
+    /// Reasons against a pass, as texts.
     pub reasons: Vec<String>,
     /// The same reasons as codes.
     pub reason_codes: Vec<Reason>,

@@ -109,7 +109,7 @@ fn steps(language: Lang, recipe: &Recipe, kind: &Card, plant: &CardSettings) -> 
                         td { (number) } td.text { (language.attribute(step.text, "what")) }
                         td.text { (language.attribute(step.text, "tooling")) }
                         td.text { (joined(language, &step.drive)) }
-                        td.text { (demanded(language, recipe, step)) }
+                        td.text { (required_value(language, recipe, step)) }
                         td { (format!("{:.2}", quota.machine_s)) } td { (format!("{:.2}", quota.auxiliary_s)) }
                     }
                 }
@@ -127,7 +127,7 @@ fn joined(language: Lang, pieces: &[Piece]) -> String {
     pieces.iter().map(one).collect()
 }
 
-fn demanded(language: Lang, recipe: &Recipe, step: &Step) -> String {
+fn required_value(language: Lang, recipe: &Recipe, step: &Step) -> String {
     match &step.demand {
         Demand::Sensors => language.attribute(step.text, "requirement").to_owned(),
         Demand::Within(characteristics) => demands(language, recipe, characteristics),

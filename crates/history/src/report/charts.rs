@@ -112,7 +112,7 @@ pub(super) fn histogram(values: &Ordered, limits: Limits) -> Option<String> {
     columns(&mut plot, &it);
     for (limit, name) in [(low, "≥ "), (high, "≤ ")] {
         if let Some(at) = limit {
-            plot.upright(at, LIMIT, &format!("{name}{}", figure(Some(at))));
+            plot.vertical_line(at, LIMIT, &format!("{name}{}", figure(Some(at))));
         }
     }
     let step = round_step((range[1] - range[0]) / 5.0)?;

@@ -66,7 +66,7 @@ impl Plot {
     }
 
     /// A line upwards at a value of x, named at its top.
-    pub fn upright(&mut self, x: f64, colour: &str, name: &str) {
+    pub fn vertical_line(&mut self, x: f64, colour: &str, name: &str) {
         let (at, bottom) = (self.at_x(x), self.height - BELOW);
         let style = format!("stroke=\"{colour}\" stroke-width=\"1.5\" stroke-dasharray=\"5 3\"");
         self.svg.line([at, ABOVE], [at, bottom], &style);

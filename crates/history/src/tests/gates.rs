@@ -1,4 +1,4 @@
-//! States of lots, golden checks and suspect parts, retests, orders, what became of alarms, wear.
+//! States of lots, reference checks and suspect parts, retests, orders, what became of alarms, wear.
 
 use super::*;
 
@@ -332,7 +332,7 @@ fn the_book_of_lots_counts_over_runs_and_leaves_out_what_was_imported() {
 fn what_a_decision_makes_of_a_lot_it_does_not_make_twice() {
     for decision in Decision::ALL {
         assert_eq!(Decision::ordered(decision.order()), Some(decision));
-        let again = decision.why_not(decision.becomes());
+        let again = decision.refusal(decision.becomes());
         let texts = again.map(|why| texts::Lang::ALL.map(|lang| why.say(lang)));
         assert!(texts.is_some_and(|[en, zh]| en != zh));
     }

@@ -72,7 +72,7 @@ fn a_file_of_every_earlier_schema_keeps_its_rows_and_can_be_written_on() {
             .record(&[Row::Part(part("批次", 1, "pass", 7.6))])
             .unwrap();
         assert_eq!(store.pragma("user_version"), SCHEMA.to_string());
-        assert_eq!(file.archive().how_many(&Filter::default()).unwrap(), 3);
+        assert_eq!(file.archive().count_parts(&Filter::default()).unwrap(), 3);
     }
 }
 
@@ -131,7 +131,9 @@ fn what_was_not_copied_whole_is_never_pruned() {
     let file = File::new();
     let mut store = filled(&file, 3);
     assert_eq!(
-        store.copied(&Filter::default(), "copy.db", 10).unwrap(),
+        store
+            .record_export(&Filter::default(), "copy.db", 10)
+            .unwrap(),
         0,
         "it is open"
     );
@@ -146,7 +148,7 @@ fn what_was_not_copied_whole_is_never_pruned() {
         lot: Some("A".into()),
         ..Filter::default()
     };
-    assert_eq!(store.copied(&only_a, "copy.db", 40).unwrap(), 1);
+    assert_eq!(store.record_export(&only_a, "copy.db", 40).unwrap(), 1);
     assert!(store.prunable(20).unwrap().is_empty(), "it ended later");
     let mut done = Vec::new();
     store
@@ -161,7 +163,7 @@ fn what_was_not_copied_whole_is_never_pruned() {
     assert_eq!(count(&file.by_hand(), "series"), 2, "of lot B alone");
     let left = archive.values("operate_voltage_v", &Filter::default());
     assert_eq!(left.unwrap().values, [7.0]);
-    assert_eq!(archive.how_many(&Filter::default()).unwrap(), 1);
+    assert_eq!(archive.count_parts(&Filter::default()).unwrap(), 1);
     assert_eq!(
         archive.lots(&Filter::default()).unwrap().len(),
         2,

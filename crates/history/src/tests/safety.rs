@@ -81,14 +81,14 @@ fn a_file_that_may_not_be_written_is_an_error_that_says_so_and_can_still_be_read
     let refusal = store.record(&rows).unwrap_err();
     assert_eq!(refusal.to_string(), "recording: the history is read-only");
     assert!(store.begin_lot(&lot("B")).is_err());
-    assert_eq!(file.archive().how_many(&Filter::default()).unwrap(), 10);
+    assert_eq!(file.archive().count_parts(&Filter::default()).unwrap(), 10);
 }
 
 #[test]
 fn a_full_disk_is_an_error_that_says_so_and_loses_nothing_written() {
     let file = File::new();
     let mut store = filled(&file, 10);
-    store.no_more_pages();
+    store.forbid_growth();
     let rows: Vec<Row> = (11..500)
         .map(|seq| Row::Part(part("A", seq, "pass", 7.0)))
         .collect();

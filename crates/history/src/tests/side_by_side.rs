@@ -21,7 +21,7 @@ fn record(store: &mut Store, lot: &str, seqs: impl Iterator<Item = u64>) {
     store.record(&rows).unwrap();
 }
 
-/// Both ways through the file, over all runs, one run, and a page.
+/// Checks that both query paths agree over all runs, one run, and a page.
 fn agree(file: &File) {
     let archive = file.archive();
     let of_b = Filter {
@@ -126,6 +126,6 @@ fn a_filter_for_more_than_runs_does_not_take_packed_values() {
             ..base()
         },
     ];
-    assert!(base().asks_for_runs_alone());
-    assert!(!narrower.iter().any(Filter::asks_for_runs_alone));
+    assert!(base().selects_whole_runs());
+    assert!(!narrower.iter().any(Filter::selects_whole_runs));
 }

@@ -237,7 +237,7 @@ fn a_part_lands_once_and_in_one_bin() {
 }
 
 #[test]
-fn golden_parts_count_apart_from_the_lot() {
+fn reference_parts_count_apart_from_the_lot() {
     let file = File::new();
     let mut store = file.store();
     store.begin_lot(&lot("A")).unwrap();

@@ -68,7 +68,7 @@ pub(crate) async fn xlsx(State(app): App, uri: Uri) -> Result<(Saved, Vec<u8>), 
     let made = move |archive: &history::Archive| {
         checks::known_runs(archive, &filter)?;
         let keys = checks::parameters(archive, filter.param.as_deref())?;
-        let parts = archive.how_many(&filter)?;
+        let parts = archive.count_parts(&filter)?;
         if parts > SHEET_PARTS {
             let reason = format!(
                 "found {parts} parts, a spreadsheet takes up to {SHEET_PARTS} here; \

@@ -18,7 +18,7 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'n
 pub(crate) type Page = ([(HeaderName, &'static str); 1], Html<String>);
 
 /// Adds the policy to `page`.
-pub(crate) fn on_paper(page: String) -> Page {
+pub(crate) fn with_policy(page: String) -> Page {
     ([(CONTENT_SECURITY_POLICY, POLICY)], Html(page))
 }
 
@@ -77,7 +77,7 @@ async fn page(
     app: AppState,
     made: impl FnOnce(&Archive) -> Result<String, ApiError> + Send + 'static,
 ) -> Result<Page, ApiError> {
-    app.readers.read(made).await.map(on_paper)
+    app.readers.read(made).await.map(with_policy)
 }
 
 fn printed(uri: &Uri, route: &str, used: &[&str]) -> Result<(Filter, ReportMembers), ApiError> {

@@ -21,12 +21,12 @@ fn first() -> &'static str {
 
 /// Markup of the first answer and of all pages.
 static MARKUP: LazyLock<String> = LazyLock::new(|| {
-    let pages = fetched::SOURCES.iter().map(|[_, markup, _]| *markup);
+    let pages = page_scripts::SOURCES.iter().map(|[_, markup, _]| *markup);
     std::iter::once(FRAME).chain(pages).collect()
 });
 /// Code of the first answer and of all pages.
 static CODE: LazyLock<String> = LazyLock::new(|| {
-    let pages = fetched::SOURCES.iter().map(|[_, _, code]| *code);
+    let pages = page_scripts::SOURCES.iter().map(|[_, _, code]| *code);
     std::iter::once(SCRIPT).chain(pages).collect()
 });
 
@@ -224,7 +224,7 @@ fn the_first_answer_is_small_and_names_no_other_host() {
         assert_eq!(FRAME.matches(mark).count(), 1);
         assert!(!first().contains(mark));
     }
-    let scripts = fetched::SCRIPTS.values().map(|it| &it.plain[..]);
+    let scripts = page_scripts::SCRIPTS.values().map(|it| &it.plain[..]);
     for text in scripts.chain([first().as_bytes()]) {
         let text = std::str::from_utf8(text).unwrap();
         for foreign in ["http://", "https://", "//cdn", "@import", "src=", "url("] {
@@ -235,7 +235,7 @@ fn the_first_answer_is_small_and_names_no_other_host() {
 
 #[test]
 fn each_page_of_the_menu_comes_once() {
-    let paths: BTreeMap<String, String> = serde_json::from_str(&fetched::json()).unwrap();
+    let paths: BTreeMap<String, String> = serde_json::from_str(&page_scripts::json()).unwrap();
     for page in quoted(FRAME, "href=\"#") {
         assert!(page == "operator" || paths.contains_key(&page), "{page}");
     }
@@ -247,7 +247,7 @@ fn each_page_of_the_menu_comes_once() {
         assert!(!FRAME.contains(&format!("data-page=\"{page}\"")));
     }
     for path in paths.values() {
-        assert!(fetched::SCRIPTS.contains_key(path), "{path}");
+        assert!(page_scripts::SCRIPTS.contains_key(path), "{path}");
     }
 }
 

@@ -76,7 +76,7 @@ impl Runner<'_> {
                 epoch_us: EPOCH_US + began_us,
                 calibration,
             })),
-            ..Simulated::drawn_by(1)
+            ..Simulated::with_seed(1)
         })
     }
 

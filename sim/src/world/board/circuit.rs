@@ -30,11 +30,11 @@ impl Board {
 
     pub(super) fn senses(&self, contact: Contact, part: Option<&Specimen>) -> bool {
         self.touching
-            && part.is_some_and(|it| it.pins().contact(contact) && self.trips(it, contact))
+            && part.is_some_and(|it| it.pins().contact(contact) && self.detects_closed(it, contact))
     }
 
     /// Checks whether a contact is closed with a resistance low enough for the monitor.
-    pub(super) fn trips(&self, part: &Specimen, contact: Contact) -> bool {
+    pub(super) fn detects_closed(&self, part: &Specimen, contact: Contact) -> bool {
         part.contact_mohm(contact).is_some_and(|mohm| {
             let ohm = mohm * 1e-3;
             ohm / (ohm + self.table.monitor_ohm) < self.table.monitor_threshold_pct / 100.0
@@ -47,7 +47,7 @@ impl Board {
 
     /// Returns the supply voltage that reaches the pins of a coil. The film acts on the divider only; the model
     /// ignores its effect on L/R, one percent at 4 ohm.
-    pub(super) fn behind_probes_v(&self, coil_ohm: f64) -> f64 {
+    pub(super) fn coil_input_v(&self, coil_ohm: f64) -> f64 {
         let share = 1.0 / (1.0 + self.film_ohm / coil_ohm);
         self.limited_v(coil_ohm + self.film_ohm) * share
     }
@@ -69,7 +69,7 @@ impl Board {
         let current = self.coil_a(part);
         match (self.driving, self.commands.is_on(Out::ReferenceCoil)) {
             (true, true) => current * self.reference_coil_ohm,
-            (true, false) => self.behind_probes_v(part.map_or(f64::INFINITY, |it| it.input_ohm())),
+            (true, false) => self.coil_input_v(part.map_or(f64::INFINITY, |it| it.input_ohm())),
             (false, _) if current <= 0.0 => 0.0,
             (false, _) if self.clamp_diode => -self.table.diode_v,
             (false, _) => -self.table.zener_v,

@@ -111,7 +111,7 @@ impl Mechanism {
     }
 
     /// Drops the part once the fingers have opened far enough.
-    pub(super) fn let_go(&mut self, now_us: u64) {
+    pub(super) fn release_part(&mut self, now_us: u64) {
         self.places.gripped = false;
         let number = self.places.carried.as_ref().and_then(|part| part.number);
         if self.faults.strikes(Fault::PartSticks, number) {
@@ -128,7 +128,7 @@ impl Mechanism {
         let (name, beam) = match bin {
             Some(bin) => (bin.name.clone(), In::from_name(&bin.beam)),
             None if near(0.0) && self.at(CylinderId::SortZ).at_far(now_us) => {
-                return self.put_back(now_us);
+                return self.return_to_nest(now_us);
             }
             None => return self.drop_carried(now_us),
         };
@@ -154,7 +154,7 @@ impl Mechanism {
     }
 
     /// Sets a carried part down in the nest.
-    pub(super) fn put_back(&mut self, now_us: u64) {
+    pub(super) fn return_to_nest(&mut self, now_us: u64) {
         if let Some(mut part) = self.places.carried.take() {
             match self.places.nest.is_some() {
                 true => {

@@ -95,7 +95,7 @@ impl RelayValues {
         part.index = index;
         part.defect = defect::of_part(Defect::ALL, seed, index, world.defects.rate_pct);
         if let Some(defect) = part.defect {
-            part.spoil(defect, world, &mut draw);
+            part.apply_defect(defect, world, &mut draw);
         }
         part
     }
@@ -156,7 +156,7 @@ impl RelayValues {
         }
     }
 
-    fn spoil(&mut self, defect: Defect, world: &WorldTable, draw: &mut Draw) {
+    fn apply_defect(&mut self, defect: Defect, world: &WorldTable, draw: &mut Draw) {
         let table = &world.defects;
         let volts = |draw: &mut Draw, ends, scale: f64| scale * draw.between(ends);
         match defect {
@@ -167,7 +167,7 @@ impl RelayValues {
                 self.turns *= left;
                 self.time_origin = TimeOrigin::Follows;
             }
-            Defect::WrongCoil => self.rewind(draw.between(table.wrong_coil_factor), world),
+            Defect::WrongCoil => self.change_winding(draw.between(table.wrong_coil_factor), world),
             Defect::WeakSpring => {
                 self.release_v = volts(draw, table.weak_spring_release_v, self.volt_scale);
                 self.operate_v = volts(draw, table.weak_spring_operate_v, self.volt_scale);
@@ -225,7 +225,7 @@ impl RelayValues {
     }
 
     /// Changes the winding at constant power: volts scale with the root of the ohms.
-    fn rewind(&mut self, factor: f64, world: &WorldTable) {
+    fn change_winding(&mut self, factor: f64, world: &WorldTable) {
         self.coil_ohm = self.nominal_ohm(world) * factor;
         self.turns *= factor.sqrt();
         self.time_origin = TimeOrigin::Follows;

@@ -30,7 +30,7 @@ fn emptied(magazine: &mut Magazine) -> Vec<(Option<u64>, f64)> {
 fn a_refilled_magazine_repeats_only_the_reference_parts() {
     let mut first = loaded(2);
     let one = emptied(&mut first);
-    let mut second = loaded(3).in_place_of(&first);
+    let mut second = loaded(3).continuing(&first);
     assert!(second.waiting() > 3);
     let two = emptied(&mut second);
     let reference_parts = |parts: &[(Option<u64>, f64)]| -> Vec<f64> {

@@ -1,11 +1,11 @@
 //! Interprets line traffic, for traces and commands typed by hand: which commands a module family has, which
 //! requests must never be sent, and what a request and its reply mean together.
 //!
-//! A request may have several readings ([`readings`]). The reply shows which one was meant: [`understand`] returns
+//! A request may fit several commands ([`decode_request`]). The reply shows which one the host sent: [`interpret`] returns
 //! those that the reply fits.
 
 use super::frame::{self, hex_digit};
-use super::{Command, Reply, ReplyError, readings};
+use super::{Command, Reply, ReplyError, decode_request};
 
 /// Family of a module, which determines its commands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,7 +36,7 @@ impl Family {
     }
 
     /// Whether modules of this family have this command.
-    pub fn knows(self, command: &Command) -> bool {
+    pub fn has_command(self, command: &Command) -> bool {
         match command {
             Command::HostOk | Command::SampleAll | Command::Common(..) => true,
             Command::AnalogIn(..) => self == Self::AnalogIn,
@@ -49,7 +49,7 @@ impl Family {
 
 /// Returns the reason why a request must never be sent; `None` when it may be. Factory calibration and trim need
 /// instruments that a rig does not have, and can spoil a module for good.
-pub fn factory(request: &[u8]) -> Option<&'static str> {
+pub fn factory_command(request: &[u8]) -> Option<&'static str> {
     let [lead, _, _, rest @ ..] = request else {
         return None;
     };
@@ -71,9 +71,9 @@ pub fn factory(request: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// Returns the readings of `request` that `reply` fits, both as on the wire; if it fits none, returns each reading
+/// Returns the commands of `request` that `reply` fits, both as on the wire; if it fits none, returns each command
 /// with its error.
-pub fn understand(
+pub fn interpret(
     request: &[u8],
     reply: &[u8],
     checksum: bool,
@@ -81,12 +81,12 @@ pub fn understand(
     let Ok((text, _)) = frame::open(request, checksum) else {
         return Vec::new();
     };
-    let mut said: Vec<_> = readings(text)
+    let mut found: Vec<_> = decode_request(text)
         .into_iter()
         .map(|command| (command, command.decode(reply, checksum)))
         .collect();
-    if said.iter().any(|(_, reply)| reply.is_ok()) {
-        said.retain(|(_, reply)| reply.is_ok());
+    if found.iter().any(|(_, reply)| reply.is_ok()) {
+        found.retain(|(_, reply)| reply.is_ok());
     }
-    said
+    found
 }

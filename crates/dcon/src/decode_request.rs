@@ -1,7 +1,7 @@
 //! Parses a request as it appeared on the wire, from lead to last character, back into commands.
 //!
 //! The same characters mean different things to different modules (`$016` is a channel mask, a level or sixteen
-//! bits), so a text may have several readings; each family has its own list. Ranges are not on the wire, so numbers
+//! bits), so a text may fit several commands; each family has its own list. Ranges are not on the wire, so numbers
 //! stay in their notation.
 
 use super::frame::hex_digit;
@@ -33,9 +33,9 @@ const OUTPUT_FORMS: [OutputForm; 5] = [
 ];
 
 /// Returns every command that is written as `request`, from lead to last character without checksum and CR.
-pub fn readings(request: &[u8]) -> Vec<Command> {
-    let usual = usual(request);
-    let request = usual.as_deref().unwrap_or(request);
+pub fn decode_request(request: &[u8]) -> Vec<Command> {
+    let canonical = canonical(request);
+    let request = canonical.as_deref().unwrap_or(request);
     let rest = match request {
         b"~**" => return vec![Command::HostOk],
         b"#**" => return vec![Command::SampleAll],
@@ -53,25 +53,25 @@ pub fn readings(request: &[u8]) -> Vec<Command> {
     found.extend(digital(rest).into_iter().map(|ask| ask.to(to)));
     found.extend(counter(rest).into_iter().map(|ask| ask.to(to)));
     // Encoding each candidate again checks the lead and everything that the lists above accept too freely.
-    let mut written = Vec::with_capacity(24);
+    let mut encoded = Vec::with_capacity(24);
     found.retain(|command| {
-        written.clear();
-        command.encode(false, &mut written);
-        written.strip_suffix(b"\r") == Some(request)
+        encoded.clear();
+        command.encode(false, &mut encoded);
+        encoded.strip_suffix(b"\r") == Some(request)
     });
     found
 }
 
-/// Rewrites `#AABBDD` in its usual spelling: 0A (first group) as 00, Ac (one output of it) as 1c.
-fn usual(request: &[u8]) -> Option<Vec<u8>> {
+/// Rewrites `#AABBDD` in its canonical spelling: 0A (first group) as 00, Ac (one output of it) as 1c.
+fn canonical(request: &[u8]) -> Option<Vec<u8>> {
     let (place, digit) = match request {
         [b'#', _, _, b'0', b'A', _, _] => (4, b'0'),
         [b'#', _, _, b'A', b'0'..=b'7', _, _] => (3, b'1'),
         _ => return None,
     };
-    let mut usual = request.to_vec();
-    usual[place] = digit;
-    Some(usual)
+    let mut canonical = request.to_vec();
+    canonical[place] = digit;
+    Some(canonical)
 }
 
 fn number(text: &[u8]) -> Option<u32> {

@@ -1,4 +1,4 @@
-//! What the guard says about motions that a person may want next, and about the one it refused.
+//! Shows what the guard decides about motions that a person may want next, and the one that it refused last.
 
 use super::Cycle;
 use machine::guard::{Position, Refusal, Situation};
@@ -7,12 +7,12 @@ use machine::station::orders;
 use machine::view::{MotionView, RefusedView, StrokeView};
 use units::RigTime;
 
-/// Distances beyond this are not told, mm.
+/// Largest distance shown, mm.
 const RANGE_MM: f64 = 25.0;
 
 impl Cycle {
-    /// Every motion that may be jogged, judged for the situation of now; empty while none may.
-    pub(super) fn foreseen(&mut self, now: RigTime) -> Vec<MotionView> {
+    /// Returns the guard's decision on every motion that may be jogged now; empty while jogging is not allowed.
+    pub(super) fn jog_preview(&mut self, now: RigTime) -> Vec<MotionView> {
         if self.station.may_jog().is_err() {
             return Vec::new();
         }
@@ -25,14 +25,14 @@ impl Cycle {
                     clearance_mm: self.guard.clearance_mm(&motion, &situation, RANGE_MM),
                     ..self.shown(*movement, &situation)
                 },
-                Err(refusal) => self.shown_refused(*movement, &situation, &refusal),
+                Err(refusal) => self.refused_motion(*movement, &situation, &refusal),
             }
         })
         .collect()
     }
 
-    /// A motion with what stands in its way.
-    pub(super) fn shown_refused(
+    /// Returns a refused motion with its blocker.
+    pub(super) fn refused_motion(
         &self,
         movement: Move,
         situation: &Situation,

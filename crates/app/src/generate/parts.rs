@@ -1,4 +1,4 @@
-//! Values of made-up parts: the lot of the default world, one draw after the other.
+//! Draws the values of generated parts from the distributions of the default world.
 
 use history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord};
 use machine::dut::made_up::{Looks, MadeUp, Scatter};
@@ -9,31 +9,30 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 /// Share of parts with a defect, as in the default world.
 const DEFECTS: f64 = 0.04;
-/// Share of values measured a second time.
+/// Share of values with a second attempt.
 const REPEATED: f64 = 0.05;
 
-/// One characteristic of the parts.
-struct Made {
+/// One characteristic of the generated parts.
+struct Generated {
     of: Characteristic,
     limit: Limit,
     scatter: Scatter,
-    /// Budget as a run stores it.
+    /// Uncertainty budget as JSON, as a run stores it.
     budget: String,
 }
 
-/// Where made-up parts come from.
-pub(super) struct Line {
+/// Generator of parts of one recipe.
+pub(super) struct PartGenerator {
     recipe: Recipe,
-    made: Vec<Made>,
+    characteristics: Vec<Generated>,
     looks: Vec<Looks>,
-    draws: Draws,
+    random: Random,
 }
 
-impl Line {
-    /// Parts of this recipe.
+impl PartGenerator {
+    /// Creates a generator of parts of this recipe.
     pub fn new(recipe: &Recipe, seed: u64) -> Self {
-        let MadeUp { scatter, looks } = recipe.device.made_up(&recipe.limits);
-        let made = scatter.into_iter().map(|(of, scatter)| Made {
+        let characteristics = scatter(recipe).into_iter().map(|(of, scatter)| Generated {
             of,
             limit: recipe.limits.of(of),
             budget: serde_json::to_string(&scatter.budget).unwrap_or_default(),
@@ -41,33 +40,33 @@ impl Line {
         });
         Self {
             recipe: recipe.clone(),
-            made: made.collect(),
-            looks,
-            draws: Draws(SplitMix64::seed_from_u64(seed)),
+            characteristics: characteristics.collect(),
+            looks: evidence(recipe),
+            random: Random(SplitMix64::seed_from_u64(seed)),
         }
     }
 
-    /// The part `seq` of a lot that began at `begin_us`.
+    /// Draws part `seq` of a lot that began at `begin_us`, microseconds since 1970; `cycle_us` separates two parts.
     pub fn part(&mut self, lot: &str, seq: u64, begin_us: i64, cycle_us: i64) -> PartRecord {
         let at_us = begin_us + cycle_us * i64::try_from(seq).unwrap_or(i64::MAX / cycle_us);
-        let defect = (self.draws.unit() < DEFECTS)
-            .then(|| (self.draws.unit() * self.made.len() as f64) as usize);
-        let draws = &mut self.draws;
+        let defect = (self.random.unit() < DEFECTS)
+            .then(|| (self.random.unit() * self.characteristics.len() as f64) as usize);
+        let random = &mut self.random;
         let rule = self.recipe.decision.rule;
-        let mut judged = Vec::with_capacity(self.made.len());
-        let mut measurements = Vec::with_capacity(self.made.len() + 1);
-        for (n, it) in self.made.iter().enumerate() {
-            let Made { of, limit, .. } = it;
-            let mut value = it.drawn(draws);
+        let mut judged = Vec::with_capacity(self.characteristics.len());
+        let mut measurements = Vec::with_capacity(self.characteristics.len() + 1);
+        for (n, it) in self.characteristics.iter().enumerate() {
+            let Generated { of, limit, .. } = it;
+            let mut value = it.drawn(random);
             if defect == Some(n) {
                 value = match (limit.high, limit.low) {
-                    (Some(high), _) => high * (1.05 + 0.3 * draws.unit()),
-                    (None, Some(low)) => low * (0.95 - 0.3 * draws.unit()),
+                    (Some(high), _) => high * (1.05 + 0.3 * random.unit()),
+                    (None, Some(low)) => low * (0.95 - 0.3 * random.unit()),
                     (None, None) => value,
                 };
             }
-            if draws.unit() < REPEATED {
-                let first = value + 3.0 * it.scatter.u * draws.normal();
+            if random.unit() < REPEATED {
+                let first = value + 3.0 * it.scatter.u * random.normal();
                 measurements.push(it.record(first, Judgement::Void, 1));
             }
             let reading = Reading {
@@ -99,7 +98,7 @@ impl Line {
             bin: bin.to_owned(),
             reasons: verdict.reasons().to_vec(),
             judged_at_us: at_us,
-            test_s: 0.95 + 0.02 * draws.normal(),
+            test_s: 0.95 + 0.02 * random.normal(),
             cycle_s: Some(cycle_us as f64 / 1e6),
             landed_bin: Some(bin.to_owned()),
             landed_at_us: Some(at_us + 900_000),
@@ -125,10 +124,10 @@ fn curve(looks: &Looks, at_us: i64) -> CurveRecord {
     }
 }
 
-impl Made {
-    fn drawn(&self, draws: &mut Draws) -> f64 {
+impl Generated {
+    fn drawn(&self, random: &mut Random) -> f64 {
         let it = &self.scatter;
-        let scatter = it.sd * draws.normal();
+        let scatter = it.sd * random.normal();
         if it.logarithmic {
             it.mean * scatter.exp()
         } else {
@@ -167,16 +166,16 @@ fn reply(at_us: i64) -> SampleRecord {
     }
 }
 
-/// Draws from a seed, the same on every machine.
-struct Draws(SplitMix64);
+/// Random numbers from a seed, the same on every machine.
+struct Random(SplitMix64);
 
-impl Draws {
-    /// From 0 up to, but not including, 1.
+impl Random {
+    /// Returns a uniform number in [0, 1).
     fn unit(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Mean 0, deviation 1 (Box and Muller).
+    /// Returns a normal number of mean 0 and standard deviation 1 (Box and Muller).
     fn normal(&mut self) -> f64 {
         let (radius, angle) = (1.0 - self.unit(), self.unit());
         (-2.0 * radius.ln()).sqrt() * (std::f64::consts::TAU * angle).cos()

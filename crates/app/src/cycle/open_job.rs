@@ -1,38 +1,37 @@
-//! A measuring job under way: its transactions, and the lost writes that it waits for.
+//! Tracks the transactions of a measuring job, and the lost writes that it waits for.
 
 use machine::instrument::act::JobDone;
 use machine::rig::wiring::ModuleId;
 use units::RigTime;
 
-/// Done when its last transaction is.
+/// An open measuring job; it ends with its last transaction.
 #[derive(Debug, Default)]
-pub(super) struct JobUnderway {
+pub(super) struct OpenJob {
     parts: usize,
     last: RigTime,
     trouble: Option<String>,
     rewrites: Vec<ModuleId>,
 }
 
-impl JobUnderway {
-    /// One more transaction.
+impl OpenJob {
     pub(super) fn part_begun(&mut self) {
         self.parts += 1;
     }
 
-    /// A write was lost and comes again, as another transaction.
+    /// Replaces the transaction of a lost write by its repetition, which begins later.
     pub(super) fn rewrites(&mut self, module: ModuleId) {
         self.parts = self.parts.saturating_sub(1);
         self.rewrites.push(module);
     }
 
-    /// True once for a module whose write was lost.
+    /// Returns true once for a module whose write was lost.
     pub(super) fn waits_for(&mut self, module: ModuleId) -> bool {
         let before = self.rewrites.len();
         self.rewrites.retain(|known| *known != module);
         before != self.rewrites.len()
     }
 
-    /// One transaction is over; the answer of the job when it was the last. The first trouble is told.
+    /// Closes one transaction and keeps the first trouble; returns the job's result after the last one.
     pub(super) fn part_done(&mut self, at: RigTime, trouble: Option<String>) -> Option<JobDone> {
         self.parts = self.parts.saturating_sub(1);
         self.last = at;
@@ -42,7 +41,7 @@ impl JobUnderway {
         self.if_empty(self.last)
     }
 
-    /// The answer of a job without open transactions.
+    /// Returns the result of a job without open transactions.
     pub(super) fn if_empty(&self, at: RigTime) -> Option<JobDone> {
         (self.parts == 0).then(|| JobDone {
             at,

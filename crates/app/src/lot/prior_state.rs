@@ -1,4 +1,4 @@
-//! What the history knows of the rig before a run.
+//! Reads what a run takes over from the history.
 
 use super::{LotContext, Purpose};
 use anyhow::Context;
@@ -7,53 +7,53 @@ use machine::dut::Calibration;
 use machine::handling::inside::Inside;
 use machine::handling::wear::Uses;
 
-/// What a run takes over.
-pub(super) struct TakenOver {
-    /// A calibration that is still valid.
+/// State of the rig that a run takes over.
+pub(super) struct PriorState {
+    /// Calibration that is still valid.
     pub calibration: Option<Calibration>,
-    /// Uses of what wears.
-    pub worn: Uses,
-    /// Alarms that no person has acknowledged or seen yet.
+    /// Uses of wearing parts.
+    pub uses: Uses,
+    /// Unacknowledged alarms of earlier runs.
     pub alarms: Vec<UnacknowledgedAlarm>,
-    /// What the run before left inside.
+    /// Parts that the last run left inside.
     pub left: Inside,
 }
 
-impl TakenOver {
-    /// A live rig brings its own calibration, a simulated rig is calibrated anew.
+impl PriorState {
+    /// Reads it from `store`; a live rig brings its own calibration, a new simulated rig has none.
     pub fn read(store: &Store, context: &LotContext) -> anyhow::Result<Self> {
         let simulated = context.is_simulated();
         let calibration = match context.purpose {
-            _ if simulated => brought(context),
+            _ if simulated => live_calibration(context),
             Purpose::Calibration => None,
             Purpose::Lot | Purpose::BetweenLots(_) => valid_calibration(store, context)?,
         };
-        // What an earlier run left inside was inside of another rig.
+        // The contents of an earlier run belong to another simulated rig.
         let left = match simulated && is_new(context) {
             true => Inside::default(),
             false => store.left_inside(simulated)?,
         };
         Ok(Self {
             calibration,
-            worn: worn(store, simulated)?,
+            uses: uses(store, simulated)?,
             alarms: store.unacknowledged_alarms(simulated)?,
             left,
         })
     }
 }
 
-/// The calibration of a simulated rig that lives on.
+/// Returns the calibration of a live simulated rig.
 #[cfg(feature = "sim")]
-fn brought(context: &LotContext) -> Option<Calibration> {
+fn live_calibration(context: &LotContext) -> Option<Calibration> {
     context.source.live()?.calibration.clone()
 }
 
 #[cfg(not(feature = "sim"))]
-fn brought(_: &LotContext) -> Option<Calibration> {
+fn live_calibration(_: &LotContext) -> Option<Calibration> {
     None
 }
 
-/// A simulated rig whose time begins with this run.
+/// Returns true for a simulated rig whose time begins with this run.
 #[cfg(feature = "sim")]
 fn is_new(context: &LotContext) -> bool {
     let live = context.source.live();
@@ -65,7 +65,7 @@ fn is_new(_: &LotContext) -> bool {
     true
 }
 
-fn worn(store: &Store, simulated: bool) -> anyhow::Result<Uses> {
+fn uses(store: &Store, simulated: bool) -> anyhow::Result<Uses> {
     let wear = store.wear(simulated)?;
     let of = |name: &str| {
         wear.iter()
@@ -78,7 +78,7 @@ fn worn(store: &Store, simulated: bool) -> anyhow::Result<Uses> {
     })
 }
 
-/// The stored calibration, provided it is not overdue.
+/// Returns the stored calibration unless it is overdue.
 fn valid_calibration(store: &Store, context: &LotContext) -> anyhow::Result<Option<Calibration>> {
     let Some(nominal_v) = context.recipe.device.part().nominal_v else {
         return Ok(None);

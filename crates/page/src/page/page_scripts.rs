@@ -1,6 +1,6 @@
 //! Scripts that a browser fetches when it first opens a page: one adds markup and code of one page or of a few.
 
-use super::packed::Packed;
+use super::compressed::CompressedBody;
 use data_encoding::HEXLOWER;
 use serde_json::json;
 use sha2::{Digest, Sha256};
@@ -32,9 +32,10 @@ pub(super) const SOURCES: [[&str; 3]; 9] = {
 };
 
 /// Scripts by path; the path holds a hash of the script, so that a browser may keep it.
-pub(super) static SCRIPTS: LazyLock<BTreeMap<String, Packed>> = LazyLock::new(|| {
-    let packed = |(path, text)| (path, Packed::new("text/javascript; charset=utf-8", text));
-    SOURCES.map(script).into_iter().map(packed).collect()
+pub(super) static SCRIPTS: LazyLock<BTreeMap<String, CompressedBody>> = LazyLock::new(|| {
+    let body = |text| CompressedBody::new("text/javascript; charset=utf-8", text);
+    let compressed = |(path, text)| (path, body(text));
+    SOURCES.map(script).into_iter().map(compressed).collect()
 });
 
 /// Returns `{page: path}`.

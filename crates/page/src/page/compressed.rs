@@ -9,14 +9,14 @@ use std::io::Write;
 
 /// One body in both forms.
 #[derive(Debug)]
-pub(super) struct Packed {
+pub(super) struct CompressedBody {
     media_type: &'static str,
     pub plain: Bytes,
     /// Empty when the body could not be compressed; the answer is then always plain.
     pub gzip: Bytes,
 }
 
-impl Packed {
+impl CompressedBody {
     pub fn new(media_type: &'static str, plain: String) -> Self {
         let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
         let gzip = encoder

@@ -1,15 +1,15 @@
-//! Before and after: modules verified while nothing moves, outputs made safe at the end.
+//! Verifies the modules before any motion, and makes the outputs safe at the end of a run.
 
 use super::traffic::Purpose;
 use super::{Cycle, Event, IDLE, commission};
 use machine::station::catalogue::AlarmCode;
 use units::Span;
 
-/// Safe outputs must be written within this time at the end of a run.
+/// Longest time for writing the safe outputs at the end of a run.
 const SAFE_WITHIN: Span = Span::ms(2000);
 
 impl Cycle {
-    /// Asks every module whether it is as wired; what has tripped while its host was silent is made ready.
+    /// Verifies every module against the wiring; restores modules whose watchdog tripped while the host was silent.
     pub(super) async fn verify(&mut self) {
         self.quiet().await;
         assert!(self.traffic.is_quiet(), "verified while a line is in use");
@@ -30,12 +30,12 @@ impl Cycle {
         self.outputs.everything_safe();
     }
 
-    /// No transaction is under way any more, and none of a scan begins.
+    /// Waits until no transaction is under way; starts no scan.
     async fn quiet(&mut self) {
         self.traffic.only_writes();
         while !self.traffic.is_quiet() {
             let now = self.pace.now();
-            self.timeouts.forgive();
+            self.timeouts.reset_writes();
             self.scan(now);
             self.traffic.dispatch(now);
             self.wait(now, Some(now + IDLE)).await;
@@ -49,7 +49,7 @@ impl Cycle {
         self.making_safe = true;
         while self.pace.now() < end {
             let now = self.pace.now();
-            self.timeouts.forgive();
+            self.timeouts.reset_writes();
             self.scan(now);
             for write in self.outputs.writes() {
                 let purpose = Purpose::Write {
@@ -64,7 +64,7 @@ impl Cycle {
             }
             self.wait(now, Some(end)).await;
         }
-        self.tell(Event::Alarm(
+        self.send(Event::Alarm(
             AlarmCode::OutputsNotConfirmed.into(),
             self.pace.now(),
         ));
