@@ -71,31 +71,15 @@ fn stored(found: &Calibration, as_json: bool) -> anyhow::Result<Exit> {
 }
 
 fn verified(compared: &[FactorComparison], due: &str, as_json: bool) -> anyhow::Result<Exit> {
-    let verified = compared.iter().all(FactorComparison::agrees);
-    let mut out = std::io::stdout().lock();
-    for it in compared {
-        if as_json {
-            let it = json!({"type": "factor", "factor": it.name, "unit": it.unit, "found": it.found, "expected": it.expected, "expanded_u": it.expanded_u, "holds": it.agrees()});
-            writeln!(out, "{it}")?;
-        } else {
-            writeln!(out, "{it}")?;
-        }
-    }
-    let outcome = match verified {
-        true => "verified",
-        false => "verification failed",
+    let factor = |it: &FactorComparison| json!({"type": "factor", "factor": it.name, "unit": it.unit, "found": it.found, "expected": it.expected, "expanded_u": it.expanded_u, "holds": it.agrees()});
+    let (verified, outcome, exit) = match compared.iter().all(FactorComparison::agrees) {
+        true => (true, "verified", Exit::Done),
+        false => (false, "verification failed", Exit::AnswerIsNo),
     };
-    if as_json {
-        let it = json!({"type": "verification", "verified": verified, "due_at": due, "k": K_JOINT});
-        writeln!(out, "{it}")?;
-    } else {
-        writeln!(
-            out,
-            "{outcome}, due {due}; +- is the combined U (k = {K_JOINT})"
-        )?;
-    }
-    Ok(match verified {
-        true => Exit::Done,
-        false => Exit::AnswerIsNo,
-    })
+    let whole = json!({"type": "verification", "verified": verified, "due_at": due, "k": K_JOINT});
+    let end = format!("{outcome}, due {due}; +- is the combined U (k = {K_JOINT})");
+    let mut out = Output::stdout();
+    out.lines(as_json, compared, factor, FactorComparison::to_string)?;
+    out.line(&if as_json { whole.to_string() } else { end })?;
+    Ok(exit)
 }

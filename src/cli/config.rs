@@ -71,7 +71,7 @@ fn check(dir: &Path) -> anyhow::Result<String> {
         dir.join("scene.toml").display(),
         plant.scene.elements.len()
     ));
-    if let Some(file) = &plant.calibration.golden {
+    if let Some(file) = &plant.calibration.reference_file {
         let count = plant.reference_parts.parts.len();
         lines.push(format!(
             "{}: {count} reference parts",
@@ -107,12 +107,14 @@ fn describe_recipe(dir: &Path, plant: &Plant, name: &str) -> anyhow::Result<Stri
     let recipe = load_recipe(dir, name)?;
     plant.admit(&recipe)?;
     let file = dir.join("recipes").join(format!("{name}.toml"));
-    let reference_parts = match recipe
-        .rated_v()
+    let reference = match recipe
+        .device
+        .part()
+        .nominal_v
         .map(|volts| plant.reference_parts.of_nominal(volts).count())
     {
         None => "no reference parts needed".to_owned(),
-        Some(0) => "NO GOLDEN PARTS of its coil voltage: a lot cannot be calibrated".to_owned(),
+        Some(0) => "NO REFERENCE PARTS of its coil voltage: a lot cannot be calibrated".to_owned(),
         Some(count) => format!("{count} reference parts"),
     };
     let all = recipe.device.kind().characteristics().len();
@@ -121,7 +123,7 @@ fn describe_recipe(dir: &Path, plant: &Plant, name: &str) -> anyhow::Result<Stri
         .filter(|(_, limit)| limit.low.is_some() || limit.high.is_some())
         .count();
     Ok(format!(
-        "{}: {judged} of {all} parameters judged, {reference_parts}, sha256 {}",
+        "{}: {judged} of {all} parameters judged, {reference}, sha256 {}",
         file.display(),
         &recipe.hash[..12]
     ))

@@ -141,16 +141,7 @@ fn dispatch(config: &Path, db: &Path, command: Command) -> anyhow::Result<Exit> 
     Ok(Exit::Done)
 }
 
-/// Notes for the retention that `file` holds these runs whole.
-fn copied(db: &Path, filter: &Filter, file: &Path) -> anyhow::Result<()> {
-    let mut store = Store::open(db, &Identity::of_this_program())?;
-    let file = std::path::absolute(file)?;
-    let now_us = jiff::Timestamp::now().as_microsecond();
-    store.record_export(filter, &file.to_string_lossy(), now_us)?;
-    Ok(())
-}
-
-/// Damage is an answer (status 1), not bad input.
+/// Checks the file; damage is an answer (status 1), not bad input.
 fn check(db: &Path) -> anyhow::Result<Exit> {
     match Archive::open(db)?.check() {
         Ok(()) => {

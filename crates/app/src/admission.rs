@@ -135,14 +135,14 @@ fn check_lot_state(
     recipe: &Recipe,
     order: &LotOrder,
 ) -> Result<(), AdmissionError> {
-    if let Some(nominal_v) = recipe.rated_v()
-        && plant.lot.golden_check.any()
+    if let Some(nominal_v) = recipe.device.part().nominal_v
+        && plant.lot.reference_check.any()
         && plant.reference_parts.of_nominal(nominal_v).next().is_none()
     {
         return Err(AdmissionError::NoReferencePart {
             file: plant.dir.join("lot.toml"),
             nominal_v,
-            file_of_parts: plant.calibration.golden.clone().unwrap_or_default(),
+            file_of_parts: plant.calibration.reference_file.clone().unwrap_or_default(),
         });
     }
     let standing = match db.exists() {
@@ -182,7 +182,7 @@ pub fn calibration_refusal(
     if source.is_simulated() {
         return Ok(None);
     }
-    match recipe.rated_v() {
+    match recipe.device.part().nominal_v {
         Some(nominal_v) => calibration::refusal(db, nominal_v),
         None => Ok(None),
     }

@@ -30,6 +30,6 @@ fn note(db: &Path, filter: &Filter, file: &Path) -> anyhow::Result<()> {
     let mut store = Store::open(db, &Identity::of_this_program())?;
     let file = std::path::absolute(file)?;
     let now_us = jiff::Timestamp::now().as_microsecond();
-    store.copied(filter, &file.to_string_lossy(), now_us)?;
+    store.record_export(filter, &file.to_string_lossy(), now_us)?;
     Ok(())
 }

@@ -183,8 +183,8 @@ impl Cycle {
             if output.rig.verify {
                 self.verify().await;
             }
-            if let Some(ending) = wants.record.ending.take() {
-                assert!(wants.rig.safe, "the run ends with outputs on");
+            if let Some(ending) = output.record.ending.take() {
+                assert!(output.rig.safe, "the run ends with outputs on");
                 self.make_safe().await;
                 return (ending, self.profile);
             }
@@ -322,10 +322,13 @@ impl Cycle {
     }
 
     /// Passes each wanted motion through the guard in turn; drives or refuses it.
-    fn clear(&mut self, now: RigTime, wants: &mut Wants) {
-        let moves = !wants.rig.motions.is_empty() || wants.rig.jog.is_some();
-        assert!(!(wants.rig.safe && moves), "a motion while outputs go safe");
-        for movement in std::mem::take(&mut wants.rig.motions) {
+    fn clear(&mut self, now: RigTime, output: &mut TurnOutput) {
+        let moves = !output.rig.motions.is_empty() || output.rig.jog.is_some();
+        assert!(
+            !(output.rig.safe && moves),
+            "a motion while outputs go safe"
+        );
+        for movement in std::mem::take(&mut output.rig.motions) {
             let situation = self.station.situation(now, &self.image);
             match self.guard.clear(&self.station.motion(movement), &situation) {
                 Ok(cleared) => {
@@ -352,8 +355,8 @@ impl Cycle {
     }
 
     /// Turns outputs into commands and gives the measuring lines their job.
-    fn apply(&mut self, now: RigTime, wants: &mut Wants) {
-        if wants.rig.safe {
+    fn apply(&mut self, now: RigTime, output: &mut TurnOutput) {
+        if output.rig.safe {
             self.outputs.everything_safe();
             for module in self.traffic.drop_all() {
                 self.outputs.confirmed(module);
@@ -366,10 +369,10 @@ impl Cycle {
         }
         self.traffic.check_restarts(output.rig.restart_check);
         self.traffic
-            .watch_beam(wants.rig.beam.map(|beam| self.wiring.read_events(beam)));
-        let is_job = wants.rig.job.is_some();
-        if let Some(NestJob { nest, job }) = wants.rig.job.take() {
-            assert!(!wants.rig.safe, "a job begins while outputs go safe");
+            .watch_beam(output.rig.beam.map(|beam| self.wiring.read_events(beam)));
+        let is_job = output.rig.job.is_some();
+        if let Some(NestJob { nest, job }) = output.rig.job.take() {
+            assert!(!output.rig.safe, "a job begins while outputs go safe");
             assert!(self.job_done.is_none(), "the last answer is still pending");
             self.job_nest = nest;
             self.start(job);

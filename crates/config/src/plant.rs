@@ -62,7 +62,7 @@ impl Plant {
         let gauge: GaugeSections = rig.settings(keys::rig::FILE)?;
         let wiring =
             Wiring::resolve(&settings, dut::FIXTURES).map_err(|fault| rig.locate(&fault))?;
-        let reference_parts = match &gauge.calibration.golden {
+        let reference_parts = match &gauge.calibration.reference_file {
             Some(name) => load_reference_parts(&dir.join(name))?,
             None => ReferenceSet::default(),
         };
@@ -89,7 +89,7 @@ impl Plant {
             wiring: &self.wiring,
             reference: self.reference.as_ref(),
             accuracy: &self.accuracy,
-            reference_parts: &self.golden,
+            reference_parts: &self.reference_parts,
         }
     }
 
@@ -98,16 +98,13 @@ impl Plant {
     /// # Errors
     /// The first fault, with file, line, key and the module that cannot measure it.
     pub fn admit(&self, recipe: &Recipe) -> Result<(), ConfigError> {
-        recipe
-            .referenced(self.reference.as_ref(), &self.reference_parts)
-            .and_then(|()| recipe.feasible(&self.wiring, &self.accuracy))
-            .or_else(|fault| {
-                let path = self
-                    .dir
-                    .join("recipes")
-                    .join(format!("{}.toml", recipe.name));
-                Err(File::parse(path, recipe.source_text.clone())?.locate(&fault))
-            })
+        recipe.feasible(&self.rig()).or_else(|fault| {
+            let path = self
+                .dir
+                .join("recipes")
+                .join(format!("{}.toml", recipe.name));
+            Err(File::parse(path, recipe.source_text.clone())?.locate(&fault))
+        })
     }
 }
 

@@ -36,8 +36,8 @@ const LOOK: Duration = Duration::from_millis(5);
 /// # Errors
 /// A file that cannot be written or read.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
-    let folder = Folder::new()?;
-    let db = folder.0.join("history.db");
+    let folder = TempDir::new()?;
+    let db = folder.path().join("history.db");
     let wanted = GenerateOptions {
         parts: order.parts,
         seed: 1,

@@ -1,19 +1,19 @@
 //! How often `calibrate --verify` fails a rig that has not changed.
 //!
-//! Every rig is calibrated once and verified on other days: its errors stay, noise, operations and the temperatures of
-//! the golden parts are drawn anew (fault `noise_seed`). A verification asks of every factor that it lies within
-//! [`K_JOINT`] standard uncertainties of both measurements together; if those were independent and exact, so many
-//! factors at once would fail once in some thirty times. That is the bar, with three standard deviations of a count.
-//! Beside it stands each factor's own scatter against what was stated, as a ratio: above 1 its uncertainty would be too
-//! small.
+//! The study calibrates every rig once and verifies it on other days: the errors of the rig stay, while noise, operations
+//! and temperatures of the reference parts change (fault `noise_seed`). A verification checks that every factor lies
+//! within [`K_JOINT`] standard uncertainties of both measurements together. With independent factors and exact
+//! uncertainties one of fourteen factors is outside in about one verification of thirty. The bar is that rate plus three
+//! standard deviations of a count. Further rows show the scatter of each factor divided by its stated uncertainty: a ratio
+//! above 1 means that the stated uncertainty is too small.
 
 use super::chart::Chart;
 use super::figure::{Bar, Figure};
 use super::order::{Order, finished};
 use super::output::Report;
-use anyhow::{Context, bail};
+use super::pool::{self, LOTS_AT_ONCE};
+use anyhow::Context;
 use app::calibration::K_JOINT;
-use app::progress::{PIECES, progress};
 use serde_json::Value;
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::collections::BTreeMap;
@@ -64,8 +64,8 @@ fn read(rows: &str) -> anyhow::Result<Day> {
     Ok(day)
 }
 
-/// Share of verifications that fail when so many factors are normal, independent and as uncertain as stated.
-fn chosen(factors: usize) -> f64 {
+/// Returns the share of verifications that fail when the factors are normal, independent and as uncertain as stated.
+fn chosen_failure_rate(factors: usize) -> f64 {
     let inside = 2.0 * Normal::standard().cdf(K_JOINT) - 1.0;
     1.0 - inside.powi(factors as i32)
 }

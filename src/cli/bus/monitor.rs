@@ -97,11 +97,11 @@ async fn watch(args: &MonitorArgs) -> anyhow::Result<()> {
     listen(args, &PortArgs { port: path.clone() }).await
 }
 
-/// One row of a running controller, its end left off.
+/// Returns the row of a message of a running controller, without line end.
 fn row(news: &Update, level: Level) -> String {
     let (seconds, line) = (news.at_us as f64 / 1e6, &news.line);
     let UpdateContent::Message(message) = &news.what else {
-        return format!("{seconds:>14.6} {line} - more has passed than could be seen");
+        return format!("{seconds:>14.6} {line} - messages were lost here");
     };
     let shown = match level {
         Level::Bytes => unescaped(&message.text)
@@ -191,7 +191,7 @@ mod tests {
     use app::follower::Message;
 
     #[test]
-    fn a_level_says_how_much_of_a_message_is_shown() {
+    fn a_level_sets_the_detail_of_a_message() {
         let news = |what| Update {
             at_us: 4,
             line: "motion".to_owned(),
@@ -209,6 +209,6 @@ mod tests {
         assert_eq!(frames, "      0.000004 motion < >3E\\r");
         assert!(row(&message, Level::Meaning).ends_with("accepted"));
         let gap = row(&news(UpdateContent::Gap), Level::Meaning);
-        assert!(gap.ends_with("motion - more has passed than could be seen"));
+        assert!(gap.ends_with("motion - messages were lost here"));
     }
 }

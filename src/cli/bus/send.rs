@@ -92,7 +92,7 @@ fn transcript(request: &[u8], reply: &RawReply, words: &[String], broadcast: boo
             "  sent to all; no module answers".to_owned()
         } else {
             format!(
-                "  no reply within {taken_ms:.1} ms: no module has this address, rate, checksum and command"
+                "  no reply within {taken_ms:.1} ms: no module with this address, rate and checksum knows this command"
             )
         });
     } else {
@@ -109,8 +109,8 @@ fn transcript(request: &[u8], reply: &RawReply, words: &[String], broadcast: boo
     rows.join("\n") + "\n"
 }
 
-/// What the text means, if that is one thing only.
-fn lone_reading(text: &[u8], family: Option<Family>) -> Option<Command> {
+/// Returns the command of an unambiguous text.
+fn unambiguous(text: &[u8], family: Option<Family>) -> Option<Command> {
     let mut commands = dcon::decode_request(text);
     commands.retain(|command| family.is_none_or(|family| family.has_command(command)));
     match commands[..] {

@@ -50,7 +50,11 @@ impl fmt::Display for FactorComparison {
 
 /// Pairs the factors of both calibrations, in the order of the table.
 pub fn compare(found: &Calibration, expected: &Calibration) -> Vec<FactorComparison> {
-    let pairs = found.factors().into_iter().zip(expected.factors());
+    let pairs = found
+        .facts()
+        .factors
+        .into_iter()
+        .zip(expected.facts().factors);
     pairs
         .map(|(found, expected)| FactorComparison {
             name: found.name,

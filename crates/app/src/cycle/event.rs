@@ -27,7 +27,7 @@ pub enum Event {
     /// An alarm came, at this rig time.
     Alarm(Alarm, RigTime),
     /// The list of active or unacknowledged alarms changed.
-    Standing(Vec<Standing>, RigTime),
+    ListedAlarms(Vec<ListedAlarm>, RigTime),
     /// Calibration and reference parts are complete.
     Calibrated(Box<Calibration>),
     /// A reference check has its result.

@@ -36,18 +36,18 @@ impl Cycle {
         orders
     }
 
-    pub(super) fn answer(&mut self, wants: &mut Wants, now: RigTime) {
-        let (orders, answers) = (self.pending_orders.len(), wants.answers.len());
+    pub(super) fn answer(&mut self, output: &mut TurnOutput, now: RigTime) {
+        let (orders, answers) = (self.pending_orders.len(), output.answers.len());
         assert_eq!(orders, answers, "orders and answers differ in number");
         let asked: Vec<_> = self.pending_orders.drain(..).collect();
-        for (asked, answer) in asked.into_iter().zip(wants.answers.drain(..)) {
+        for (asked, answer) in asked.into_iter().zip(output.answers.drain(..)) {
             self.send_answer(asked, answer, now);
         }
     }
 
     /// Records the orders of the machine's buttons, which have no screen to answer.
-    pub(super) fn pressed(&self, wants: &mut Wants, now: RigTime) {
-        for (command, answer) in wants.pressed.drain(..) {
+    pub(super) fn pressed(&self, output: &mut TurnOutput, now: RigTime) {
+        for (command, answer) in output.pressed.drain(..) {
             let answered = AnsweredOrder {
                 order: view::Order {
                     order: command.name().to_owned(),
@@ -72,7 +72,7 @@ impl Cycle {
             refused: said.as_ref().err().map(|why| why.say(Lang::En)),
         };
         self.send(Event::Ordered(Box::new(answered), now));
-        asked.say(said);
+        asked.answer(said);
     }
 
     /// Drives a motion by hand; a refusal is the answer to the order, not an alarm.

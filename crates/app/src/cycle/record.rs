@@ -6,38 +6,38 @@ use units::RigTime;
 
 impl Cycle {
     /// Sends all events of this turn, in order of occurrence.
-    pub(super) fn record(&mut self, now: RigTime, wants: &mut Wants) {
-        for judged in wants.record.parts.judged.drain(..) {
+    pub(super) fn record(&mut self, now: RigTime, output: &mut TurnOutput) {
+        for judged in output.record.parts.judged.drain(..) {
             self.send(Event::Judged(Box::new(judged)));
         }
-        for left in wants.record.parts.left.drain(..) {
+        for left in output.record.parts.left.drain(..) {
             self.send(Event::Left(left));
         }
-        for landed in wants.record.parts.landed.drain(..) {
+        for landed in output.record.parts.landed.drain(..) {
             self.send(Event::Landed(landed));
         }
-        if let Some(checked) = wants.record.checked.take() {
+        if let Some(checked) = output.record.checked.take() {
             self.send(Event::Checked(checked, now));
         }
-        if let Some(calibration) = wants.record.calibrated.take() {
+        if let Some(calibration) = output.record.calibrated.take() {
             self.send(Event::Calibrated(Box::new(calibration)));
         }
-        if wants.record.lot_began {
+        if output.record.lot_began {
             self.send(Event::LotBegan(now));
         }
-        for interrupted in wants.record.parts.interrupted.drain(..) {
+        for interrupted in output.record.parts.interrupted.drain(..) {
             self.send(Event::Interrupted(interrupted));
         }
-        for alarm in wants.record.alarms.drain(..) {
+        for alarm in output.record.alarms.drain(..) {
             self.send(Event::Alarm(alarm, now));
         }
-        if wants.record.alarms_changed {
-            let standing = self.station.annunciator().standing().to_vec();
-            self.send(Event::Standing(standing, now));
+        if output.record.alarms_changed {
+            let listed = self.station.annunciator().listed().to_vec();
+            self.send(Event::ListedAlarms(listed, now));
         }
         let inside = self.station.ledger().parts_to_find();
         let moved = std::mem::replace(&mut self.inside, inside) != inside;
-        if moved || wants.record.ending.is_some() {
+        if moved || output.record.ending.is_some() {
             self.send(Event::Inside(inside, self.station.uses()));
         }
         let state = self.station.outer();

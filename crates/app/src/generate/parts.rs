@@ -32,7 +32,8 @@ pub(super) struct PartGenerator {
 impl PartGenerator {
     /// Creates a generator of parts of this recipe.
     pub fn new(recipe: &Recipe, seed: u64) -> Self {
-        let characteristics = scatter(recipe).into_iter().map(|(of, scatter)| Generated {
+        let MadeUp { scatter, looks } = recipe.device.made_up(&recipe.limits);
+        let characteristics = scatter.into_iter().map(|(of, scatter)| Generated {
             of,
             limit: recipe.limits.of(of),
             budget: serde_json::to_string(&scatter.budget).unwrap_or_default(),
@@ -41,7 +42,7 @@ impl PartGenerator {
         Self {
             recipe: recipe.clone(),
             characteristics: characteristics.collect(),
-            looks: evidence(recipe),
+            looks,
             random: Random(SplitMix64::seed_from_u64(seed)),
         }
     }

@@ -47,18 +47,14 @@ pub(super) fn cycle(
             .collect::<Vec<(AxisStation, f64)>>(),
     };
     let calibrated = calibration.is_some();
-    let rig = Rig {
-        wiring: &wiring,
-        reference: plant.reference.as_ref(),
-        accuracy: &plant.accuracy,
-        reference_parts: &plant.reference_parts,
-    };
-    let device = Device::new(Arc::clone(&recipe), &rig, calibration)?;
+    let device = recipe
+        .device
+        .on_rig(Arc::clone(&recipe), &plant.rig(), calibration)?;
     let plan = Plan {
         attended,
         between_lots: context.purpose.rest_state(),
         count: context.order.count,
-        golden: match context.purpose.rest_state() {
+        reference_serials: match context.purpose.rest_state() {
             Some(_) => Vec::new(),
             None => device.reference_serials(),
         },

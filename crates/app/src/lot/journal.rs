@@ -92,7 +92,7 @@ impl Journal {
     }
 
     /// Returns the rows of a changed alarm list: alarms that cleared, and a lot that continues.
-    pub fn standing(&mut self, standing: &[Standing], at_us: i64) -> Vec<Row> {
+    pub fn standing(&mut self, standing: &[ListedAlarm], at_us: i64) -> Vec<Row> {
         let active: Vec<String> = standing
             .iter()
             .filter(|one| one.is_active())

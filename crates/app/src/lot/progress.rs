@@ -102,7 +102,7 @@ impl<'a> LotProgress<'a> {
                 self.counts.alarms += 1;
                 self.trouble = Some(alarm.clone());
             }
-            Event::Standing(standing, _) => {
+            Event::ListedAlarms(standing, _) => {
                 let first = standing.iter().find(|it| it.first_out && it.is_active());
                 self.trouble = first.map(|it| it.alarm.clone()).or(self.trouble.take());
             }

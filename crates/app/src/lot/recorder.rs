@@ -110,7 +110,7 @@ impl Recorder {
             }
             Event::Alarm(alarm, at) => self.rows.extend(self.journal.alarm(alarm, wall_us(*at))),
             Event::Interrupted(interrupted) => self.interrupted(interrupted, lot),
-            Event::Standing(standing, at) => {
+            Event::ListedAlarms(standing, at) => {
                 let rows = self.journal.standing(standing, wall_us(*at));
                 self.rows.extend(rows);
             }

@@ -160,7 +160,7 @@ impl OrderRouter {
             None => write_replacement(&db, &order, &by, simulated),
         };
         match blocking(write).await {
-            Ok(()) => asked.say(Ok(())),
+            Ok(()) => asked.answer(Ok(())),
             Err(why) => self.refuse(asked, why),
         }
     }

@@ -75,7 +75,7 @@ impl Narrator {
                 }
             }
             Event::Landed(landed) => self.landed(landed),
-            Event::Standing(standing, _) => self.standing(standing, now),
+            Event::ListedAlarms(standing, _) => self.standing(standing, now),
             Event::Ordered(answered, _) if answered.by.origin == PANEL => {
                 let refused = answered.refused.as_ref();
                 let why = refused.map_or_else(String::new, |why| format!(": refused, {why}"));

@@ -190,7 +190,7 @@ impl Observed {
             Event::Left(left) => self.left.extend(self.numbers.get(&left.ordinal)),
             Event::Landed(landed) => self.landed.extend(self.numbers.get(&landed.part.ordinal)),
             Event::Interrupted(_)
-            | Event::Standing(..)
+            | Event::ListedAlarms(..)
             | Event::Checked(..)
             | Event::Ordered(..)
             | Event::Inside(..)
