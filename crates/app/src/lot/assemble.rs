@@ -38,8 +38,8 @@ pub(super) fn cycle(
     } = taken_over;
     let plant = context.plant;
     let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
-    let wiring = Arc::clone(&plant.wiring);
     let recipe = Arc::clone(context.recipe);
+    let wiring = Arc::new(recipe.wired(&plant.wiring, &plant.accuracy)?);
     let strokes = Strokes {
         length_mm: Actuator::ALL.map(|actuator| guard.stroke_mm(actuator).1),
         axis_mm: wiring

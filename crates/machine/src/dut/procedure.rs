@@ -9,6 +9,7 @@ use super::verdict::Verdict;
 use crate::gauge::Judgement;
 use crate::instrument::act::{Doing, JobDone};
 use crate::rig::image::Image;
+use crate::rig::supply::RangeMismatch;
 use units::{RigTime, Span};
 
 /// What a test wants from its surroundings.
@@ -77,7 +78,15 @@ impl Procedure {
         }
     }
 
-    /// Each result against its limit.
+    /// Returns the selected supply range and the one that was read back, once they differ: trouble of the rig, not of the part.
+    pub fn range_mismatch(&self) -> Option<&RangeMismatch> {
+        match self {
+            Self::EmRelay(test) => test.range_mismatch(),
+            Self::Resistor(test) => test.range_mismatch(),
+        }
+    }
+
+    /// Returns each result against its limit.
     pub fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
         match self {
             Self::EmRelay(test) => test.judgements(),

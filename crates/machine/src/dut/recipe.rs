@@ -161,7 +161,9 @@ impl Recipe {
         parts: &ReferenceSet,
     ) -> Result<(), Fault> {
         match &self.device {
-            DeviceRecipe::EmRelay(_) => em_relay::feasible::check_references(board, parts),
+            DeviceRecipe::EmRelay(relay) => {
+                em_relay::feasible::check_references(relay.part.nominal_v, board, parts)
+            }
             DeviceRecipe::Resistor(_) => Ok(()),
         }
     }
@@ -177,6 +179,20 @@ impl Recipe {
             }
             DeviceRecipe::Resistor(resistor) => resistor.feasible(&self.limits, wiring, accuracy),
         }
+    }
+
+    /// Returns the wiring in the smallest range of the supply that serves the recipe, which must be [feasible](Self::feasible).
+    ///
+    /// # Errors
+    /// Names the key that asks more of the supply than any range gives.
+    pub fn wired(&self, wiring: &Wiring, accuracy: &AccuracySettings) -> Result<Wiring, Fault> {
+        let demand = match &self.device {
+            DeviceRecipe::EmRelay(relay) => {
+                em_relay::feasible::demand(relay, &self.limits, accuracy)
+            }
+            DeviceRecipe::Resistor(resistor) => resistor.demand(&self.limits, accuracy),
+        };
+        Ok(wiring.in_range(demand.range(wiring)?))
     }
 }
 

@@ -6,6 +6,7 @@
 //! ([`Calibration::overshoots`] is `None`).
 
 use super::overshoot::OvershootModel;
+use super::recipe::CoilChannels;
 use super::threshold::Direction;
 use crate::gauge::Factor;
 use crate::gauge::factor::Named;
@@ -109,7 +110,12 @@ impl Overshoot {
 
 /// Returns the model for a stored calibration that has none.
 fn untaught() -> OvershootModel {
-    OvershootModel::guess(0.0)
+    OvershootModel::guess(0.0, 1.0)
+}
+
+/// Factor of a calibration that was stored by a program without ranges.
+fn only_range() -> f64 {
+    1.0
 }
 
 /// Overshoot of both directions.
@@ -138,6 +144,12 @@ pub struct Calibration {
     pub ohm_fine: Factor,
     /// [`Calibration::ohm_fine`] on the wide current channel, for coils beyond the range of the fine one.
     pub ohm_wide: Factor,
+    /// [`Calibration::ohm_fine`] on the high current channel; none on a rig without one.
+    #[serde(default)]
+    pub ohm_high: Option<Factor>,
+    /// Factor of the supply range; outputs and coil voltage hold for no other.
+    #[serde(default = "only_range")]
+    pub range_factor: f64,
     /// Milliohms per volt of contact drop at the terminal, half the difference of both polarities.
     pub contact_mohm_per_v: Factor,
     /// Delay of the gates of counters 0 and 1, microseconds; each gate counts longer by it.
@@ -163,7 +175,7 @@ pub struct Calibration {
 
 impl Calibration {
     /// Returns ideal factors of infinite uncertainty, for the measurement of the references.
-    pub fn unknown(nominal_v: f64) -> Self {
+    pub fn unknown(nominal_v: f64, range_factor: f64) -> Self {
         let unknown = Factor::new(1.0, f64::INFINITY);
         Self {
             made_at_us: 0,
@@ -176,6 +188,8 @@ impl Calibration {
             },
             ohm_fine: unknown,
             ohm_wide: unknown,
+            ohm_high: None,
+            range_factor,
             contact_mohm_per_v: unknown,
             gate_delay_us: [Factor::new(0.0, f64::INFINITY); 2],
             level: OutputLine::IDEAL,
@@ -185,6 +199,15 @@ impl Calibration {
             fine_v_per_s: unknown,
             overshoots: None,
             probe_contact_ohm: 0.0,
+        }
+    }
+
+    /// Returns ohms per unit of (voltage reading / current reading) with these channels.
+    pub fn ohm(&self, channels: CoilChannels) -> Factor {
+        match channels {
+            CoilChannels::Fine => self.ohm_fine,
+            CoilChannels::CoarseCurrent => self.ohm_wide,
+            CoilChannels::HighCurrent => self.ohm_high.unwrap_or(Factor::new(1.0, f64::INFINITY)),
         }
     }
 
@@ -205,6 +228,7 @@ impl Calibration {
             named("fine_gain", Unit::One, self.fine.gain),
             named("fine_slope", Unit::VoltPerSecond, self.fine_v_per_s),
         ];
+        all.extend(self.ohm_high.map(|it| named("coil_high", Unit::Ohm, it)));
         if let Some(overshoots) = &self.overshoots {
             all.push(named("operate_lag", Unit::Volt, overshoots.operate.fine_v));
             all.push(named("release_lag", Unit::Volt, overshoots.release.fine_v));
@@ -233,7 +257,7 @@ mod tests {
             fine_v: Factor::new(0.028, 0.0),
             at_v: 7.88,
             at_coarse_v: 0.84,
-            coarse: OvershootModel::guess(0.84),
+            coarse: OvershootModel::guess(0.84, 1.0),
             judges: false,
         };
         let rising = |coarse_v| overshoot.own_v(coarse_v, Direction::Rising);

@@ -5,10 +5,9 @@
 
 use super::calibration::{Calibration, Overshoots};
 use super::feasible::nominal_v_per_s;
-use super::measure::context::{UNTAUGHT_FINE_V, untaught};
 use super::measure::{Context, Observed, Test};
 use super::overshoot::OvershootModel;
-use super::points::{AnalogIn, AnalogOut, Points};
+use super::points::{AnalogOut, Points};
 use super::probe_contact::Trend;
 use super::recipe::RelayRecipe;
 use super::reference::{self, ReferenceFault};
@@ -28,8 +27,6 @@ use units::{Ohm, RigTime};
 #[derive(Debug, Clone)]
 pub struct Device {
     context: Context,
-    /// Volts at the terminal per volt of the coil, fine channel.
-    voltage_gain: f64,
     certificates: Vec<ReferencePart>,
     reference_parts: ReferenceRun,
     /// Models of the coarse overshoot, operate and release, learned from reference parts and from every part that passes.
@@ -56,9 +53,9 @@ impl Device {
             name: "coil_ohm",
         })?;
         let nominal_v = relay.part.nominal_v;
-        let calibration = stored.unwrap_or_else(|| Calibration::unknown(nominal_v));
-        let voltage = points.analog(AnalogIn::CoilVoltageFine);
-        let voltage_gain = rig.wiring.analog_in(voltage).gain;
+        let range = rig.wiring.supply_range.clone();
+        let factor = range.as_ref().map_or(1.0, |range| range.factor);
+        let calibration = stored.unwrap_or_else(|| Calibration::unknown(nominal_v, factor));
         let context = Context {
             recipe,
             relay,
@@ -68,32 +65,28 @@ impl Device {
             nominal_v_per_s: [AnalogOut::SupplyCoarse, AnalogOut::SupplyFine]
                 .map(|output| nominal_v_per_s(rig.wiring, points.source(output))),
             points,
+            range,
             probe_contact: None,
             thorough: false,
             teaching: None,
         };
         let certificates = rig.reference_parts.of_nominal(nominal_v).cloned();
-        Ok(Self::of(context, voltage_gain, certificates.collect()))
+        Ok(Self::of(context, certificates.collect()))
     }
 
-    pub(super) fn of(
-        context: Context,
-        voltage_gain: f64,
-        certificates: Vec<ReferencePart>,
-    ) -> Self {
+    pub(super) fn of(context: Context, certificates: Vec<ReferencePart>) -> Self {
         let coarse = context
             .calibration
             .overshoots
-            .map_or(untaught(), |overshoots| {
+            .map_or(context.untaught(), |overshoots| {
                 (overshoots.operate.coarse, overshoots.release.coarse)
             });
         Self {
+            of_lot: context.untaught(),
             context,
-            voltage_gain,
             certificates,
             reference_parts: ReferenceRun::default(),
             coarse,
-            of_lot: untaught(),
             probe_contact: Trend::default(),
         }
     }
@@ -128,13 +121,7 @@ impl Device {
         readings: &Readings,
         made: Made,
     ) -> Result<(), ReferenceFault> {
-        let calibration = reference::conclude(
-            &self.context,
-            readings,
-            made.at_us,
-            made.valid_us,
-            self.voltage_gain,
-        )?;
+        let calibration = reference::conclude(&self.context, readings, made.at_us, made.valid_us)?;
         self.context.calibration = Arc::new(Calibration {
             simulated: made.simulated,
             ..calibration
@@ -188,7 +175,8 @@ impl Device {
         if last {
             return self.conclude_reference_parts().map(Some);
         }
-        let fine_v = self.reference_parts.fine_v().unwrap_or(UNTAUGHT_FINE_V);
+        let untaught = self.context.untaught_fine_v();
+        let fine_v = self.reference_parts.fine_v().unwrap_or(untaught.into());
         self.teach(Overshoots {
             operate: reference_part::interim(self.coarse.0, fine_v.0),
             release: reference_part::interim(self.coarse.1, fine_v.1),

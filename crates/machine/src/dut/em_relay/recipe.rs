@@ -1,6 +1,7 @@
 //! Relay part of a recipe: the device, and how to measure it.
 
 use super::parameter::Parameter;
+use super::points::AnalogIn;
 use super::sampling::{CoilSampling, ContactSampling};
 use super::strategy::Strategy;
 use super::threshold::Direction;
@@ -87,6 +88,27 @@ pub enum CoilChannels {
     Fine,
     /// `coil_voltage_fine` and `coil_current`: a coil of low resistance exceeds the range of the fine current.
     CoarseCurrent,
+    /// `coil_voltage_fine` and `coil_current_high`: a coil that draws too much for `coil_current` as well.
+    HighCurrent,
+}
+
+impl CoilChannels {
+    /// Names in recipes.
+    pub const NAMES: [&'static str; 3] = ["fine", "coarse_current", "high_current"];
+
+    /// Returns the name in recipes.
+    pub const fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+
+    /// Returns the channel of the coil current.
+    pub const fn current(self) -> AnalogIn {
+        match self {
+            Self::Fine => AnalogIn::CoilCurrentFine,
+            Self::CoarseCurrent => AnalogIn::CoilCurrent,
+            Self::HighCurrent => AnalogIn::CoilCurrentHigh,
+        }
+    }
 }
 
 /// Coil suppression: the path of the coil current after switch-off.

@@ -14,11 +14,18 @@ pub enum Finding {
     Short,
     /// The channel has no usable reading.
     CurrentNotReadable,
+    /// The supply is in another range than the one selected; detail: both.
+    OtherSupplyRange,
 }
 
 impl Finding {
     /// Every finding.
-    pub const ALL: [Self; 3] = [Self::Open, Self::Short, Self::CurrentNotReadable];
+    pub const ALL: [Self; 4] = [
+        Self::Open,
+        Self::Short,
+        Self::CurrentNotReadable,
+        Self::OtherSupplyRange,
+    ];
 
     /// Returns the code in rows and exports.
     pub fn code(self) -> &'static str {
@@ -26,6 +33,7 @@ impl Finding {
             Self::Open => "resistor_open",
             Self::Short => "resistor_short",
             Self::CurrentNotReadable => "resistor_current_not_readable",
+            Self::OtherSupplyRange => "resistor_other_supply_range",
         }
     }
 
@@ -48,17 +56,24 @@ impl Finding {
         match self {
             Self::Open => Some(Side::High),
             Self::Short => Some(Side::Low),
-            Self::CurrentNotReadable => None,
+            Self::CurrentNotReadable | Self::OtherSupplyRange => None,
+        }
+    }
+}
+
+impl Finding {
+    /// Returns the reason with the figure or the names that its text holds.
+    pub fn with(self, detail: impl Into<String>) -> Reason {
+        Reason {
+            code: Code::Resistor(self),
+            side: self.side(),
+            detail: detail.into(),
         }
     }
 }
 
 impl From<Finding> for Reason {
     fn from(finding: Finding) -> Self {
-        Self {
-            code: Code::Resistor(finding),
-            side: finding.side(),
-            detail: String::new(),
-        }
+        finding.with("")
     }
 }

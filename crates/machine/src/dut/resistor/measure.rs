@@ -13,16 +13,21 @@ use crate::dut::procedure::Progress;
 use crate::dut::record::{Own, TestRecord};
 use crate::dut::{Characteristic, Recipe, Verdict};
 use crate::gauge::{Judgement, Reading, judge};
-use crate::instrument::act::{Act, Doing, JobDone, Read, Runner};
+use crate::instrument::act::{Act, Doing, JobDone, Read, Runner, Word};
 use crate::instrument::readings::Readings;
 use crate::rig::image::Image;
 use crate::rig::point::{MissingPoint, Point};
 use crate::rig::sample::{Quality, Sample};
+use crate::rig::supply::{RangeMismatch, RangeSelector, SupplyRange, code_of};
 use std::sync::Arc;
 use units::{RigTime, Span, Unit, Volt};
 
 /// Settling time of current and amplifier after the drive is off.
 const OFF: Span = Span::ms(5);
+/// Longest time until the relays of a range have switched.
+const SWITCHES: Span = Span::ms(500);
+/// Signal name of the inputs that read the range back.
+const RANGE: &str = "supply_range";
 
 /// A resistor recipe on a rig.
 #[derive(Debug, Clone)]
@@ -33,6 +38,8 @@ pub struct Device {
     promise: Promise,
     /// Number of enabled channels of the converter that reads the current.
     channels: u32,
+    /// Range of the supply and the points that select it; none on a rig with one range.
+    range: Option<(RangeSelector, SupplyRange)>,
 }
 
 impl Device {
@@ -57,14 +64,19 @@ impl Device {
                 volt_per_ampere: terminal.gain,
             },
             channels: mask.count_ones(),
+            range: rig
+                .wiring
+                .range_selector()
+                .zip(rig.wiring.supply_range.clone()),
         })
     }
 
     /// Begins the test of the part in the nest; the probes are up.
     pub fn begin(&self, order: &TestOrder, now: RigTime) -> Test {
         Test {
-            runner: Runner::new(self.acts(), now),
+            runner: Runner::new([self.range_acts(), self.acts()].concat(), now),
             device: self.clone(),
+            range_mismatch: None,
             stage: Stage::Measure,
             thorough: order.thorough,
             number: order.number,
@@ -72,6 +84,34 @@ impl Device {
             record: TestRecord::default(),
             began: now,
         }
+    }
+
+    /// Selects the range while all sources are at zero, and goes no further without it.
+    fn range_acts(&self) -> Vec<Act> {
+        let range = self.range.iter();
+        let acts = range.flat_map(|(selector, range)| {
+            let inputs = selector.inputs.to_vec();
+            let word = Word {
+                name: RANGE,
+                inputs,
+            };
+            [
+                Act::Set(selector.select(range.code).to_vec()),
+                Act::Agree {
+                    expected: selector.expects(range.code).to_vec(),
+                    word: Arc::new(word),
+                    within: SWITCHES,
+                },
+            ]
+        });
+        acts.collect()
+    }
+
+    /// Returns how the range that was read back differs from the selected one.
+    fn mismatch(&self, readings: &Readings) -> Option<RangeMismatch> {
+        let (selector, range) = self.range.as_ref()?;
+        let [low, high] = selector.inputs.map(|it| readings.states(it).last());
+        selector.mismatch(range, code_of([low?, high?]))
     }
 
     fn acts(&self) -> Vec<Act> {
@@ -163,6 +203,7 @@ pub struct Test {
     repeats_left: u32,
     began: RigTime,
     record: TestRecord<()>,
+    range_mismatch: Option<RangeMismatch>,
 }
 
 impl Test {
@@ -205,6 +246,11 @@ impl Test {
             .analog(self.device.points.current)
             .cloned()
             .collect();
+        if let Some(mismatch) = self.device.mismatch(readings) {
+            let finding = Finding::OtherSupplyRange.with(mismatch.to_string());
+            self.record.stop(finding);
+            self.range_mismatch = Some(mismatch);
+        }
         if !self.record.stopped() {
             match self.device.resistance(&samples) {
                 Ok(reading) => self.record.found(Parameter::Resistance, reading, &samples),
@@ -231,6 +277,11 @@ impl Test {
             Judgement::Pass | Judgement::Fail(_) | Judgement::Void => false,
         };
         self.thorough || repeating || self.judgements().iter().any(conditional)
+    }
+
+    /// Returns the selected supply range and the one that was read back, once they differ.
+    pub fn range_mismatch(&self) -> Option<&RangeMismatch> {
+        self.range_mismatch.as_ref()
     }
 
     /// Returns the number of this test of the part, from 1.

@@ -7,9 +7,10 @@ use crate::dut::accuracy::AccuracySettings;
 use crate::dut::recipe::{Body, Limits};
 use crate::gauge::Limit;
 use crate::rig::fault::Fault;
+use crate::rig::supply::SupplyDemand;
 use crate::rig::wiring::Wiring;
 use serde::{Deserialize, Serialize};
-use units::Volt;
+use units::{Ampere, Volt};
 
 /// The sections `[part]` and `[test]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -72,6 +73,7 @@ impl ResistorRecipe {
             let expected = "a rig with every point that its test needs";
             Fault::new("test", missing, expected)
         })?;
+        let wiring = &wiring.in_range(self.demand(limits, accuracy).range(wiring)?);
         let promise = Promise {
             accuracy: *accuracy,
             volt_per_ampere: wiring.analog_in(points.current).gain,
@@ -81,6 +83,19 @@ impl ResistorRecipe {
         wiring
             .reaches(points.level, Volt(self.test.level_v))
             .map_err(|cannot| Fault::new("test.level_v", self.test.level_v, cannot.to_string()))
+    }
+
+    /// Returns what the test asks of the supply: the level, with the tolerance of its source, and the current of the lowest
+    /// accepted resistance.
+    pub fn demand(&self, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand {
+        let level_v = self.test.level_v;
+        let low_ohm = limits.of(Parameter::Resistance).low;
+        SupplyDemand {
+            volts: Volt(level_v * (1.0 + accuracy.ao_gain_pct / 100.0)),
+            volts_key: "test.level_v",
+            current: Ampere(low_ohm.map_or(0.0, |ohm| level_v / ohm)),
+            current_key: "limits.resistance_ohm.low",
+        }
     }
 
     fn check_limit(&self, limit: Limit, promise: &Promise) -> Result<(), Fault> {

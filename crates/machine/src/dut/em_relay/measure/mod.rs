@@ -46,16 +46,17 @@ mod state;
 mod timing;
 mod verdict;
 
-use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::points::DigitalOut;
 use crate::dut::em_relay::readings::Readings;
+use crate::dut::em_relay::{Finding, Parameter};
 use crate::dut::procedure::Progress;
 use crate::dut::{Characteristic, Verdict};
 use crate::gauge::Judgement;
 use crate::instrument::act::{Doing, JobDone, Runner};
 use crate::rig::image::Image;
 use crate::rig::sample::CountSample;
+use crate::rig::supply::RangeMismatch;
 use board::Armature;
 pub use context::Context;
 pub use record::{Observed, Ramp, TestRecord};
@@ -96,6 +97,8 @@ pub struct Test {
     began: RigTime,
     /// Tests of this part so far, including this one.
     number: u8,
+    /// Selected supply range and the one that was read back, once they differ.
+    range_mismatch: Option<RangeMismatch>,
 }
 
 impl Test {
@@ -110,6 +113,7 @@ impl Test {
             state,
             began: now,
             number: 1,
+            range_mismatch: None,
             stage: Stage::Kelvin,
             runner,
             slow_done: false,
@@ -137,6 +141,11 @@ impl Test {
     /// Returns the stage under way, for views.
     pub fn stage(&self) -> Stage {
         self.stage
+    }
+
+    /// Returns the selected supply range and the one that was read back, once they differ.
+    pub fn range_mismatch(&self) -> Option<&RangeMismatch> {
+        self.range_mismatch.as_ref()
     }
 
     /// Returns the record so far.
@@ -206,6 +215,13 @@ impl Test {
         record.trace.append(std::mem::take(&mut read.trace));
         let readings = Readings::of(&read, &self.context.points, self.gates.take());
         self.gates = readings.gates.last().cloned();
+        let mut boards = readings.boards.iter();
+        let mismatch = boards.find_map(|board| self.context.range_mismatch(board.range));
+        if let Some(mismatch) = mismatch {
+            let finding = Finding::OtherSupplyRange.with(mismatch.to_string());
+            self.state.record.stop(finding);
+            self.range_mismatch.get_or_insert(mismatch);
+        }
         let again = self.state.conclude(self.stage, &self.context, &readings);
         if self.state.record.stopped() && self.stage != Stage::Off {
             self.stages = VecDeque::from([Stage::Off]);

@@ -35,6 +35,7 @@ fn device(limits: &str) -> Device {
         resistor: Arc::new(resistor),
         points,
         channels: 2,
+        range: None,
     }
 }
 

@@ -145,7 +145,12 @@ fn waits_after(acts: &[Act]) -> Span {
             | Act::WaitSinceMark(span)
             | Act::RampSinceMark(span)
             | Act::ConvertSinceMark(span) => waited += *span,
-            Act::Mark | Act::Board(_) | Act::Supply(_) | Act::CoilMask(_) => {}
+            Act::Mark
+            | Act::Board(_)
+            | Act::Supply(_)
+            | Act::CoilMask(_)
+            | Act::SelectRange(_)
+            | Act::ConfirmRange { .. } => {}
             Act::Read(Read::Drop | Read::Coil) | Act::Until { .. } => break,
             Act::Read(_) => {}
         }
