@@ -6,6 +6,7 @@
 //! or without a part.
 
 mod circuit;
+pub mod supply;
 
 use super::draw::Draw;
 use super::gates::Gates;
@@ -14,6 +15,7 @@ use super::signal::{Commands, In, Out, Source};
 use super::specimen::Specimen;
 use super::table::BoardTable;
 use crate::config::References;
+use supply::CoilSupply;
 
 /// Largest resistance between force and sense at which a pin counts as connected.
 const KELVIN_OHM: f64 = 5.0;
@@ -36,8 +38,7 @@ pub struct Board {
     reference_contact_ohm: f64,
     reference_v: f64,
     pulse_us: f64,
-    volts: [f64; 3],
-    gain: [f64; 3],
+    supply: CoilSupply,
     divider: f64,
     commands: Commands,
     switches: Switches,
@@ -51,17 +52,15 @@ pub struct Board {
     film_per_touch_ohm: f64,
     source_live: bool,
     closed_since_us: Option<f64>,
-    arm_level_v: f64,
-    moved: bool,
     now_us: f64,
 }
 
 impl Board {
-    /// Creates a board with drawn errors; `gain` is volts of supply per volt of each source.
+    /// Creates a board with drawn errors.
     pub fn new(
         table: &BoardTable,
         reference: &References,
-        gain: [f64; 3],
+        supply: CoilSupply,
         draw: &mut Draw,
     ) -> Self {
         let mut within = |value: f64, pct: f64| value * (1.0 + draw.half(pct / 100.0));
@@ -81,8 +80,7 @@ impl Board {
             reference_contact_ohm: contact * 1e-3,
             reference_v,
             pulse_us: reference.gate_pulse_ms * 1000.0,
-            volts: [0.0; 3],
-            gain,
+            supply,
             divider: 1.0,
             commands: Commands::default(),
             switches: Switches::default(),
@@ -95,8 +93,6 @@ impl Board {
             film_per_touch_ohm: 0.0,
             source_live: false,
             closed_since_us: None,
-            arm_level_v: 0.0,
-            moved: false,
             now_us: 0.0,
         }
     }
@@ -122,14 +118,11 @@ impl Board {
         }
     }
 
-    /// Sets a source of the coil supply to `volts`.
+    /// Sets the terminal of a source of the coil supply to `volts`.
     pub fn supply(&mut self, source: Source, volts: f64, part: Option<&mut Specimen>) {
-        self.volts[source as usize] = volts;
-        let away = (self.supply_v() - self.arm_level_v).abs() * 1000.0 > self.table.ramp_start_mv;
-        if away && !self.moved && self.commands.is_on(Out::RampMode) {
+        if self.supply.set(source, volts) && self.commands.is_on(Out::RampMode) {
             self.gates.start(self.now_us);
         }
-        self.moved = away;
         self.refresh(part);
     }
 
@@ -138,8 +131,7 @@ impl Board {
         let before = std::mem::replace(&mut self.commands, commands);
         self.refresh(part.as_deref_mut());
         if commands.rises(before, Out::Arm) {
-            self.arm_level_v = self.supply_v();
-            self.moved = false;
+            self.supply.arm();
             let pulse = commands
                 .is_on(Out::ReferenceContact)
                 .then_some(self.pulse_us);
@@ -201,6 +193,8 @@ impl Board {
             In::Latch => Some(self.gates.latch()),
             In::SourceCompliance => Some(self.source_limited(part)),
             In::ProbeChain => Some(self.chain),
+            In::SupplyRange0Set => Some(self.supply.range().code & 1 != 0),
+            In::SupplyRange1Set => Some(self.supply.range().code & 2 != 0),
             _ => None,
         }
     }
@@ -230,6 +224,7 @@ impl Board {
         let times = [
             self.switch_at_us,
             self.source_due_us(),
+            self.supply.next_us(),
             self.gates.next_us(),
         ];
         times.into_iter().flatten().min_by(f64::total_cmp)
@@ -249,6 +244,8 @@ impl Board {
         if self.switch_at_us.is_some_and(|at| at <= now) {
             self.switch_at_us = None;
             self.throw(part);
+        } else if self.supply.expire(now) {
+            self.refresh(part);
         } else if self.source_due_us().is_some_and(|at| at <= now) {
             self.source_live = true;
             self.refresh(part);
@@ -285,6 +282,8 @@ impl Board {
         let now = self.now_us;
         self.select_clamp(part.as_deref());
         self.edges_of_drive();
+        let drive_off = !self.switches.drive && !self.commands.is_on(Out::CoilDrive);
+        self.supply.follow(now, self.commands, drive_off);
         if let Some(part) = part.as_deref_mut() {
             let supply = self.coil_supply(part);
             part.drive(now, supply);
@@ -336,7 +335,7 @@ impl Board {
         let suppression_v = if self.clamp_diode && meets {
             self.table.diode_v
         } else {
-            self.table.zener_v
+            self.zener_v()
         };
         Supply::Off { suppression_v }
     }

@@ -41,6 +41,7 @@ use crate::terminal::Plant;
 use crate::truth::BodyTruth;
 use axis::Axis;
 use board::Board;
+use board::supply::CoilSupply;
 use bodies::Bodies;
 use draw::{Draw, Subject};
 use edges::Edges;
@@ -48,7 +49,7 @@ use environment::Environment;
 use fault::{Fault, Kind, WorldFaults};
 use magazine::{Magazine, Part};
 use mechanism::Mechanism;
-use signal::{Commands, In, Source};
+use signal::{Commands, In};
 use specimen::Specimen;
 use table::WorldTable;
 use wiring::{Wire, Wiring};
@@ -106,12 +107,8 @@ impl World {
         let film = faults.values(Fault::ProbeFilm).next();
         let noise_seed = faults.noise_seed();
         let wiring = Wiring::new(&rig);
-        let board = Board::new(
-            &table.board,
-            &rig.reference,
-            supply_gains(&wiring),
-            &mut draw,
-        );
+        let supply = CoilSupply::new(&table.board, &wiring, rig.supply_ranges.clone());
+        let board = Board::new(&table.board, &rig.reference, supply, &mut draw);
         let clock_hz =
             rig.reference.counter_clock_hz * (1.0 + draw.half(table.devices.clock_ppm * 1e-6));
         let strokes = Draw::new(options.seed, Subject::Mechanism, 0);
@@ -357,19 +354,6 @@ fn in_nest(mechanism: &mut Mechanism) -> Option<&mut Specimen> {
         .nest
         .as_deref_mut()
         .map(|part: &mut Part| &mut part.specimen)
-}
-
-/// Returns the volts of supply per volt of each source; 0 for a source without a wire.
-fn supply_gains(wiring: &Wiring) -> [f64; 3] {
-    let mut gains = [0.0; 3];
-    for (_, wire) in wiring.sources.values().flatten() {
-        match wire.signal {
-            Source::Level | Source::Coarse | Source::Fine => {
-                gains[wire.signal as usize] = wire.gain;
-            }
-        }
-    }
-    gains
 }
 
 /// Builds the slide with the stops and bins of the rig file, braked at its park position.

@@ -162,3 +162,28 @@ fn a_seed_draws_the_recorded_relays() {
     let pinless = drawn(7, 188, 12.0, 400.0);
     assert_eq!(pinless.pins.present, [true, true, false, true, true]);
 }
+
+#[test]
+fn a_24_v_lot_has_twice_the_thresholds() {
+    let world = read_world(&config_dir(), None).unwrap();
+    let of_lot = |nominal_v, nominal_coil_ohm, index| {
+        let scale = Scale {
+            nominal_v,
+            nominal_coil_ohm,
+        };
+        RelayValues::of_lot(&world, scale, 7, index)
+    };
+    for index in 0..300 {
+        let (part, scaled) = (of_lot(12.0, 400.0, index), of_lot(24.0, 1600.0, index));
+        let drawn = |it: &RelayValues| [it.operate_v, it.release_v, it.coil_ohm];
+        for (found, expected) in drawn(&scaled)
+            .iter()
+            .zip(drawn(&part).iter().zip([2.0, 2.0, 4.0]))
+        {
+            let off = found / (expected.0 * expected.1) - 1.0;
+            assert!(expected.0.is_infinite() || off.abs() < 1e-12, "{scaled:?}");
+        }
+        assert_eq!(scaled.defect, part.defect);
+        assert_eq!(scaled.operate_ms, part.operate_ms);
+    }
+}
