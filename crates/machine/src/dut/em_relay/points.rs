@@ -180,6 +180,7 @@ const SWITCHES: [Switch; DigitalOut::COUNT + SELECT.len()] = {
         all[at].traced = matches!(output, DigitalOut::CoilDrive);
         at += 1;
     }
+    all[at + 1].name = SELECT[1];
     all
 };
 
