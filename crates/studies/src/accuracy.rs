@@ -1,6 +1,6 @@
 //! Error of every parameter against the truth.
 //!
-//! Held against the bar is the median over lots of the rms error over good parts; beside it stand the worst
+//! The bar of a threshold is a share of the nominal coil voltage. Held against the bar is the median over lots of the rms error over good parts; beside it stand the worst
 //! lot, the median over lots of the mean error, the greatest error of any part and the pooled coverage.
 
 use super::chart::Chart;
@@ -11,6 +11,7 @@ use super::lot::Lot;
 use super::output::Report;
 use super::parameters;
 use machine::dut::em_relay::Parameter;
+use units::Unit;
 
 /// Runs the lots and makes the report.
 ///
@@ -23,11 +24,22 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
         marks: vec![100.0],
         ..Chart::default()
     };
-    let share = |parameter: Parameter, value| 100.0 * value / parameter.facts().allowed_rms;
+    let nominal_v = order.nominal_v;
+    let share = |parameter, value| 100.0 * value / allowed(parameter, nominal_v);
+    let row = |parameter, lots: &[Lot]| row(parameter, lots, nominal_v);
     parameters::study("accuracy", order, row, share, chart)
 }
 
-fn row(parameter: Parameter, lots: &[Lot]) -> Figure {
+/// Returns the greatest acceptable rms error in the unit of [`unit`]: that of a threshold is a share of the nominal voltage.
+fn allowed(parameter: Parameter, nominal_v: f64) -> f64 {
+    let allowed = parameter.facts().allowed_rms;
+    match parameter.definition().unit {
+        Unit::Volt => allowed / 100.0 * nominal_v * 1000.0,
+        _ => allowed,
+    }
+}
+
+fn row(parameter: Parameter, lots: &[Lot], nominal_v: f64) -> Figure {
     let errors = Pooled::of(parameter, lots);
     Figure::new(
         parameter.name(),
@@ -39,5 +51,5 @@ fn row(parameter: Parameter, lots: &[Lot]) -> Figure {
     .with("bias", errors.median_bias())
     .with("max", errors.worst())
     .with("coverage_pct", errors.coverage_pct())
-    .bar(Bar::AtMost(parameter.facts().allowed_rms))
+    .bar(Bar::AtMost(allowed(parameter, nominal_v)))
 }

@@ -23,6 +23,8 @@ pub struct Order {
     pub recipe: String,
     /// What the recipe admits.
     pub admitted: Admitted,
+    /// Nominal coil voltage of the recipe, V; NaN for a kind without one.
+    pub nominal_v: f64,
     /// World of the simulated rig; none is the one of the configuration.
     pub world: Option<PathBuf>,
     /// Faults of the simulated rig, in the form of `--fault`.

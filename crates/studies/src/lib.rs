@@ -196,6 +196,14 @@ pub fn transient(cases: &Path, rtol: f64, json: bool) -> anyhow::Result<String> 
     transient::study(cases, rtol, json)
 }
 
+/// Nominal coil voltage of the recipe, V; NaN for a kind without one.
+///
+/// # Errors
+/// A recipe that is refused.
+pub fn nominal_v(config: &Path, recipe: &str) -> anyhow::Result<f64> {
+    Ok(load_recipe(config, recipe)?.rated_v().unwrap_or(f64::NAN))
+}
+
 /// What the recipe admits; a limit that it does not set is infinite.
 ///
 /// # Errors

@@ -40,13 +40,16 @@ const SCANNED: [AnalogIn; 6] = [
 ];
 /// Scans per level: they average the 2.8 mV of one reading to 0.8 mV.
 const SCANS: usize = 12;
-/// Scans along the fine ramp.
-const RAMP_SCANS: usize = 44;
-/// Levels at the coil in the range of factor 1: both within the range of the fine channels at 400 ohm.
-const LOW: Volt = Volt(1.5);
+/// Scans along the fine ramp, and the share of a round of conversions between two of them: what is read is up to a round
+/// old, and at this share the ages spread evenly over the ramp and do not tilt it.
+const RAMP_SCANS: usize = 56;
+const RAMP_ROUND: f64 = 0.6;
+/// The higher level at the coil in the range of factor 1: within the range of the fine channels at 400 ohm.
 const HIGH: Volt = Volt(5.7);
-/// Distance from both ends of the fine ramp within which readings are excluded from the slope, at factor 1.
-const SLOPE_MARGIN: Volt = Volt(0.3);
+/// The lower level, and the distance from both ends of the fine ramp within which readings are excluded from the slope, as
+/// shares of the higher level.
+const LOW: f64 = 1.5 / 5.7;
+const SLOPE_MARGIN: f64 = 0.3 / 5.7;
 /// Share of the limits of a supply range that a level uses.
 const USED: f64 = 0.9;
 /// Full scale of the coil converter, and the highest voltage at a terminal that still counts.
@@ -105,7 +108,7 @@ impl Levels {
             Volt(read_v.min(within_v))
         });
         Self {
-            low: scale.of_range(LOW),
+            low: high * LOW,
             high,
             current: current.filter(|it| (it.0 / high.0 - 1.0).abs() > ALIKE),
         }
@@ -161,7 +164,7 @@ fn at_zero(context: &Context, scanned: &[AnalogIn]) -> Vec<Act> {
         [Act::SelectRange(code), Act::ConfirmRange { code, within }]
     }));
     acts.push(Act::Wait(Span::ms(200) + context.fresh(scanned.len())));
-    scans(context, (scanned, SCANS), &mut acts);
+    scans(context, scanned, &mut acts);
     acts
 }
 
@@ -176,7 +179,7 @@ fn levels(context: &Context, scanned: &[AnalogIn]) -> Vec<Act> {
             Act::Supply(step),
             Act::Wait(Span::ms(60) + context.fresh(scanned.len())),
         ]);
-        scans(context, (scanned, SCANS), &mut acts);
+        scans(context, scanned, &mut acts);
     }
     acts.extend([
         Act::Supply(vec![(SupplyCoarse, Volt(0.0))]),
@@ -184,9 +187,12 @@ fn levels(context: &Context, scanned: &[AnalogIn]) -> Vec<Act> {
         Act::Supply(vec![(SupplyFine, levels.span())]),
         Act::Wait(Span::ms(100) + context.fresh(scanned.len())),
     ]);
-    scans(context, (scanned, RAMP_SCANS), &mut acts);
+    let wait = Act::Wait(Span::seconds(RAMP_ROUND * context.round(scanned.len()).as_seconds()));
+    for _ in 0..RAMP_SCANS {
+        acts.extend([Act::Read(Read::Coil), wait.clone()]);
+    }
     acts.push(Act::Wait(Span::ms(1500)));
-    scans(context, (scanned, SCANS), &mut acts);
+    scans(context, scanned, &mut acts);
     acts
 }
 
@@ -204,9 +210,9 @@ fn all_off() -> Act {
     Act::Board(off.map(|output| (output, false)).to_vec())
 }
 
-fn scans(context: &Context, (scanned, n): (&[AnalogIn], usize), acts: &mut Vec<Act>) {
+fn scans(context: &Context, scanned: &[AnalogIn], acts: &mut Vec<Act>) {
     let round = context.round(scanned.len());
-    for _ in 0..n {
+    for _ in 0..SCANS {
         acts.extend([Act::Read(Read::Coil), Act::Wait(round)]);
     }
 }
@@ -538,7 +544,7 @@ fn slope(
     line: &InputLine,
     voltage_gain: f64,
 ) -> Result<Factor, ReferenceFault> {
-    let margin = context.scale().of_range(SLOPE_MARGIN);
+    let margin = levels.high * SLOPE_MARGIN;
     let counted = (levels.low + margin).0..(levels.high - margin).0;
     let points: Vec<(f64, f64)> = scans
         .iter()
