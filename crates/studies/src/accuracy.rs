@@ -34,7 +34,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
 fn allowed(parameter: Parameter, nominal_v: f64) -> f64 {
     let allowed = parameter.facts().allowed_rms;
     match parameter.definition().unit {
-        Unit::Volt => allowed / 100.0 * nominal_v * 1000.0,
+        Unit::Volt => (allowed * nominal_v * 1e4).round() / 1e3,
         _ => allowed,
     }
 }

@@ -187,7 +187,9 @@ fn levels(context: &Context, scanned: &[AnalogIn]) -> Vec<Act> {
         Act::Supply(vec![(SupplyFine, levels.span())]),
         Act::Wait(Span::ms(100) + context.fresh(scanned.len())),
     ]);
-    let wait = Act::Wait(Span::seconds(RAMP_ROUND * context.round(scanned.len()).as_seconds()));
+    let wait = Act::Wait(Span::seconds(
+        RAMP_ROUND * context.round(scanned.len()).as_seconds(),
+    ));
     for _ in 0..RAMP_SCANS {
         acts.extend([Act::Read(Read::Coil), wait.clone()]);
     }
