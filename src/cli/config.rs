@@ -110,14 +110,16 @@ fn describe_recipe(dir: &Path, plant: &Plant, name: &str) -> anyhow::Result<Stri
     plant.admit(&recipe)?;
     let file = dir.join("recipes").join(format!("{name}.toml"));
     let golden = match recipe
-        .rated_v()
+        .device
+        .part()
+        .nominal_v
         .map(|volts| plant.golden.of_nominal(volts).count())
     {
         None => "no golden parts needed".to_owned(),
         Some(0) => "NO GOLDEN PARTS of its coil voltage: a lot cannot be calibrated".to_owned(),
         Some(count) => format!("{count} golden parts"),
     };
-    let all = recipe.kind().characteristics().len();
+    let all = recipe.device.kind().characteristics().len();
     let judged = recipe
         .limits()
         .filter(|(_, limit)| limit.low.is_some() || limit.high.is_some())

@@ -64,7 +64,7 @@ impl Terminal {
     }
 
     fn judged(&mut self, judged: &Judged, lot: &LotProgress) {
-        self.table.add(lot.context.recipe.kind(), judged);
+        self.table.add(lot.context.recipe.device.kind(), judged);
         if !lot.context.purpose.is_between_lots() {
             self.bar.set_position(lot.counts.parts());
             let pace = lot.counts.in_short(lot.per_hour(judged.at));

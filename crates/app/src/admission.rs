@@ -135,8 +135,8 @@ fn pass_gates(
     recipe: &Recipe,
     order: &LotOrder,
 ) -> Result<(), NotAdmitted> {
-    if let Some(nominal_v) = recipe.rated_v()
-        && plant.lot.reference_check.any()
+    if let Some(nominal_v) = recipe.device.part().nominal_v
+        && plant.lot.golden_check.any()
         && plant.golden.of_nominal(nominal_v).next().is_none()
     {
         return Err(NotAdmitted::NoReferencePart {
@@ -182,7 +182,7 @@ pub fn uncalibrated(
     if source.is_simulated() {
         return Ok(None);
     }
-    match recipe.rated_v() {
+    match recipe.device.part().nominal_v {
         Some(nominal_v) => calibration::why_not(db, nominal_v),
         None => Ok(None),
     }

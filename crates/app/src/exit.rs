@@ -1,4 +1,7 @@
 //! Why a command ended, with its exit status.
+//!
+//! `lot/progress.rs` (alarm, abort) and `lot/mod.rs` (assertion, lost history) choose the cause of a status 3, table `run_end` of
+//! the history stores it, `relayrig lot` and the page Lots show it.
 
 use machine::station::trouble::Alarm;
 use serde::Serialize;

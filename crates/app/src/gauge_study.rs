@@ -77,7 +77,7 @@ pub fn run(
         }
     }
     let archive = Archive::open(&files.db)?;
-    let measured = load_recipe(&files.config, &order.recipe)?.kind();
+    let measured = load_recipe(&files.config, &order.recipe)?.device.kind();
     let figures = measured.characteristics().into_iter().map(|it| {
         let readings = readings(&archive, order, parts, it)?;
         Ok(Figure {

@@ -54,8 +54,8 @@
 //! | file | idea |
 //! |---|---|
 //! | `line.rs` | the task: tries, repetitions, reopening |
-//! | `transaction.rs`, `exchange.rs` | one transaction; its bytes |
-//! | `outstanding.rs` | replies that may still arrive |
+//! | `transaction.rs`, `exchange.rs` | one transaction, which drops late replies; its bytes |
+//! | `outstanding.rs` | late replies: those that may still arrive |
 //! | `probation.rs` | addresses whose replies need confirmation |
 //! | `pace.rs` | rig time on tokio's timers, real or virtual |
 //! | `settings.rs`, `wire.rs` | time-outs and the time of characters |

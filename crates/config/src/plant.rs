@@ -6,6 +6,7 @@ use super::keys;
 use super::lot::load_lot;
 use super::tree::{Node, NotToml, not_toml};
 use machine::dut::accuracy::AccuracySettings;
+use machine::dut::device::Rig;
 use machine::dut::em_relay::settings::{CalibrationSettings, ReferenceSet, ReferenceSettings};
 use machine::dut::{self, Recipe};
 use machine::form::Key;
@@ -82,21 +83,28 @@ impl Plant {
 }
 
 impl Plant {
+    /// Returns what a kind of device needs to know of the plant.
+    pub fn rig(&self) -> Rig<'_> {
+        Rig {
+            wiring: &self.wiring,
+            reference: self.reference.as_ref(),
+            accuracy: &self.accuracy,
+            reference_parts: &self.golden,
+        }
+    }
+
     /// Refuses a recipe that this plant lacks references for, or that its modules cannot measure.
     ///
     /// # Errors
     /// The first fault, with file, line, key and the module that cannot measure it.
     pub fn admit(&self, recipe: &Recipe) -> Result<(), ConfigError> {
-        recipe
-            .referenced(self.reference.as_ref(), &self.golden)
-            .and_then(|()| recipe.feasible(&self.wiring, &self.accuracy))
-            .or_else(|fault| {
-                let path = self
-                    .dir
-                    .join("recipes")
-                    .join(format!("{}.toml", recipe.name));
-                Err(File::parse(path, recipe.source_text.clone())?.locate(&fault))
-            })
+        recipe.feasible(&self.rig()).or_else(|fault| {
+            let path = self
+                .dir
+                .join("recipes")
+                .join(format!("{}.toml", recipe.name));
+            Err(File::parse(path, recipe.source_text.clone())?.locate(&fault))
+        })
     }
 }
 

@@ -3,24 +3,25 @@
 //! - Values are judged as in a run, with their stored uncertainty; a value within U of a limit is `not proven`, since it
 //!   cannot be measured again.
 //! - Values at the reference temperature of their recipe are converted to that of the other recipe.
-//! - Curves may prove that a characteristic without a value exceeds its upper limit ([`above`]).
+//! - Curves may prove that a characteristic without a value exceeds its upper limit ([`machine::dut::characteristic::KindCharacteristic`]).
 //! - Reasons that depend on no limit (an open circuit, a refused reply) stay.
 //! - The other recipe must have the same kind and nominal voltage ([`Basis::misfit`]).
 
 use super::Part;
 use machine::dut::reason::Code;
-use machine::dut::rejudge::{Basis, above, bounded};
+use machine::dut::rejudge::Basis;
 use machine::dut::{Characteristic, Judgement, Reason, Recipe, Verdict};
 use machine::gauge::{Budget, Reading, Side, judge};
 use machine::instrument::curve::Curve;
 
 /// Returns the verdict of `recipe` on a part with its curves, tested by a recipe of `basis`.
 pub fn rejudged(part: &Part, curves: &[Curve], basis: Basis, recipe: &Recipe) -> Verdict {
+    let bound = |it: Characteristic| it.lower_bound(curves, recipe.device.part().nominal_v);
     let judged: Vec<(Characteristic, Judgement)> = recipe
         .limits()
         .map(|(characteristic, limit)| {
             let reading = stored(part, characteristic, basis.factor(characteristic, recipe));
-            let seen = |high| above(curves, characteristic, high, recipe);
+            let seen = |high| bound(characteristic).is_some_and(|bound| bound > high);
             let judgement = match judge(&reading, &limit, recipe.decision.rule) {
                 Judgement::Void if limit.high.is_some_and(seen) => Judgement::Fail(Side::High),
                 judgement => judgement,
@@ -28,8 +29,8 @@ pub fn rejudged(part: &Part, curves: &[Curve], basis: Basis, recipe: &Recipe) ->
             (characteristic, judgement)
         })
         .collect();
-    let by_values = Verdict::of(&recipe.kind().characteristics(), &judged);
-    let seen = |it| bounded(curves, it, recipe);
+    let by_values = Verdict::of(&recipe.device.kind().characteristics(), &judged);
+    let seen = |it| bound(it).is_some();
     let others = part.reason_codes.iter();
     let others: Vec<Reason> = others.filter(|it| !of_a_limit(it, seen)).cloned().collect();
     match (part.verdict.as_str(), others.as_slice()) {
@@ -67,7 +68,7 @@ fn stored(part: &Part, of: Characteristic, factor: f64) -> Reading {
 fn of_a_limit(reason: &Reason, seen: impl Fn(Characteristic) -> bool) -> bool {
     match reason.code {
         Code::OutsideLimit(_) | Code::NotProven(_) | Code::NotMeasured(_) => true,
-        Code::EmRelay(_) | Code::Resistor(_) => {
+        Code::Finding(_) => {
             reason.side == Some(Side::High) && reason.characteristic().is_some_and(seen)
         }
         Code::Interrupted | Code::RigTrouble | Code::Unclassified => false,

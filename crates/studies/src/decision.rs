@@ -128,7 +128,9 @@ fn at_limit(order: &Order, lots: &[Lot]) -> anyhow::Result<Vec<Figure>> {
     let mean = limits.end() - usual.sd;
     let recipe = load_recipe(&order.config, &order.recipe)?;
     let nominal_v = recipe
-        .rated_v()
+        .device
+        .part()
+        .nominal_v
         .context("the study needs a recipe of a relay")?;
     let of_lot = LOT_V / nominal_v;
     let variant = Variant {

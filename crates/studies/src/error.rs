@@ -11,7 +11,7 @@ use units::Unit;
 
 /// Unit of the error of a parameter in reports.
 pub fn unit(parameter: Parameter) -> &'static str {
-    match parameter.definition().unit {
+    match parameter.facts().definition.unit {
         Unit::Ohm => "%",
         Unit::Volt => "mV",
         unit => unit.symbol(),
@@ -21,7 +21,7 @@ pub fn unit(parameter: Parameter) -> &'static str {
 /// The error of a reading in [`unit`].
 pub fn error(parameter: Parameter, reading: &Reading) -> f64 {
     let difference = reading.value - reading.truth;
-    match parameter.definition().unit {
+    match parameter.facts().definition.unit {
         Unit::Ohm => 100.0 * difference / reading.truth,
         Unit::Volt => 1000.0 * difference,
         _ => difference,

@@ -1,4 +1,4 @@
-//! Faults of the world, by name.
+//! Faults of machine and parts, by name. A fault acts where its variant is read: mechanism, parts, sensors, magazine.
 
 use std::path::Path;
 

@@ -91,7 +91,7 @@ pub fn calibrate(
 /// Nominal voltage of the coil, of which there is a golden part.
 fn reference_voltage(config: &Path, recipe: &str) -> anyhow::Result<f64> {
     let plant = Plant::load(config)?;
-    let Some(nominal_v) = load_recipe(config, recipe)?.rated_v() else {
+    let Some(nominal_v) = load_recipe(config, recipe)?.device.part().nominal_v else {
         bail!("--recipe {recipe}: found a kind that needs no calibration, expected a relay");
     };
     if plant.golden.of_nominal(nominal_v).next().is_none() {

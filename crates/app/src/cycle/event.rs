@@ -4,7 +4,7 @@ use machine::dut::Calibration;
 use machine::handling::inside::Inside;
 use machine::handling::output::{Interrupted, Judged, Landed, NestExit};
 use machine::handling::wear::Uses;
-use machine::station::annunciator::Standing;
+use machine::station::annunciator::ListedAlarm;
 use machine::station::packml;
 use machine::station::trouble::Alarm;
 use machine::station::turn::Checked;
@@ -27,7 +27,7 @@ pub enum Event {
     /// An alarm was raised.
     Alarm(Alarm, RigTime),
     /// The list of alarms that stand has changed.
-    Standing(Vec<Standing>, RigTime),
+    Standing(Vec<ListedAlarm>, RigTime),
     /// Calibration and golden parts are complete.
     Calibrated(Box<Calibration>),
     /// A golden check has come out.

@@ -7,7 +7,7 @@ use machine::handling::ledger::{Kind, Part};
 use machine::handling::mechanism::SENSOR_AGE;
 use machine::rig::point::DigitalInput;
 use machine::station::Station;
-use machine::station::annunciator::Standing;
+use machine::station::annunciator::ListedAlarm;
 use machine::station::catalogue;
 use machine::station::orders::{self, Order, Refused};
 use machine::station::packml::{Command, Mode};
@@ -220,7 +220,7 @@ fn token(part: &Part) -> Token {
 }
 
 fn lines(station: &Station, epoch_us: i64) -> Vec<AlarmLine> {
-    let standing = station.annunciator().standing();
+    let standing = station.annunciator().listed();
     let (first, others): (Vec<_>, Vec<_>) = standing.iter().partition(|one| one.first_out);
     first
         .into_iter()
@@ -229,7 +229,7 @@ fn lines(station: &Station, epoch_us: i64) -> Vec<AlarmLine> {
         .collect()
 }
 
-fn line(one: &Standing, epoch_us: i64) -> AlarmLine {
+fn line(one: &ListedAlarm, epoch_us: i64) -> AlarmLine {
     let alarm = &one.alarm;
     let help = |lang| alarm.code.help(lang).map(str::to_owned);
     let stops = match alarm.code.entry().reaction {

@@ -32,7 +32,7 @@ impl Cycle {
             self.tell(Event::Alarm(alarm, now));
         }
         if output.record.alarms_changed {
-            let standing = self.station.annunciator().standing().to_vec();
+            let standing = self.station.annunciator().listed().to_vec();
             self.tell(Event::Standing(standing, now));
         }
         let inside = self.station.ledger().parts_to_find();

@@ -1,7 +1,7 @@
 //! Values of made-up parts: the lot of the default world, one draw after the other.
 
 use history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord};
-use machine::dut::made_up::{Looks, Scatter, evidence, scatter};
+use machine::dut::made_up::{Looks, MadeUp, Scatter};
 use machine::dut::{Characteristic, Judgement, Recipe, Verdict};
 use machine::gauge::{Budget, Limit, Reading, judge};
 use rand_xoshiro::SplitMix64;
@@ -32,7 +32,8 @@ pub(super) struct Line {
 impl Line {
     /// Parts of this recipe.
     pub fn new(recipe: &Recipe, seed: u64) -> Self {
-        let made = scatter(recipe).into_iter().map(|(of, scatter)| Made {
+        let MadeUp { scatter, looks } = recipe.device.made_up(&recipe.limits);
+        let made = scatter.into_iter().map(|(of, scatter)| Made {
             of,
             limit: recipe.limits.of(of),
             budget: serde_json::to_string(&scatter.budget).unwrap_or_default(),
@@ -41,7 +42,7 @@ impl Line {
         Self {
             recipe: recipe.clone(),
             made: made.collect(),
-            looks: evidence(recipe),
+            looks,
             draws: Draws(SplitMix64::seed_from_u64(seed)),
         }
     }
@@ -83,7 +84,7 @@ impl Line {
             measurements.push(it.record(value, judgement, attempt));
             judged.push((*of, judgement));
         }
-        let verdict = Verdict::of(&self.recipe.kind().characteristics(), &judged);
+        let verdict = Verdict::of(&self.recipe.device.kind().characteristics(), &judged);
         if verdict != Verdict::Pass {
             for it in &mut measurements {
                 it.samples = vec![reply(at_us), reply(at_us + 3_000)];

@@ -8,7 +8,6 @@ use bus::Pace;
 use config::Plant;
 use history::UnacknowledgedAlarm;
 use machine::dut::Recipe;
-use machine::dut::device::{Device, Rig};
 use machine::guard::{Actuator, Guard, PartSize};
 use machine::handling::mechanism::Mechanism;
 use machine::handling::moves::Strokes;
@@ -49,13 +48,9 @@ pub(super) fn cycle(
             .collect::<Vec<(AxisStation, f64)>>(),
     };
     let calibrated = calibration.is_some();
-    let rig = Rig {
-        wiring: &wiring,
-        reference: plant.reference.as_ref(),
-        accuracy: &plant.accuracy,
-        reference_parts: &plant.golden,
-    };
-    let device = Device::new(Arc::clone(&recipe), &rig, calibration)?;
+    let device = recipe
+        .device
+        .on_rig(Arc::clone(&recipe), &plant.rig(), calibration)?;
     let plan = Plan {
         attended,
         between_lots: context.purpose.rests_in(),
@@ -64,7 +59,7 @@ pub(super) fn cycle(
             Some(_) => Vec::new(),
             None => device.reference_serials(),
         },
-        calibrated: calibrated || !device.needs_calibration(),
+        calibrated: calibrated || device.due_at_us().is_none(),
         valid_us: (plant.calibration.valid_h * 3.6e9) as i64,
         epoch_us: context.epoch_us,
         simulated: context.is_simulated(),
@@ -102,9 +97,10 @@ fn inherit(station: &mut Station, left: UnacknowledgedAlarm, epoch_us: i64) {
 }
 
 fn size_of(recipe: &Recipe) -> PartSize {
+    let part = recipe.device.part();
     PartSize {
-        body_mm: recipe.body().size_mm,
-        pin_length_mm: recipe.body().pin_length_mm,
+        body_mm: part.body_mm,
+        pin_length_mm: part.pin_length_mm,
     }
 }
 

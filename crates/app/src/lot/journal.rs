@@ -7,7 +7,7 @@ use history::{
 };
 use machine::handling::inside::Inside;
 use machine::handling::wear::Uses;
-use machine::station::annunciator::Standing;
+use machine::station::annunciator::ListedAlarm;
 use machine::station::catalogue::AlarmCode;
 use machine::station::orders::shelf_minutes;
 use machine::station::trouble::Alarm;
@@ -92,7 +92,7 @@ impl Journal {
     }
 
     /// The alarms that stand have changed: some causes may have gone, and the lot may go on.
-    pub fn standing(&mut self, standing: &[Standing], at_us: i64) -> Vec<Row> {
+    pub fn standing(&mut self, standing: &[ListedAlarm], at_us: i64) -> Vec<Row> {
         let active: Vec<String> = standing
             .iter()
             .filter(|one| one.is_active())
@@ -248,14 +248,14 @@ mod tests {
         let mut list = Annunciator::default();
         list.raise(&alarm, RigTime(1));
         assert_eq!(states(&journal.alarm(&alarm, 1)), [LotState::Held]);
-        assert!(journal.standing(list.standing(), 1).is_empty());
+        assert!(journal.standing(list.listed(), 1).is_empty());
         let trouble = Exit::Trouble(Cause::from(&alarm));
         let ended = journal.ended(&Ending::Alarm, &trouble, 2);
         assert!(states(&ended).is_empty());
         let cause = ("golden_check_failed".to_owned(), alarm.text(Lang::En));
         assert!(matches!(&ended[..], [Row::RunEnded(it)] if it.cause == Some(cause)));
         list.cleared();
-        let rows = journal.standing(list.standing(), 3);
+        let rows = journal.standing(list.listed(), 3);
         assert_eq!(states(&rows), [LotState::Running]);
         assert_eq!(rows.len(), 2, "the alarm has returned and the lot runs");
         let rows = journal.ended(&Ending::Complete, &Exit::Done, 4);

@@ -124,7 +124,7 @@ fn budget(reading: &Reading) -> Option<String> {
 pub fn json(context: &LotContext, judged: &Judged, cycle_s: Option<f64>, bin: &str) -> Value {
     let mut values = Map::new();
     let mut uncertainty = Map::new();
-    for characteristic in context.recipe.kind().characteristics() {
+    for characteristic in context.recipe.device.kind().characteristics() {
         let Some(reading) = judged.record.usable(characteristic) else {
             continue;
         };

@@ -80,7 +80,7 @@ fn worn(store: &Store, simulated: bool) -> anyhow::Result<Uses> {
 
 /// The stored calibration, provided it is not overdue.
 fn valid_calibration(store: &Store, context: &LotContext) -> anyhow::Result<Option<Calibration>> {
-    let Some(nominal_v) = context.recipe.rated_v() else {
+    let Some(nominal_v) = context.recipe.device.part().nominal_v else {
         return Ok(None);
     };
     let Some(record) = store.latest_calibration_of(false, nominal_v)? else {

@@ -9,7 +9,7 @@ use crate::cycle::{Event, PANEL};
 use machine::handling::ledger::{Kind, Part};
 use machine::handling::output::Landed;
 use machine::rig::bin::Bin;
-use machine::station::annunciator::Standing;
+use machine::station::annunciator::ListedAlarm;
 use machine::station::catalogue::AlarmCode;
 use machine::station::trouble::Alarm;
 use rigsim::SimError;
@@ -158,7 +158,7 @@ impl Narrator {
         }
     }
 
-    fn standing(&mut self, standing: &[Standing], now: RigTime) {
+    fn standing(&mut self, standing: &[ListedAlarm], now: RigTime) {
         let active = standing.iter().filter(|one| one.is_active());
         let active: BTreeSet<AlarmCode> = active.map(|one| one.alarm.code).collect();
         for code in std::mem::replace(&mut self.active, active.clone()) {

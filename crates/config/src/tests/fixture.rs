@@ -76,7 +76,7 @@ fn refused(rig: &Table) -> Vec<String> {
     let recipes = recipes
         .iter()
         .map(|name| load_recipe(copy.path(), name).unwrap());
-    let relays = recipes.filter(|recipe| recipe.kind() == Kind::EmRelay);
+    let relays = recipes.filter(|recipe| recipe.device.kind() == Kind::EmRelay);
     relays
         .map(|recipe| plant.admit(&recipe).unwrap_err().to_string())
         .collect()

@@ -42,7 +42,11 @@ fn the_whole_plant_is_loaded_from_its_folder() {
     assert_eq!(plant.reference.unwrap().coil_ohm, 400.0);
     assert_eq!(plant.accuracy.conversions_per_s, 75.0);
     assert_eq!(
-        load_recipe(copy.0.path(), "jzc-22f-012").unwrap().rated_v(),
+        load_recipe(copy.0.path(), "jzc-22f-012")
+            .unwrap()
+            .device
+            .part()
+            .nominal_v,
         Some(12.0)
     );
 }

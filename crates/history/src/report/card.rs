@@ -15,7 +15,7 @@ use texts::Lang;
 /// Returns the card as an HTML page, A4 landscape.
 pub fn card(language: Lang, recipe: &Recipe, plant: &CardSettings, made: &str) -> String {
     let title = language.text("paper-operation_process_card");
-    let kind = Card::of(recipe);
+    let kind = recipe.device.card();
     let body = html! {
         (header(language, recipe, &kind, plant))
         (steps(language, recipe, &kind, plant))
@@ -29,8 +29,8 @@ pub fn card(language: Lang, recipe: &Recipe, plant: &CardSettings, made: &str) -
 fn header(language: Lang, recipe: &Recipe, kind: &Card, plant: &CardSettings) -> Markup {
     let say = |id| language.text(id);
     let ((rating, rated), quota) = (&kind.rating, total(plant));
-    let body = recipe.body();
-    let [x, y, z] = body.size_mm;
+    let part = recipe.device.part();
+    let [x, y, z] = part.body_mm;
     html! {
         table.card {
             tr {
@@ -53,7 +53,7 @@ fn header(language: Lang, recipe: &Recipe, kind: &Card, plant: &CardSettings) ->
                 td colspan="2" { (say("paper-operation_name")) }
                 td { (joined(language, rated)) }
                 td { (figure(Some(x))) " × " (figure(Some(y))) " × " (figure(Some(z))) }
-                td { (figure(Some(body.pin_length_mm))) } td { (figure(Some(recipe.reference_temperature_c()))) " °C" }
+                td { (figure(Some(part.pin_length_mm))) } td { (figure(Some(part.reference.0))) " °C" }
             }
             tr {
                 th { (say("paper-equipment")) } th { (say("paper-equipment_type")) }

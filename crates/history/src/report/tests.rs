@@ -8,7 +8,7 @@ use super::spc::{NamedChart, spc};
 use super::*;
 use crate::{Alarm, AlarmState, LotSummary, Measurement, Part, Passed, Shelf, Yield};
 use config::load_recipe;
-use machine::dut::card::{Card, CardSettings, Quota, STEPS};
+use machine::dut::card::{CardSettings, Quota, STEPS};
 use machine::dut::{Reason, Recipe};
 use quality::Limits;
 use quality::chart::{individuals, shares};
@@ -255,7 +255,7 @@ fn a_process_card_has_every_step_its_limits_and_the_sum_of_its_times() {
 
 #[test]
 fn every_step_of_the_card_has_its_quota_by_name() {
-    let steps = Card::of(&recipe()).steps;
+    let steps = recipe().device.card().steps;
     assert!(steps.iter().map(|it| it.name).eq(STEPS.iter().copied()));
 }
 

@@ -1,8 +1,7 @@
 //! The operation process card of a recipe as data: what the kind says on it, and what the plant adds in `card.toml`.
 
 use super::characteristic::Characteristic;
-use super::recipe::{DeviceRecipe, Recipe};
-use super::{em_relay, resistor};
+use super::em_relay;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -84,16 +83,6 @@ pub struct CardSettings {
     pub preparation_min: f64,
     /// Time quota by step.
     pub quota: BTreeMap<String, Quota>,
-}
-
-impl Card {
-    /// What the kind of this recipe says.
-    pub fn of(recipe: &Recipe) -> Self {
-        match &recipe.device {
-            DeviceRecipe::EmRelay(relay) => em_relay::card::card(relay),
-            DeviceRecipe::Resistor(resistor) => resistor::card::card(resistor),
-        }
-    }
 }
 
 impl Step {

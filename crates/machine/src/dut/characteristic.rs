@@ -7,10 +7,12 @@ use super::Kind;
 use super::verdict::Bin;
 use super::{em_relay, resistor};
 use crate::gauge::repetition::MeanOf;
+use crate::instrument::curve::Curve;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
+use std::ops::Deref;
 use texts::Lang;
-use units::Unit;
+use units::{Celsius, Unit};
 
 /// What the program knows of a characteristic.
 #[derive(Debug, Clone, Copy)]
@@ -23,6 +25,24 @@ pub struct Definition {
     pub mean_of: MeanOf,
     /// Bin of a part that fails this one.
     pub bin: Bin,
+}
+
+/// A characteristic of a kind. The defaults are those of one that does not depend on temperature and that curves say nothing
+/// of.
+pub trait KindCharacteristic {
+    /// Returns what is fixed about it.
+    fn definition(&self) -> &'static Definition;
+
+    /// Returns the factor that converts a result at temperature `_from` to `_to`.
+    fn conversion(&self, _from: Celsius, _to: Celsius) -> f64 {
+        1.0
+    }
+
+    /// Returns the lower bound that stored curves of a part without a value prove, in the unit of the key, less the margin
+    /// for what they are not corrected for. `_rated_v`: nominal voltage of the part.
+    fn lower_bound(&self, _curves: &[Curve], _rated_v: Option<f64>) -> Option<f64> {
+        None
+    }
 }
 
 /// One measured quantity of one kind. Sorts by kind, then in the order of reports.
@@ -45,14 +65,6 @@ impl Characteristic {
         Self::all().find(|it| it.key() == key)
     }
 
-    /// What is fixed about it.
-    pub fn definition(self) -> &'static Definition {
-        match self {
-            Self::EmRelay(parameter) => parameter.definition(),
-            Self::Resistor(parameter) => parameter.definition(),
-        }
-    }
-
     /// The key, with the unit as suffix.
     pub fn key(self) -> &'static str {
         self.definition().key
@@ -71,6 +83,17 @@ impl Characteristic {
     /// Bin of a part that fails this one.
     pub fn bin(self) -> Bin {
         self.definition().bin
+    }
+}
+
+impl Deref for Characteristic {
+    type Target = dyn KindCharacteristic;
+
+    fn deref(&self) -> &Self::Target {
+        match self {
+            Self::EmRelay(parameter) => parameter,
+            Self::Resistor(parameter) => parameter,
+        }
     }
 }
 

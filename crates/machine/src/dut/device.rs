@@ -5,14 +5,12 @@ use super::calibration::Calibration;
 use super::em_relay;
 use super::em_relay::settings::{ReferenceSet, ReferenceSettings};
 use super::procedure::Procedure;
-use super::recipe::{DeviceRecipe, Recipe};
 use super::record::TestRecord;
 use super::resistor;
 use crate::instrument::act::Act;
 use crate::instrument::readings::Readings;
-use crate::rig::point::MissingPoint;
 use crate::rig::wiring::Wiring;
-use std::sync::Arc;
+use std::ops::{Deref, DerefMut};
 use texts::Message;
 use thiserror::Error;
 use units::{Ohm, RigTime};
@@ -73,175 +71,118 @@ impl CalibrationFault {
     }
 }
 
-const NO_REFERENCE_PARTS: &str = "a resistor has no reference parts, so none was planned";
+/// A kind of device on a rig: recipe, calibration and what parts have taught. The defaults are those of a kind that needs
+/// no calibration and learns nothing.
+pub trait DeviceUnderTest {
+    /// Begins the test of the part in the nest; the probes are up.
+    fn begin(&self, order: &TestOrder, now: RigTime) -> Procedure;
 
-/// A kind of device on a rig: what outlives one part.
-#[derive(Debug, Clone)]
-pub enum Device {
-    /// Electromagnetic relay.
-    EmRelay(Box<em_relay::Device>),
-    /// Resistor: needs no calibration and learns nothing.
-    Resistor(Box<resistor::Device>),
-}
-
-impl Device {
-    /// Puts `recipe` on a rig that was calibrated before, or was not.
-    ///
-    /// # Errors
-    /// Names the first point of the kind that the rig does not have.
-    pub fn new(
-        recipe: Arc<Recipe>,
-        rig: &Rig,
-        stored: Option<Calibration>,
-    ) -> Result<Self, MissingPoint> {
-        match &recipe.device {
-            DeviceRecipe::EmRelay(relay) => {
-                let stored = stored.map(|Calibration::EmRelay(factors)| factors);
-                let relay = Arc::new(relay.clone());
-                let device = em_relay::Device::new(recipe, relay, rig, stored)?;
-                Ok(Self::EmRelay(Box::new(device)))
-            }
-            DeviceRecipe::Resistor(resistor) => {
-                let resistor = Arc::new(resistor.clone());
-                let device = resistor::Device::new(recipe, resistor, rig)?;
-                Ok(Self::Resistor(Box::new(device)))
-            }
-        }
+    /// Returns when the factors in force expire, microseconds since 1970 UTC; none without calibration.
+    fn due_at_us(&self) -> Option<i64> {
+        None
     }
 
-    /// When the factors in force run out, microseconds since 1970 UTC; never for a kind that needs none.
-    pub fn due_at_us(&self) -> Option<i64> {
-        match self {
-            Self::EmRelay(relay) => Some(relay.calibration().due_at_us),
-            Self::Resistor(_) => None,
-        }
+    /// Returns the serial numbers of the reference parts, in the order of the magazine.
+    fn reference_serials(&self) -> Vec<String> {
+        Vec::new()
     }
 
-    /// Serial numbers of the reference parts, in the order of the magazine; empty for a kind that needs none.
-    pub fn reference_serials(&self) -> Vec<String> {
-        match self {
-            Self::EmRelay(relay) => relay.reference_serials().map(str::to_owned).collect(),
-            Self::Resistor(_) => Vec::new(),
-        }
+    /// Returns true when parts may be judged.
+    fn is_calibrated(&self) -> bool {
+        true
     }
 
-    /// True when the kind measures references and reference parts before a lot.
-    pub fn needs_calibration(&self) -> bool {
-        match self {
-            Self::EmRelay(_) => true,
-            Self::Resistor(_) => false,
-        }
+    /// Returns the acts that measure the references on the board, in the empty nest with the probes up.
+    fn reference_acts(&self) -> Vec<Act> {
+        Vec::new()
     }
 
-    /// True when parts may be judged.
-    pub fn is_calibrated(&self) -> bool {
-        match self {
-            Self::EmRelay(relay) => relay.is_calibrated(),
-            Self::Resistor(_) => true,
-        }
-    }
-
-    /// The measurements against the references on the board, in the empty nest with the probes up.
-    pub fn reference_acts(&self) -> Vec<Act> {
-        match self {
-            Self::EmRelay(relay) => relay.reference_acts(),
-            Self::Resistor(_) => Vec::new(),
-        }
-    }
-
-    /// Draws the factors from what [`Self::reference_acts`] has read.
+    /// Computes the factors from the readings of [`Self::reference_acts`].
     ///
     /// # Errors
     /// Names the channel or the reference that does not read as it must.
-    pub fn conclude_references(
+    fn conclude_references(
         &mut self,
-        readings: &Readings,
-        made: Made,
+        _readings: &Readings,
+        _made: Made,
     ) -> Result<(), CalibrationFault> {
-        match self {
-            Self::EmRelay(relay) => Ok(relay.conclude_references(readings, made)?),
-            Self::Resistor(_) => Ok(()),
-        }
+        Ok(())
     }
 
-    /// Forgets the calibration: references and reference parts are measured again.
-    pub fn forget_calibration(&mut self) {
-        match self {
-            Self::EmRelay(relay) => relay.forget_calibration(),
-            Self::Resistor(_) => {}
-        }
-    }
-
-    /// Begins the test of the part in the nest; the probes are up.
-    pub fn begin(&self, order: &TestOrder, now: RigTime) -> Procedure {
-        match self {
-            Self::EmRelay(relay) => Procedure::EmRelay(Box::new(relay.begin(order, now))),
-            Self::Resistor(resistor) => Procedure::Resistor(Box::new(resistor.begin(order, now))),
-        }
-    }
+    /// Discards the calibration, so that references and reference parts have to be measured again.
+    fn forget_calibration(&mut self) {}
 
     /// Learns from a reference part. With the `last` one the calibration is complete and returned.
     ///
     /// # Errors
     /// Says why the part cannot be used, or which one does not fit the others.
-    pub fn learn_reference(
+    fn learn_reference(
         &mut self,
         serial: &str,
-        record: &TestRecord,
-        last: bool,
+        _record: &TestRecord,
+        _last: bool,
     ) -> Result<Option<Calibration>, CalibrationFault> {
-        match self {
-            Self::EmRelay(relay) => {
-                let complete = relay.learn_reference(serial, record, last)?;
-                Ok(complete.map(Calibration::EmRelay))
-            }
-            Self::Resistor(_) => panic!("{NO_REFERENCE_PARTS}"),
-        }
+        panic!("{NO_REFERENCE_PARTS}: {serial}")
     }
 
     /// Completes the calibration with the reference parts measured so far: the last one was interrupted.
     ///
     /// # Errors
     /// Says which part does not fit the others, or that there are too few.
-    pub fn conclude_reference_parts(&mut self) -> Result<Calibration, CalibrationFault> {
-        match self {
-            Self::EmRelay(relay) => Ok(Calibration::EmRelay(relay.conclude_reference_parts()?)),
-            Self::Resistor(_) => panic!("{NO_REFERENCE_PARTS}"),
-        }
+    fn conclude_reference_parts(&mut self) -> Result<Calibration, CalibrationFault> {
+        panic!("{NO_REFERENCE_PARTS}")
     }
 
-    /// Learns from a part of the lot that passed or not.
-    pub fn learn(&mut self, record: &TestRecord, pass: bool) {
-        match self {
-            Self::EmRelay(relay) => relay.learn(record, pass),
-            Self::Resistor(_) => {}
-        }
-    }
+    /// Learns from a part of the lot, which passes or not.
+    fn learn(&mut self, _record: &TestRecord, _pass: bool) {}
 
-    /// Compares what was measured on a reference part with its certificate.
+    /// Compares the results of a reference part with its certificate.
     ///
     /// # Errors
-    /// Names what does not agree.
-    pub fn check(&self, serial: &str, record: &TestRecord) -> Result<(), CalibrationFault> {
-        match self {
-            Self::EmRelay(relay) => Ok(relay.check(serial, record)?),
-            Self::Resistor(_) => panic!("{NO_REFERENCE_PARTS}"),
-        }
+    /// Names the result that does not agree.
+    fn check(&self, serial: &str, _record: &TestRecord) -> Result<(), CalibrationFault> {
+        panic!("{NO_REFERENCE_PARTS}: {serial}")
     }
 
-    /// Resistance of the probes in series with the part, mean over the last parts of the lot; none before a part has told it.
-    pub fn probe_contact(&self) -> Option<Ohm> {
-        match self {
-            Self::EmRelay(relay) => relay.probe_contact(),
-            Self::Resistor(_) => None,
-        }
+    /// Returns the resistance of the probes in series with the part, mean over the last parts of the lot; none before the
+    /// first part.
+    fn probe_contact(&self) -> Option<Ohm> {
+        None
     }
 
-    /// The same, once enough parts have told it to be a trend.
-    pub fn settled_probe_contact(&self) -> Option<Ohm> {
+    /// Returns the same once it is the mean of enough parts for an alarm.
+    fn settled_probe_contact(&self) -> Option<Ohm> {
+        None
+    }
+}
+
+const NO_REFERENCE_PARTS: &str = "a kind without reference parts gets one";
+
+/// A kind of device on a rig, as the station holds it; outlives one part.
+#[derive(Debug, Clone)]
+pub enum Device {
+    /// Electromagnetic relay.
+    EmRelay(Box<em_relay::Device>),
+    /// Resistor.
+    Resistor(Box<resistor::Device>),
+}
+
+impl Deref for Device {
+    type Target = dyn DeviceUnderTest;
+
+    fn deref(&self) -> &Self::Target {
         match self {
-            Self::EmRelay(relay) => relay.settled_probe_contact(),
-            Self::Resistor(_) => None,
+            Self::EmRelay(relay) => relay.as_ref(),
+            Self::Resistor(resistor) => resistor.as_ref(),
+        }
+    }
+}
+
+impl DerefMut for Device {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        match self {
+            Self::EmRelay(relay) => relay.as_mut(),
+            Self::Resistor(resistor) => resistor.as_mut(),
         }
     }
 }

@@ -1,10 +1,17 @@
 //! What made-up parts of a kind look like, for trying a history: how values scatter, and what a test would have seen.
 
-use super::characteristic::Characteristic;
-use super::recipe::{DeviceRecipe, Recipe};
-use super::{em_relay, resistor};
+use super::Characteristic;
 use crate::gauge::Budget;
 use crate::instrument::trace::Signal;
+
+/// What made-up parts of a recipe look like: means from the recipe where it knows them, else those of the default world.
+#[derive(Debug, Clone)]
+pub struct MadeUp {
+    /// Of every characteristic, in the order of reports.
+    pub scatter: Vec<(Characteristic, Scatter)>,
+    /// As many as a test of the default recipe has.
+    pub looks: Vec<Looks>,
+}
 
 /// How a characteristic scatters over a lot, and how well a value is known.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,21 +37,4 @@ pub struct Looks {
     pub count: i64,
     /// Value of the look with this number, from 0.
     pub value: fn(i64) -> f64,
-}
-
-/// Scatter of every characteristic of the recipe's kind, in the order of reports: means from the recipe where it knows them,
-/// else those of the default world.
-pub fn scatter(recipe: &Recipe) -> Vec<(Characteristic, Scatter)> {
-    match &recipe.device {
-        DeviceRecipe::EmRelay(relay) => em_relay::made_up::scatter(relay),
-        DeviceRecipe::Resistor(_) => resistor::made_up::scatter(&recipe.limits),
-    }
-}
-
-/// As many looks as a test of the default recipe has.
-pub fn evidence(recipe: &Recipe) -> Vec<Looks> {
-    match &recipe.device {
-        DeviceRecipe::EmRelay(_) => em_relay::made_up::evidence(),
-        DeviceRecipe::Resistor(_) => Vec::new(),
-    }
 }

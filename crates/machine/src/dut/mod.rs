@@ -9,6 +9,7 @@ pub mod card;
 pub mod characteristic;
 pub mod device;
 pub mod em_relay;
+pub mod finding;
 pub mod instruments;
 pub mod keys;
 pub mod made_up;
@@ -24,6 +25,7 @@ pub use crate::gauge::Judgement;
 pub use calibration::Calibration;
 pub use characteristic::Characteristic;
 pub use device::Device;
+pub use finding::Finding;
 pub use procedure::Procedure;
 pub use reason::Reason;
 pub use recipe::Recipe;
@@ -62,12 +64,17 @@ impl Kind {
     /// The names of recipes, in the order of [`Self::ALL`].
     pub const NAMES: &'static [&'static str] = &[Self::EmRelay.name(), Self::Resistor.name()];
 
+    /// Returns what is fixed about it.
+    pub const fn definition(self) -> &'static KindDefinition {
+        match self {
+            Self::EmRelay => &em_relay::DEFINITION,
+            Self::Resistor => &resistor::DEFINITION,
+        }
+    }
+
     /// Its name in recipes.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::EmRelay => "em_relay",
-            Self::Resistor => "resistor",
-        }
+        self.definition().name
     }
 
     /// The kind of this name.
@@ -77,33 +84,31 @@ impl Kind {
 
     /// Returns the keys that a recipe of this kind may have.
     pub const fn sections(self) -> keys::Sections {
-        match self {
-            Self::EmRelay => em_relay::keys::recipe::SECTIONS,
-            Self::Resistor => resistor::keys::SECTIONS,
-        }
+        self.definition().sections
     }
 
     /// Returns its characteristics, in the order of reports.
     pub fn characteristics(self) -> Vec<Characteristic> {
-        match self {
-            Self::EmRelay => em_relay::Parameter::ALL.map(Characteristic::from).to_vec(),
-            Self::Resistor => resistor::Parameter::ALL.map(Characteristic::from).to_vec(),
-        }
-    }
-
-    /// Names of the stages of its test.
-    pub fn stages(self) -> Vec<&'static str> {
-        match self {
-            Self::EmRelay => em_relay::measure::Stage::ALL.map(|it| it.name()).to_vec(),
-            Self::Resistor => resistor::measure::Stage::ALL.map(|it| it.name()).to_vec(),
-        }
+        (self.definition().characteristics)()
     }
 
     /// Returns the findings that only a test of this kind has.
-    pub fn findings(self) -> Vec<reason::Code> {
-        match self {
-            Self::EmRelay => em_relay::Finding::ALL.map(reason::Code::EmRelay).to_vec(),
-            Self::Resistor => resistor::Finding::ALL.map(reason::Code::Resistor).to_vec(),
-        }
+    pub fn findings(self) -> Vec<Finding> {
+        (self.definition().findings)()
     }
+}
+
+/// What is fixed about a kind.
+#[derive(Debug, Clone, Copy)]
+pub struct KindDefinition {
+    /// Its name in recipes.
+    pub name: &'static str,
+    /// Keys that a recipe may have.
+    pub sections: keys::Sections,
+    /// Its characteristics, in the order of reports.
+    pub characteristics: fn() -> Vec<Characteristic>,
+    /// Names of the stages of its test.
+    pub stages: fn() -> Vec<&'static str>,
+    /// Findings that only its test has.
+    pub findings: fn() -> Vec<Finding>,
 }

@@ -5,8 +5,8 @@
 //! reads that string back.
 
 use super::characteristic::Characteristic;
+use super::finding::Finding;
 use super::verdict::Bin;
-use super::{Kind, em_relay, resistor};
 use crate::gauge::Side;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
@@ -26,10 +26,8 @@ pub enum Code {
     Interrupted,
     /// A line or module failed in the middle of the test; detail: which, and how.
     RigTrouble,
-    /// Finding of a relay test.
-    EmRelay(em_relay::Finding),
-    /// Finding of a resistor test.
-    Resistor(resistor::Finding),
+    /// Finding of a test of one kind.
+    Finding(Finding),
     /// A text that has no code: imported, or older than this program knows; detail: the text.
     Unclassified,
 }
@@ -96,8 +94,7 @@ impl Reason {
             Code::OutsideLimit(characteristic) | Code::NotProven(characteristic) => {
                 characteristic.bin()
             }
-            Code::EmRelay(finding) => finding.bin().unwrap_or(Bin::RETEST),
-            Code::Resistor(finding) => finding.bin().unwrap_or(Bin::RETEST),
+            Code::Finding(finding) => finding.entry().bin.unwrap_or(Bin::RETEST),
             Code::NotMeasured(_) | Code::Interrupted | Code::RigTrouble | Code::Unclassified => {
                 Bin::RETEST
             }
@@ -113,8 +110,7 @@ impl Reason {
     pub fn characteristic(&self) -> Option<Characteristic> {
         match self.code {
             Code::OutsideLimit(it) | Code::NotProven(it) | Code::NotMeasured(it) => Some(it),
-            Code::EmRelay(finding) => finding.proves().map(Characteristic::EmRelay),
-            Code::Resistor(finding) => finding.proves().map(Characteristic::Resistor),
+            Code::Finding(finding) => finding.entry().proves.map(|(of, _)| of),
             Code::Interrupted | Code::RigTrouble | Code::Unclassified => None,
         }
     }
@@ -136,28 +132,12 @@ impl Reason {
 
     /// Reads a text that came without a code; what has none stays [`Code::Unclassified`].
     pub fn from_text(text: &str) -> Self {
-        let findings = Kind::ALL
-            .into_iter()
-            .flat_map(Kind::findings)
-            .map(Self::of_finding);
-        let every = findings
+        let every = Finding::all()
+            .map(Self::from)
             .chain([Self::interrupted("")])
             .chain(Self::of_limits(text));
         let found = every.filter_map(|reason| reason.read(text)).next();
         found.unwrap_or_else(|| Self::unclassified(text))
-    }
-
-    fn of_finding(code: Code) -> Self {
-        match code {
-            Code::EmRelay(finding) => finding.into(),
-            Code::Resistor(finding) => finding.into(),
-            Code::OutsideLimit(_)
-            | Code::NotProven(_)
-            | Code::NotMeasured(_)
-            | Code::Interrupted
-            | Code::RigTrouble
-            | Code::Unclassified => Self::of(code),
-        }
     }
 
     /// Every reason that speaks of the characteristic whose key begins the text.
@@ -203,11 +183,7 @@ impl Reason {
                 message.case(side.name()).with("side", side)
             }
             (
-                Code::NotMeasured(_)
-                | Code::EmRelay(_)
-                | Code::Resistor(_)
-                | Code::RigTrouble
-                | Code::Unclassified,
+                Code::NotMeasured(_) | Code::Finding(_) | Code::RigTrouble | Code::Unclassified,
                 Some(side),
             ) => message.with("side", side),
         }
@@ -239,8 +215,7 @@ impl Code {
             Self::NotMeasured(_) => "not_measured",
             Self::Interrupted => "interrupted",
             Self::RigTrouble => "rig_trouble",
-            Self::EmRelay(finding) => finding.code(),
-            Self::Resistor(finding) => finding.code(),
+            Self::Finding(finding) => finding.entry().code,
             Self::Unclassified => "unclassified",
         }
     }
@@ -253,9 +228,19 @@ impl Code {
             "interrupted" => Some(Self::Interrupted),
             "rig_trouble" => Some(Self::RigTrouble),
             "unclassified" => Some(Self::Unclassified),
-            finding => em_relay::Finding::from_code(finding)
-                .map(Self::EmRelay)
-                .or_else(|| resistor::Finding::from_code(finding).map(Self::Resistor)),
+            finding => Finding::all()
+                .find(|it| it.entry().code == finding)
+                .map(Self::Finding),
+        }
+    }
+}
+
+impl<F: Into<Finding>> From<F> for Reason {
+    fn from(finding: F) -> Self {
+        let finding = finding.into();
+        Self {
+            side: finding.entry().proves.map(|(_, side)| side),
+            ..Self::of(Code::Finding(finding))
         }
     }
 }
@@ -284,7 +269,7 @@ impl fmt::Display for Reason {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dut::em_relay::{Finding, Parameter};
+    use crate::dut::em_relay::{self, Parameter};
 
     const OPERATE: Characteristic = Characteristic::EmRelay(Parameter::OperateVoltage);
 
@@ -304,9 +289,9 @@ mod tests {
                 "operate_voltage_v not measured",
             ),
             (Reason::interrupted("door_open"), "interrupted: door_open"),
-            (Finding::CoilOpen.into(), "coil open"),
+            (em_relay::Finding::CoilOpen.into(), "coil open"),
             (
-                Finding::PinOpen.with("COM"),
+                em_relay::Finding::PinOpen.with("COM"),
                 "no Kelvin contact at COM: missing pin or dirty probe",
             ),
         ];
@@ -318,7 +303,6 @@ mod tests {
 
     #[test]
     fn a_reason_is_the_same_after_it_was_stored() {
-        let of_a_kind = Finding::ALL.map(|it| it.with("COM"));
         let general = [
             Reason::outside(OPERATE, Side::High),
             Reason::not_proven(OPERATE, Side::Low),
@@ -327,8 +311,11 @@ mod tests {
             Reason::rig_trouble("module 03 silent"),
             Reason::unclassified("refused by the clerk"),
         ];
-        let of_resistors = resistor::Finding::ALL.map(Reason::from);
-        for reason in of_a_kind.into_iter().chain(of_resistors).chain(general) {
+        let of_kinds = Finding::all().map(|it| Reason {
+            detail: "COM".into(),
+            ..it.into()
+        });
+        for reason in of_kinds.chain(general) {
             let name = reason.code.name();
             let back = Reason::stored(name, reason.characteristic(), reason.side, &reason.detail);
             assert_eq!(back, Some(reason));
@@ -339,8 +326,7 @@ mod tests {
 
     #[test]
     fn every_reason_is_read_back_from_its_row() {
-        for code in Kind::ALL.into_iter().flat_map(Kind::findings) {
-            let bare = Reason::of_finding(code);
+        for bare in Finding::all().map(Reason::from) {
             let has_detail = Reason {
                 detail: "COM".into(),
                 ..bare.clone()
@@ -357,14 +343,9 @@ mod tests {
 
     #[test]
     fn every_reason_has_a_text_in_both_languages() {
-        for code in Kind::ALL.into_iter().flat_map(Kind::findings) {
-            let reason = Reason::of_finding(code);
+        for reason in Finding::all().map(Reason::from) {
             let [en, zh] = Lang::ALL.map(|lang| reason.short(lang));
-            assert!(
-                !en.is_empty() && !zh.is_empty() && en != zh,
-                "{}",
-                code.name()
-            );
+            assert!(!en.is_empty() && !zh.is_empty() && en != zh, "{reason}");
         }
         let high = Reason::outside(OPERATE, Side::High);
         assert_eq!(high.short(Lang::En), "Operate voltage high");

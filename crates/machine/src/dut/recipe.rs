@@ -3,18 +3,24 @@
 //! One file of `config/recipes/` each. The text it was read from stays with it, with its SHA-256, so that
 //! a lot can store the very recipe it was judged by.
 
-use super::Kind;
 use super::accuracy::AccuracySettings;
+use super::card::Card;
 use super::characteristic::Characteristic;
-use super::em_relay;
+use super::device::Rig;
 use super::em_relay::recipe::RelayRecipe;
-use super::em_relay::settings::{ReferenceSet, ReferenceSettings};
+use super::made_up::MadeUp;
 use super::resistor::recipe::ResistorRecipe;
+use super::{Calibration, Device, Kind};
 use crate::gauge::{Limit, Rule};
 use crate::rig::fault::Fault;
+use crate::rig::point::MissingPoint;
+use crate::rig::supply::SupplyDemand;
 use crate::rig::wiring::Wiring;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::ops::Deref;
+use std::sync::Arc;
+use units::Celsius;
 
 /// The limits of a recipe by characteristic, whose key says the unit.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -55,6 +61,50 @@ pub struct Decision {
 }
 
 /// Sections of a recipe that belong to the kind: the part, and how to measure it.
+pub trait KindRecipe {
+    /// Returns the kind of device that it describes.
+    fn kind(&self) -> Kind;
+
+    /// Returns what is alike in every part.
+    fn part(&self) -> PartFacts;
+
+    /// Puts `recipe`, which has these sections, on a rig with the `stored` calibration, if there is one.
+    ///
+    /// # Errors
+    /// Names the first point of the kind that the rig does not have.
+    fn on_rig(
+        &self,
+        recipe: Arc<Recipe>,
+        rig: &Rig,
+        stored: Option<Calibration>,
+    ) -> Result<Device, MissingPoint>;
+
+    /// Checks that the rig has the points, bins and references of the kind, that its modules can perform the recipe, and that
+    /// their uncertainty leaves something to judge.
+    ///
+    /// # Errors
+    /// Names the first key that asks too much and the module that stands against it, or what `rig.toml` lacks.
+    fn feasible(&self, limits: &Limits, rig: &Rig) -> Result<(), Fault>;
+
+    /// Returns what the test asks of the supply.
+    fn demand(&self, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand;
+
+    /// Returns the process card.
+    fn card(&self) -> Card;
+
+    /// Returns what made-up parts look like.
+    fn made_up(&self, limits: &Limits) -> MadeUp;
+
+    /// Checks that the sections do not contradict themselves.
+    ///
+    /// # Errors
+    /// Names the first key whose value contradicts another one.
+    fn check(&self) -> Result<(), Fault> {
+        Ok(())
+    }
+}
+
+/// Sections of a recipe that belong to the kind, by kind.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum DeviceRecipe {
@@ -64,13 +114,29 @@ pub enum DeviceRecipe {
     Resistor(ResistorRecipe),
 }
 
-/// Outside of a part as it lies in the nest.
+impl Deref for DeviceRecipe {
+    type Target = dyn KindRecipe;
+
+    fn deref(&self) -> &Self::Target {
+        match self {
+            Self::EmRelay(relay) => relay,
+            Self::Resistor(resistor) => resistor,
+        }
+    }
+}
+
+/// What is alike in the parts of every kind.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Body {
-    /// Body along x, y, z, mm.
-    pub size_mm: [f64; 3],
+pub struct PartFacts {
+    /// Body along x, y, z as it lies in the nest, mm.
+    pub body_mm: [f64; 3],
     /// Length of the pins below the body, mm.
     pub pin_length_mm: f64,
+    /// Temperature that results are converted to.
+    pub reference: Celsius,
+    /// Nominal voltage that a calibration and its reference parts must share with the part, V; none for a kind that needs
+    /// neither.
+    pub nominal_v: Option<f64>,
 }
 
 /// A checked recipe with the text it came from.
@@ -98,42 +164,9 @@ pub struct Recipe {
 }
 
 impl Recipe {
-    /// The kind of device it describes.
-    pub fn kind(&self) -> Kind {
-        match self.device {
-            DeviceRecipe::EmRelay(_) => Kind::EmRelay,
-            DeviceRecipe::Resistor(_) => Kind::Resistor,
-        }
-    }
-
-    /// The outside of the part.
-    pub fn body(&self) -> Body {
-        match &self.device {
-            DeviceRecipe::EmRelay(relay) => relay.part.body(),
-            DeviceRecipe::Resistor(resistor) => resistor.body(),
-        }
-    }
-
-    /// Nominal voltage that a calibration and its reference parts must share with the recipe, V; none for a kind that needs
-    /// neither.
-    pub fn rated_v(&self) -> Option<f64> {
-        match &self.device {
-            DeviceRecipe::EmRelay(relay) => Some(relay.part.nominal_v),
-            DeviceRecipe::Resistor(_) => None,
-        }
-    }
-
-    /// Temperature that results are converted to, degrees Celsius.
-    pub fn reference_temperature_c(&self) -> f64 {
-        match &self.device {
-            DeviceRecipe::EmRelay(relay) => relay.part.reference_temperature_c,
-            DeviceRecipe::Resistor(resistor) => resistor.part.reference_temperature_c,
-        }
-    }
-
     /// Every characteristic of the kind with its limit, in the order of reports.
     pub fn limits(&self) -> impl Iterator<Item = (Characteristic, Limit)> + '_ {
-        let all = self.kind().characteristics().into_iter();
+        let all = self.device.kind().characteristics().into_iter();
         all.map(|characteristic| (characteristic, self.limits.of(characteristic)))
     }
 
@@ -145,40 +178,15 @@ impl Recipe {
         for (characteristic, limit) in self.limits.named() {
             check_limit(&format!("limits.{characteristic}"), limit)?;
         }
-        match &self.device {
-            DeviceRecipe::EmRelay(relay) => relay.check(),
-            DeviceRecipe::Resistor(_) => Ok(()),
-        }
+        self.device.check()
     }
 
-    /// Checks that the rig has the references and reference parts of the kind.
+    /// Checks that a rig can perform the recipe, and that its uncertainty leaves something to judge.
     ///
     /// # Errors
-    /// Names the section or the key of `rig.toml` that is missing.
-    pub fn referenced(
-        &self,
-        board: Option<&ReferenceSettings>,
-        parts: &ReferenceSet,
-    ) -> Result<(), Fault> {
-        match &self.device {
-            DeviceRecipe::EmRelay(relay) => {
-                em_relay::feasible::check_references(relay.part.nominal_v, board, parts)
-            }
-            DeviceRecipe::Resistor(_) => Ok(()),
-        }
-    }
-
-    /// Checks that the modules of this rig can perform the recipe, and that their uncertainty leaves something to judge.
-    ///
-    /// # Errors
-    /// Names the first key that asks too much and the module that stands against it.
-    pub fn feasible(&self, wiring: &Wiring, accuracy: &AccuracySettings) -> Result<(), Fault> {
-        match &self.device {
-            DeviceRecipe::EmRelay(relay) => {
-                em_relay::feasible::check(relay, &self.limits, wiring, accuracy)
-            }
-            DeviceRecipe::Resistor(resistor) => resistor.feasible(&self.limits, wiring, accuracy),
-        }
+    /// Names the first key that asks too much and the module that stands against it, or what `rig.toml` lacks.
+    pub fn feasible(&self, rig: &Rig) -> Result<(), Fault> {
+        self.device.feasible(&self.limits, rig)
     }
 
     /// Returns the wiring in the smallest range of the supply that serves the recipe, which must be [feasible](Self::feasible).
@@ -186,12 +194,7 @@ impl Recipe {
     /// # Errors
     /// Names the key that asks more of the supply than any range gives.
     pub fn wired(&self, wiring: &Wiring, accuracy: &AccuracySettings) -> Result<Wiring, Fault> {
-        let demand = match &self.device {
-            DeviceRecipe::EmRelay(relay) => {
-                em_relay::feasible::demand(relay, &self.limits, accuracy)
-            }
-            DeviceRecipe::Resistor(resistor) => resistor.demand(&self.limits, accuracy),
-        };
+        let demand = self.device.demand(&self.limits, accuracy);
         Ok(wiring.in_range(demand.range(wiring)?))
     }
 }

@@ -3,8 +3,9 @@
 use super::characteristic::Characteristic;
 use super::em_relay::Observed;
 use super::reason::Reason;
-use crate::gauge::Reading;
+use super::recipe::Recipe;
 use crate::gauge::repetition::mean;
+use crate::gauge::{Judgement, Reading, judge};
 use crate::instrument::act::Spent;
 use crate::instrument::trace::Trace;
 use crate::rig::sample::{CountSample, Origin, Sample};
@@ -120,6 +121,20 @@ impl<T> TestRecord<T> {
         let of = of.into();
         let repetitions: Vec<Reading> = self.each(of).cloned().collect();
         mean(&repetitions, of.definition().mean_of)
+    }
+
+    /// Judges each result of these characteristics by its limit; leaves out what was not measured.
+    pub fn judged<C: Into<Characteristic> + Copy>(
+        &self,
+        recipe: &Recipe,
+        all: impl IntoIterator<Item = C>,
+    ) -> Vec<(C, Judgement)> {
+        let one = |of: C| {
+            let limit = recipe.limits.of(of);
+            let judgement = judge(&self.result(of)?, &limit, recipe.decision.rule);
+            Some((of, judgement))
+        };
+        all.into_iter().filter_map(one).collect()
     }
 
     /// The result when it is a number with a finite uncertainty.

@@ -1,8 +1,6 @@
-//! What stored values and curves of a part may conclude under another recipe than the one it was measured by.
+//! Whether stored values of a part may be judged by another recipe than the one it was measured by, and how they convert.
 
-use super::em_relay::{self, evidence};
 use super::{Characteristic, Kind, Recipe};
-use crate::instrument::curve::Curve;
 use units::Celsius;
 
 /// What stored values refer to: of the recipe that was in force.
@@ -15,6 +13,9 @@ pub struct Basis {
     /// Temperature that results are brought to.
     pub reference: Celsius,
 }
+
+/// Key of `[part]` of the kinds that have a nominal voltage.
+const NOMINAL: &str = "nominal_v";
 
 /// Why values cannot be judged by a recipe.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -38,9 +39,9 @@ impl Basis {
         let kind = kind.map_or(Some(Kind::EmRelay), Kind::from_name)?;
         Some(Self {
             kind,
-            nominal_v: match kind {
-                Kind::EmRelay => Some(number("nominal_v")?),
-                Kind::Resistor => None,
+            nominal_v: match kind.sections().part.iter().any(|it| it.name == NOMINAL) {
+                true => Some(number(NOMINAL)?),
+                false => None,
             },
             reference: Celsius(number("reference_temperature_c")?),
         })
@@ -49,22 +50,22 @@ impl Basis {
     /// Of a recipe that is loaded.
     pub fn of_recipe(recipe: &Recipe) -> Self {
         Self {
-            kind: recipe.kind(),
-            nominal_v: recipe.rated_v(),
-            reference: Celsius(recipe.reference_temperature_c()),
+            kind: recipe.device.kind(),
+            nominal_v: recipe.device.part().nominal_v,
+            reference: recipe.device.part().reference,
         }
     }
 
     /// Why values on this basis cannot be judged by `recipe`; none when they can.
     pub fn misfit(&self, recipe: &Recipe) -> Option<Misfit> {
-        let (name, kind) = (&recipe.name, recipe.kind());
+        let (name, kind) = (&recipe.name, recipe.device.kind());
         if self.kind != kind {
             return Some(Misfit {
                 wanted: format!("{name} is about kind {}", kind.name()),
                 found: format!("was of kind {}", self.kind.name()),
             });
         }
-        let (wanted_v, measured_v) = (recipe.rated_v()?, self.nominal_v?);
+        let (wanted_v, measured_v) = (recipe.device.part().nominal_v?, self.nominal_v?);
         let fits = (measured_v - wanted_v).abs() < 1e-6 * measured_v;
         (!fits).then(|| Misfit {
             wanted: format!("{name} is rated {wanted_v} V"),
@@ -74,30 +75,7 @@ impl Basis {
 
     /// Factor from a stored value to the one that `recipe` would have stored.
     pub fn factor(&self, of: Characteristic, recipe: &Recipe) -> f64 {
-        let wanted = Celsius(recipe.reference_temperature_c());
-        match of {
-            Characteristic::EmRelay(it) => em_relay::coil::factor(it, self.reference, wanted),
-            Characteristic::Resistor(_) => 1.0,
-        }
-    }
-}
-
-/// Whether the curves prove that a characteristic without a value lies above `high`.
-pub fn above(curves: &[Curve], of: Characteristic, high: f64, recipe: &Recipe) -> bool {
-    match of {
-        Characteristic::EmRelay(it) => recipe
-            .rated_v()
-            .is_some_and(|nominal_v| evidence::above(curves, it, high, nominal_v)),
-        Characteristic::Resistor(_) => false,
-    }
-}
-
-/// Whether the curves say at all how great a characteristic without a value is at least.
-pub fn bounded(curves: &[Curve], of: Characteristic, recipe: &Recipe) -> bool {
-    match of {
-        Characteristic::EmRelay(it) => recipe
-            .rated_v()
-            .is_some_and(|nominal_v| evidence::at_least(curves, it, nominal_v).is_some()),
-        Characteristic::Resistor(_) => false,
+        let wanted = recipe.device.part().reference;
+        of.conversion(self.reference, wanted)
     }
 }

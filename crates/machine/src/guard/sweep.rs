@@ -33,7 +33,6 @@ pub(super) struct FirstContact {
     pub clear_way_mm: Option<(f64, f64)>,
 }
 
-/// A body and its way.
 struct Travel<'a> {
     number: usize,
     shape: Cow<'a, Shape>,

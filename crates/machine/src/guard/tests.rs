@@ -22,7 +22,6 @@ fn guard() -> Guard {
     Guard::build(&scene_settings()).unwrap()
 }
 
-/// Size of a JZC-22F.
 fn jzc_22f() -> PartSize {
     PartSize {
         body_mm: [22.5, 16.5, 16.5],

@@ -58,7 +58,7 @@ pub struct Fall {
 
 /// Content of a place.
 #[derive(Debug, Clone)]
-enum Held {
+enum Content {
     /// A part without a number yet; `found`: it does not belong to this run.
     Unnumbered { found: bool },
     /// A part with its numbers.
@@ -68,7 +68,7 @@ enum Held {
 /// The part in each place, and the counts of parts.
 #[derive(Debug, Clone, Default)]
 pub struct Ledger {
-    places: BTreeMap<Place, Held>,
+    places: BTreeMap<Place, Content>,
     /// Present while a part is in [`Place::Falling`].
     fall: Option<Fall>,
     /// Parts that entered the pocket or a socket.
@@ -111,16 +111,16 @@ impl Ledger {
     /// Returns the part in the place; `None` without a part or without its number.
     pub fn part(&self, place: Place) -> Option<&Part> {
         match self.places.get(&place)? {
-            Held::Numbered(part) => Some(part),
-            Held::Unnumbered { .. } => None,
+            Content::Numbered(part) => Some(part),
+            Content::Unnumbered { .. } => None,
         }
     }
 
     /// Returns the part in the place for changes.
     pub fn part_mut(&mut self, place: Place) -> Option<&mut Part> {
         match self.places.get_mut(&place)? {
-            Held::Numbered(part) => Some(part),
-            Held::Unnumbered { .. } => None,
+            Content::Numbered(part) => Some(part),
+            Content::Unnumbered { .. } => None,
         }
     }
 
@@ -137,16 +137,16 @@ impl Ledger {
         };
         let places = self.places.iter_mut();
         places.filter_map(move |(place, it)| match it {
-            Held::Numbered(part) => held(place).then_some(part),
-            Held::Unnumbered { .. } => None,
+            Content::Numbered(part) => held(place).then_some(part),
+            Content::Unnumbered { .. } => None,
         })
     }
 
     /// Returns true when the part in the pocket does not belong to this run.
     pub fn is_pocket_found(&self) -> bool {
         match self.places.get(&Place::Pocket) {
-            Some(Held::Unnumbered { found }) => *found,
-            Some(Held::Numbered(_)) | None => false,
+            Some(Content::Unnumbered { found }) => *found,
+            Some(Content::Numbered(_)) | None => false,
         }
     }
 
@@ -173,7 +173,7 @@ impl Ledger {
     /// Adds a part to the empty pocket.
     pub fn enter_pocket(&mut self) {
         self.came_in += 1;
-        self.put(Place::Pocket, Held::Unnumbered { found: false });
+        self.put(Place::Pocket, Content::Unnumbered { found: false });
     }
 
     /// Moves the part from the pocket to the nest and numbers it; `reference`: serial number of a reference part.
@@ -185,19 +185,19 @@ impl Ledger {
         );
         self.take(Place::Pocket);
         let part = self.number(reference, found.then(|| FOUND.to_owned()));
-        self.put(Place::Nest(nest), Held::Numbered(part));
+        self.put(Place::Nest(nest), Content::Numbered(part));
     }
 
     /// Adds a part that a person put into an empty socket; `reference`: serial number of a reference part.
     pub fn fill_socket(&mut self, socket: u16, reference: Option<String>) {
         self.came_in += 1;
         let part = self.number(reference, None);
-        self.put(Place::Socket(socket), Held::Numbered(part));
+        self.put(Place::Socket(socket), Content::Numbered(part));
     }
 
     /// Removes the judged part that a person took out of a socket and put into its bin.
     pub fn unload_socket(&mut self, socket: u16) -> Part {
-        let Held::Numbered(part) = self.take(Place::Socket(socket)) else {
+        let Content::Numbered(part) = self.take(Place::Socket(socket)) else {
             panic!("a part without a number in socket {socket}");
         };
         assert!(part.bin.is_some(), "unloaded before its verdict");
@@ -211,9 +211,9 @@ impl Ledger {
         self.came_in += 1;
         self.found += 1;
         let held = match place {
-            Place::Pocket => Held::Unnumbered { found: true },
+            Place::Pocket => Content::Unnumbered { found: true },
             Place::Nest(_) | Place::Gripper | Place::Falling | Place::Socket(_) => {
-                Held::Numbered(self.number(None, Some(FOUND.to_owned())))
+                Content::Numbered(self.number(None, Some(FOUND.to_owned())))
             }
         };
         self.put(place, held);
@@ -268,7 +268,7 @@ impl Ledger {
             return None;
         }
         self.fall = None;
-        let Held::Numbered(part) = self.take(Place::Falling) else {
+        let Content::Numbered(part) = self.take(Place::Falling) else {
             panic!("a part without a number was released");
         };
         self.went_out += 1;
@@ -311,14 +311,14 @@ impl Ledger {
         self.put(to, part);
     }
 
-    fn take(&mut self, place: Place) -> Held {
+    fn take(&mut self, place: Place) -> Content {
         match self.places.remove(&place) {
             Some(part) => part,
             None => panic!("no part to take from the {}", place.name()),
         }
     }
 
-    fn put(&mut self, place: Place, part: Held) {
+    fn put(&mut self, place: Place, part: Content) {
         let before = self.places.insert(place, part);
         assert!(before.is_none(), "a second part in the {}", place.name());
         self.check();

@@ -35,7 +35,7 @@ struct Underway {
 
 impl Underway {
     /// Returns true when every sensor of its end was read at `since` or later.
-    fn was_looked_at(&self, since: RigTime, image: &Image) -> bool {
+    fn was_read_since(&self, since: RigTime, image: &Image) -> bool {
         let mut arrival = self.movement.arrival().iter();
         arrival.all(|(point, _)| image.input_at(*point).is_some_and(|at| at >= since))
     }
@@ -43,7 +43,7 @@ impl Underway {
 
 /// A failed work stroke under repetition: back to rest, then out again.
 #[derive(Debug, Clone, Copy)]
-struct Again {
+struct Repetition {
     movement: Move,
     back: Move,
 }
@@ -65,7 +65,7 @@ pub struct Mechanism {
     underway: Vec<Underway>,
     /// Motions requested and not driven yet.
     waiting: Vec<Move>,
-    again: Vec<Again>,
+    again: Vec<Repetition>,
     /// Work strokes already repeated for the current part.
     tried: Vec<Move>,
     watch: Watch,
@@ -134,8 +134,8 @@ impl Mechanism {
     }
 
     /// Returns true while an actuator may have left its end or its sensor may bounce; [`DEBOUNCE`] decides.
-    pub fn is_in_doubt(&self) -> bool {
-        self.watch.is_in_doubt()
+    pub fn is_undecided(&self) -> bool {
+        self.watch.is_undecided()
     }
 
     /// Returns true for a deviation that no alarm explains yet: a sensor differs, or a motion has used half of its
@@ -145,7 +145,7 @@ impl Mechanism {
             let limit = self.timeout_of(underway.movement);
             now.since(underway.since).0 > limit.0 / 2
         };
-        self.is_in_doubt() || self.underway.iter().any(slow)
+        self.is_undecided() || self.underway.iter().any(slow)
     }
 
     /// Marks motions as waiting for a step or for certain sensors; their actuators do not count as arrived.
@@ -240,7 +240,7 @@ impl Mechanism {
         let is_axis = matches!(underway.movement, Move::AxisTo(_));
         let believed = !is_axis || now.since(underway.since) >= AXIS_REACTS;
         believed
-            && underway.was_looked_at(underway.since, image)
+            && underway.was_read_since(underway.since, image)
             && self.sensed(underway.movement, now, image)
     }
 
@@ -248,7 +248,7 @@ impl Mechanism {
     /// value may be older than the stroke.
     fn is_late(&self, underway: &Underway, image: &Image) -> bool {
         let limit = self.timeout_of(underway.movement);
-        underway.was_looked_at(underway.since + limit, image)
+        underway.was_read_since(underway.since + limit, image)
     }
 
     /// Continues a repeated stroke after its return to rest; watches any other actuator at its new end.
@@ -273,7 +273,7 @@ impl Mechanism {
         match movement.way_back() {
             Some(back) if tried < usize::from(RETRIES) => {
                 self.tried.push(movement);
-                self.again.push(Again { movement, back });
+                self.again.push(Repetition { movement, back });
                 found.trouble.push(Trouble::Retried(movement, limit));
                 found.motions.push(back);
             }

@@ -67,7 +67,6 @@ pub struct TestTerms<'a> {
 }
 
 impl TestTerms<'_> {
-    /// Begins test `number` of the part in the nest.
     fn begin(&self, number: u8, now: RigTime) -> Procedure {
         let order = TestOrder {
             thorough: self.thorough,
@@ -106,7 +105,6 @@ impl Nest {
         }
     }
 
-    /// Returns the next state, if it changes.
     fn next(&mut self, turn: &mut Turn, mut context: NestContext) -> Option<NestState> {
         match &mut self.state {
             NestState::Empty => turn.ledger.holds(Place::Nest(self.id)).then(|| {

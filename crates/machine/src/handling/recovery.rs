@@ -22,7 +22,6 @@ use crate::rig::point::{DigitalIn, DigitalOut};
 use std::collections::VecDeque;
 use units::{RigTime, Span};
 
-/// Order of the motions after z.
 const ORDER: [Move; 6] = [
     Move::ProbesDown,
     Move::PusherRetract,

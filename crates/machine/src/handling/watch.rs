@@ -61,7 +61,7 @@ impl Watch {
     }
 
     /// Returns true while a deviation is undecided between fault and bounce.
-    pub fn is_in_doubt(&self) -> bool {
+    pub fn is_undecided(&self) -> bool {
         let mut stands = self.stands.iter();
         stands.any(|stand| stand.left_since.is_some() || stand.both_since.is_some())
     }

@@ -1,4 +1,4 @@
-//! Acts, of which a test stage is made: each is a few transactions of one line, or one wait.
+//! Acts, the steps of a test stage: each takes a few transactions of one line, or one wait.
 //!
 //! A stage lists its acts before it begins; [`Runner`] carries them out and stores the readings. So the order of a
 //! test can be read, printed and replayed, and no stage ever occupies the bus. Acts name wired points and are

@@ -101,7 +101,7 @@ impl AxisTable {
             .chain(self.bins().map(AxisStation::Bin))
     }
 
-    /// Loading a recipe checks its bins, so the rig has this bin.
+    /// Returns the chute of a bin; panics for an unknown bin, which the loading of a recipe rejects.
     fn chute(&self, bin: Bin) -> &Chute {
         let found = self.chutes.iter().find(|chute| chute.bin == bin);
         match found {

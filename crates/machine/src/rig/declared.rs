@@ -11,7 +11,7 @@ pub(super) struct InputNames {
     /// Number of inputs of the machine and the fixtures.
     pub before_beams: usize,
     /// Declared inputs that this rig lacks.
-    lacks: Vec<&'static str>,
+    missing: Vec<&'static str>,
 }
 
 impl InputNames {
@@ -25,7 +25,7 @@ impl InputNames {
         Self {
             names,
             before_beams,
-            lacks: declared
+            missing: declared
                 .filter(|name| !settings.digital_in.contains_key(*name))
                 .collect(),
         }
@@ -43,8 +43,8 @@ impl InputNames {
         let Some(name) = others.find(|name| !self.names.contains(name)) else {
             return Ok(());
         };
-        let lacks = self.lacks.iter().map(|it| (*it).to_owned());
-        let known = self.names.iter().cloned().chain(lacks).collect();
+        let missing = self.missing.iter().map(|it| (*it).to_owned());
+        let known = self.names.iter().cloned().chain(missing).collect();
         Err(Fault::unknown(format!("digital_in.{name}"), known))
     }
 }
@@ -76,13 +76,13 @@ impl Declared<'_> {
         });
         let of_kinds = self.fixtures.iter().flat_map(|it| it.digital_out).copied();
         let wired = of_kinds.filter(|it| self.settings.digital_out.contains_key(it.name));
-        once(machine.chain(wired), |it| it.name)
+        unique(machine.chain(wired), |it| it.name)
     }
 
     pub(super) fn quantities(&self) -> Vec<Quantity> {
         let of_kinds = self.fixtures.iter().flat_map(|it| it.analog_in).copied();
         let wired = of_kinds.filter(|it| self.settings.analog_in.contains_key(it.name));
-        once(wired, |it| it.name)
+        unique(wired, |it| it.name)
     }
 
     pub(super) fn sources(&self) -> Vec<&'static str> {
@@ -106,12 +106,12 @@ impl Declared<'_> {
         is_wired: impl Fn(&str) -> bool,
     ) -> Vec<&'static str> {
         let names = self.fixtures.iter().flat_map(of_kind).copied();
-        once(names.filter(|name| is_wired(name)), |name| name)
+        unique(names.filter(|name| is_wired(name)), |name| name)
     }
 }
 
 /// Keeps the first of each name, because two kinds may declare the same point.
-fn once<T: Copy>(points: impl Iterator<Item = T>, name: impl Fn(T) -> &'static str) -> Vec<T> {
+fn unique<T: Copy>(points: impl Iterator<Item = T>, name: impl Fn(T) -> &'static str) -> Vec<T> {
     let mut all: Vec<T> = Vec::new();
     for point in points {
         if !all.iter().any(|known| name(*known) == name(point)) {

@@ -102,7 +102,7 @@ impl Image {
             raw,
             at,
         };
-        if self.file(&arrival, reply) {
+        if self.store(&arrival, reply) {
             return Ok(());
         }
         Err(Unexpected::WrongReply {
@@ -112,25 +112,15 @@ impl Image {
     }
 
     /// Stores the reply; returns false when it does not fit its command.
-    fn file(&mut self, arrival: &Arrival<'_>, reply: &Reply) -> bool {
+    fn store(&mut self, arrival: &Arrival<'_>, reply: &Reply) -> bool {
         use dcon::AnalogIn::{ReadAll, ReadAllHex, ReadOne};
         match (&arrival.command, reply) {
             (Command::AnalogIn(_, ReadAll(_) | ReadAllHex(_)), Reply::Readings(readings)) => {
-                self.file_readings(arrival, |channel| readings.get(usize::from(channel.get())));
+                self.store_readings(arrival, |channel| readings.get(usize::from(channel.get())));
                 true
             }
-            (
-                Command::AnalogIn(
-                    _,
-                    ReadOne {
-                        channel: requested, ..
-                    },
-                ),
-                Reply::Reading(reading),
-            ) => {
-                self.file_readings(arrival, |channel| {
-                    (channel == *requested).then_some(*reading)
-                });
+            (Command::AnalogIn(_, ReadOne { channel: one, .. }), Reply::Reading(reading)) => {
+                self.store_readings(arrival, |channel| (channel == *one).then_some(*reading));
                 true
             }
             (Command::Digital(_, Digital::ReadPort | Digital::ReadAll), Reply::Bits(bits)) => {
@@ -141,11 +131,11 @@ impl Image {
                 true
             }
             (Command::Digital(_, Digital::ReadEvents { channel }), Reply::Events(count)) => {
-                self.file_events(arrival, *channel, *count);
+                self.store_events(arrival, *channel, *count);
                 true
             }
             (Command::Counter(_, dcon::Counter::Read(number)), Reply::Count(count)) => {
-                self.file_count(arrival, number.get(), *count);
+                self.store_count(arrival, number.get(), *count);
                 true
             }
             (Command::AnalogOut(_, dcon::AnalogOut::ReadPresent { .. }), Reply::Level(level)) => {
@@ -174,7 +164,7 @@ impl Image {
         }
     }
 
-    fn file_readings(
+    fn store_readings(
         &mut self,
         arrival: &Arrival<'_>,
         reading: impl Fn(Channel) -> Option<Reading>,
@@ -202,7 +192,7 @@ impl Image {
         }
     }
 
-    fn file_events(&mut self, arrival: &Arrival<'_>, channel: Channel, count: u16) {
+    fn store_events(&mut self, arrival: &Arrival<'_>, channel: Channel, count: u16) {
         let mut terminals = self.wiring.digital_in.iter().map(|(_, terminal)| terminal);
         let here = terminals
             .position(|terminal| terminal.module == arrival.module && terminal.channel == channel);
@@ -216,7 +206,7 @@ impl Image {
         }
     }
 
-    fn file_count(&mut self, arrival: &Arrival<'_>, number: u8, count: u32) {
+    fn store_count(&mut self, arrival: &Arrival<'_>, number: u8, count: u32) {
         for (index, (_, terminal)) in self.wiring.counter.iter().enumerate() {
             if terminal.module == arrival.module && terminal.channel.get() == number {
                 let origin = arrival.origin(terminal.channel, &Arc::from(arrival.raw));
@@ -327,7 +317,6 @@ impl Image {
     }
 }
 
-/// A reply with its command and time.
 struct Arrival<'a> {
     line: LineId,
     module: ModuleId,

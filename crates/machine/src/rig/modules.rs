@@ -72,7 +72,6 @@ fn model(name: &str, settings: &ModuleSettings) -> Result<Model, Fault> {
     })
 }
 
-/// The settings of one module under check.
 struct ModuleForm<'a> {
     key: String,
     model: Model,

@@ -170,5 +170,4 @@ impl Wiring {
     }
 }
 
-/// The first counter of a module.
 const FIRST: UpTo<1> = UpTo::<1>::new(0).expect("0 is a counter");

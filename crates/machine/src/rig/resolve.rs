@@ -119,7 +119,6 @@ impl Wiring {
     }
 }
 
-/// A terminal of a module.
 struct Place {
     module: ModuleId,
     channel: Channel,
@@ -241,7 +240,6 @@ impl Wired for AnalogOutSettings {
     }
 }
 
-/// Reserves the terminals of a section of digital points.
 fn digital<P>(
     points: Vec<(P, AnalogTerminal)>,
     active_low: impl Fn(&P) -> bool,
@@ -278,7 +276,6 @@ fn unwired(key: &str) -> Fault {
     Fault::new(key, "nothing", "a module and a channel")
 }
 
-/// Checks that no two lines share a port.
 fn check_ports(lines: &[Line]) -> Result<(), Fault> {
     for (index, line) in lines.iter().enumerate() {
         if let Some(other) = lines[..index].iter().find(|other| other.port == line.port) {

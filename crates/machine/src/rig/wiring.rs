@@ -150,7 +150,6 @@ pub struct Wiring {
     pub(super) before_beams: usize,
 }
 
-/// Returns the index of a name in a table.
 fn named<'a>(mut names: impl Iterator<Item = &'a str>, name: &str) -> Option<usize> {
     names.position(|known| known == name)
 }

@@ -92,7 +92,10 @@ mod tests {
                 "{activity:?}"
             );
         }
-        for stage in Kind::ALL.into_iter().flat_map(Kind::stages) {
+        for stage in Kind::ALL
+            .into_iter()
+            .flat_map(|kind| (kind.definition().stages)())
+        {
             assert!(
                 known.contains(&format!("stage-{stage}").as_str()),
                 "{stage}"

@@ -41,7 +41,7 @@ impl Condition {
 
 /// One alarm of the list.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Standing {
+pub struct ListedAlarm {
     /// Code and arguments.
     pub alarm: Alarm,
     /// Its state.
@@ -58,7 +58,7 @@ pub struct Standing {
     pub inherited: bool,
 }
 
-impl Standing {
+impl ListedAlarm {
     /// Returns true while the cause is present.
     pub fn is_active(&self) -> bool {
         self.condition != Condition::Returned
@@ -72,14 +72,14 @@ impl Standing {
 /// The list of alarms.
 #[derive(Debug, Clone, Default)]
 pub struct Annunciator {
-    standing: Vec<Standing>,
+    listed: Vec<ListedAlarm>,
     changed: bool,
 }
 
 impl Annunciator {
     /// Returns the listed alarms, in order of first occurrence.
-    pub fn standing(&self) -> &[Standing] {
-        &self.standing
+    pub fn listed(&self) -> &[ListedAlarm] {
+        &self.listed
     }
 
     /// Returns true once after every change.
@@ -91,7 +91,7 @@ impl Annunciator {
     /// shelved alarm stays shelved.
     pub fn inherit(&mut self, alarm: Alarm, count: u32, shelved_until: Option<RigTime>) {
         self.changed = true;
-        self.standing.push(Standing {
+        self.listed.push(ListedAlarm {
             alarm,
             condition: Condition::Returned,
             raised: RigTime(0),
@@ -104,7 +104,7 @@ impl Annunciator {
 
     /// Lists an alarm or raises its count; returns true when its cause is new, or when it concerns another part.
     pub fn raise(&mut self, alarm: &Alarm, now: RigTime) -> bool {
-        let quiet = !self.standing.iter().any(Standing::is_active);
+        let quiet = !self.listed.iter().any(ListedAlarm::is_active);
         let at_once = alarm.code.entry().cleared_by == ClearedBy::Itself;
         let condition = if at_once {
             Condition::Returned
@@ -112,17 +112,17 @@ impl Annunciator {
             Condition::Unacknowledged
         };
         let twice = self
-            .standing
+            .listed
             .iter()
             .filter(|one| one.alarm.code == alarm.code);
         assert!(twice.count() <= 1, "{} is listed twice", alarm.code);
         let known = self
-            .standing
+            .listed
             .iter_mut()
             .find(|one| one.alarm.code == alarm.code);
         let Some(known) = known else {
             self.changed = true;
-            self.standing.push(Standing {
+            self.listed.push(ListedAlarm {
                 alarm: alarm.clone(),
                 condition,
                 raised: now,
@@ -160,8 +160,8 @@ impl Annunciator {
         self.gone(|one| one.entry().cleared_by == ClearedBy::Operator);
     }
 
-    fn gone(&mut self, is_gone: impl Fn(&Standing) -> bool) {
-        for one in &mut self.standing {
+    fn gone(&mut self, is_gone: impl Fn(&ListedAlarm) -> bool) {
+        for one in &mut self.listed {
             if one.is_active() && is_gone(one) {
                 self.changed = true;
                 one.condition = match one.condition {
@@ -173,9 +173,9 @@ impl Annunciator {
                 };
             }
         }
-        self.standing.retain(|one| one.count > 0);
+        self.listed.retain(|one| one.count > 0);
         let active = self
-            .standing
+            .listed
             .iter()
             .any(|one| one.is_active() && is_gone(one));
         assert!(!active, "an alarm without cause is active");
@@ -184,7 +184,7 @@ impl Annunciator {
     /// Acknowledges the alarm of this code, or all; returns false when there is none.
     pub fn acknowledge(&mut self, code: Option<&str>) -> bool {
         let mut found = false;
-        for one in &mut self.standing {
+        for one in &mut self.listed {
             if code.is_none_or(|code| one.alarm.code.name() == code) {
                 found = true;
                 match one.condition {
@@ -194,7 +194,7 @@ impl Annunciator {
                 }
             }
         }
-        self.standing.retain(|one| one.count > 0);
+        self.listed.retain(|one| one.count > 0);
         self.changed |= found;
         found
     }
@@ -202,7 +202,7 @@ impl Annunciator {
     /// Shelves the alarm of this code; returns false when there is none.
     pub fn shelve(&mut self, code: &str, until: RigTime) -> bool {
         let one = self
-            .standing
+            .listed
             .iter_mut()
             .find(|one| one.alarm.code.name() == code);
         self.changed |= one.is_some();
@@ -211,7 +211,7 @@ impl Annunciator {
 
     /// Shows alarms again whose shelving time is over.
     pub fn unshelve(&mut self, now: RigTime) {
-        for one in &mut self.standing {
+        for one in &mut self.listed {
             if one.shelved_until.is_some_and(|until| until <= now) {
                 one.shelved_until = None;
                 self.changed = true;
@@ -220,15 +220,15 @@ impl Annunciator {
     }
 
     /// Returns the first active alarm with this reaction.
-    pub fn stopping(&self, stops: Reaction) -> Option<&Standing> {
-        self.standing
+    pub fn stopping(&self, stops: Reaction) -> Option<&ListedAlarm> {
+        self.listed
             .iter()
             .find(|one| one.is_active() && one.entry().reaction == stops)
     }
 
     /// Returns the first active alarm with an abort whose sensor still shows the cause.
-    pub fn still_sensed(&self) -> Option<&Standing> {
-        self.standing.iter().find(|one| {
+    pub fn still_sensed(&self) -> Option<&ListedAlarm> {
+        self.listed.iter().find(|one| {
             let entry = one.entry();
             one.is_active()
                 && entry.cleared_by == ClearedBy::Sensor

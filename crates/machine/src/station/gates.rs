@@ -24,7 +24,7 @@ use std::collections::VecDeque;
 use units::{Ohm, RigTime, Span};
 
 /// Parts judged before the reject-rate limit applies to a lot of unknown size.
-const ENOUGH: u64 = 20;
+const MIN_JUDGED: u64 = 20;
 
 /// Settings of `lot.toml`; by default no gate applies.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -82,11 +82,11 @@ pub(super) struct Gates {
     good: Option<(RigTime, u64)>,
     judged: u64,
     failed: u64,
-    /// True after the alarm of the reject-rate limit.
+    /// True once the reject-rate limit has raised its alarm.
     reject_rate_reported: bool,
-    /// Counters after their alarm.
+    /// Counters that have raised their alarm.
     worn: Vec<Wearing>,
-    /// True while the probe contact exceeds its limit, after its alarm.
+    /// True once the probe contact has raised its alarm, until its mean is below the limit.
     fouled: bool,
 }
 
@@ -127,7 +127,7 @@ impl Gates {
         self.failed += u64::from(failed);
         assert!(self.failed <= self.judged, "more failed than judged");
         let size = count.unwrap_or(self.judged).max(self.judged);
-        let known = count.is_some() || self.judged >= ENOUGH;
+        let known = count.is_some() || self.judged >= MIN_JUDGED;
         let over = limit_pct.is_some_and(|pct| self.failed as f64 > size as f64 * pct / 100.0);
         let first = known && over && !self.reject_rate_reported;
         self.reject_rate_reported |= first;
@@ -152,7 +152,7 @@ impl Station {
     }
 
     /// Begins a reference check that is due; raises an alarm for an expired calibration.
-    pub(super) fn look_for_check(&mut self, now: RigTime, output: &mut TurnOutput) {
+    pub(super) fn begin_due_check(&mut self, now: RigTime, output: &mut TurnOutput) {
         let executes = self.machine.state == State::Execute;
         assert!(executes, "a reference check outside Execute");
         let at_us = self.plan.epoch_us + i64::try_from(now.0).unwrap_or(i64::MAX);

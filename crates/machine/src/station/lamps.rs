@@ -7,7 +7,7 @@
 //! | red | aborted, or an unacknowledged alarm with a reaction |
 //! | buzzer | the first [`CALL`] of a red light |
 
-use super::annunciator::{Condition, Standing};
+use super::annunciator::{Condition, ListedAlarm};
 use super::catalogue::Reaction;
 use super::packml::{self, State};
 use crate::rig::point::DigitalOut;
@@ -44,14 +44,14 @@ impl Lamps {
         &mut self,
         now: RigTime,
         state: State,
-        standing: &[Standing],
+        listed: &[ListedAlarm],
         safe: bool,
     ) -> Vec<(DigitalOut, bool)> {
         if safe {
             self.lit = [false; 4];
         }
-        let stops = |one: &Standing| one.alarm.code.entry().reaction != Reaction::Nothing;
-        let unseen = standing
+        let stops = |one: &ListedAlarm| one.alarm.code.entry().reaction != Reaction::Nothing;
+        let unseen = listed
             .iter()
             .any(|one| one.condition == Condition::Unacknowledged && stops(one));
         let red = packml::is_aborted(state) || unseen;

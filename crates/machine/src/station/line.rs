@@ -104,7 +104,7 @@ impl Line {
     /// Holds motions back until every end sensor is debounced: for an undecided one the guard assumes the whole stroke.
     pub fn postpone(&mut self, now: RigTime, output: &mut TurnOutput) {
         self.postponed.append(&mut output.rig.motions);
-        if self.mechanism.is_in_doubt() {
+        if self.mechanism.is_undecided() {
             let soon = now + DEBOUNCE;
             let wake_at = &mut output.rig.wake_at;
             *wake_at = Some(wake_at.map_or(soon, |at| at.min(soon)));

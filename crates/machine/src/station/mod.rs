@@ -8,14 +8,14 @@
 //! 2. `Starting`: without a valid calibration probes up in the empty nest, measurements of the references;
 //! 3. `Execute`: reference parts when there is no calibration, then the lot behind its [`gates`], through the
 //!    [`crate::handling::feeder`];
-//! 4. `Completing`, `Stopping`, `Holding`, `Suspending`: the parts inside go to where they may wait.
+//! 4. `Completing`, `Stopping`, `Holding`, `Suspending`: the parts inside go to their waiting positions.
 //!
 //! Trouble: the [`catalogue`] gives the reaction to an [`trouble::Alarm`]; the [`annunciator`] lists it until its
 //! cause is gone and a person has acknowledged it. After `clear` and `reset` the station continues; a part inside is
 //! void, "interrupted". A stale sensor raises an alarm; the station never guesses its state.
 //!
-//! A run ends with its lot, or when a person leaves the lot for another one. Unattended ([`Plan::attended`] is false)
-//! an alarm that needs a person ends the run, too, and the station resets and starts a lot by itself. Between lots
+//! A run ends with its lot, or when a person leaves the lot for another one. Unattended ([`Plan::attended`] is false) it
+//! also ends with an alarm that needs a person. The station resets and starts a lot by itself; between lots
 //! ([`Plan::between_lots`]) it acts only on orders.
 
 mod activity;
@@ -270,7 +270,7 @@ impl Station {
             output.answers.push(answer);
         }
         let stuck = self.pressed(now, inputs.image, &mut output);
-        self.by_itself(now, &inputs, &mut output);
+        self.own_commands(now, &inputs, &mut output);
         if self.machine.ended {
             return output;
         }
@@ -286,7 +286,7 @@ impl Station {
         let stack = self.alarms.lamps.show(
             now,
             self.machine.state,
-            self.alarms.annunciator.standing(),
+            self.alarms.annunciator.listed(),
             output.rig.safe,
         );
         output.rig.outputs.extend(stack);

@@ -1,7 +1,7 @@
 //! Orders of operators and programs to the station, and the reasons of refusals.
-//! The station answers every order in its turn: it performs the order or refuses it with a code and arguments, the
-//! same that a screen shows next to a disabled button.
-//! same reasons beside its disabled buttons.
+//!
+//! The station answers every order in its turn: it performs the order or refuses it with a code and arguments, which a
+//! screen shows next to a disabled button.
 
 use super::packml::{self, Command, Mode, State};
 use super::trouble::Alarm;

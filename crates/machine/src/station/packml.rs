@@ -65,7 +65,7 @@ names! {
         Stopping = "Stopping",
         /// Makes the outputs safe.
         Aborting = "Aborting",
-        /// Outputs are safe after an alarm.
+        /// Outputs are safe after an abort.
         Aborted = "Aborted",
         /// Verifies the modules again.
         Clearing = "Clearing",

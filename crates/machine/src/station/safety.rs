@@ -1,7 +1,7 @@
 //! Checks of every turn in any state, and reactions to alarms.
 
 use super::Station;
-use super::annunciator::Standing;
+use super::annunciator::ListedAlarm;
 use super::catalogue::{self, AlarmCode, ClearedBy, Reaction};
 use super::packml::{self, Command, On, State};
 use super::trouble::Alarm;
@@ -143,8 +143,8 @@ impl Station {
     }
 
     fn still_starved(&self, now: RigTime, image: &Image) -> Option<Alarm> {
-        let standing = self.alarms.annunciator.standing().iter();
-        let starved = standing
+        let listed = self.alarms.annunciator.listed().iter();
+        let starved = listed
             .filter(|one| one.is_active())
             .any(|one| one.alarm.code == AlarmCode::MagazineEmpty);
         let parts = [DigitalIn::TrackLevel, DigitalIn::PocketPresent]
@@ -166,11 +166,11 @@ impl Station {
         }
         output.notes.trouble.push(Alarm::refused(movement, refusal));
         self.raise_all(now, output);
-        let standing = self.alarms.annunciator.standing();
+        let listed = self.alarms.annunciator.listed();
         let stack = self
             .alarms
             .lamps
-            .show(now, self.machine.state, standing, output.rig.safe);
+            .show(now, self.machine.state, listed, output.rig.safe);
         output.rig.outputs.extend(stack);
         output.record.alarms_changed |= self.alarms.annunciator.take_changed();
     }
@@ -272,7 +272,7 @@ impl Station {
     }
 
     /// Returns the alarm whose sensor still shows its cause; it forbids clear and reset.
-    pub(super) fn cause(&self) -> Option<&Standing> {
+    pub(super) fn cause(&self) -> Option<&ListedAlarm> {
         self.alarms.annunciator.still_sensed()
     }
 }

@@ -23,8 +23,8 @@ const BY_A_RESET: &str = "reset";
 const ALONE: Span = Span::ms(60_000);
 
 impl Station {
-    /// Gives the commands of an unattended machine, and ends the run with the program.
-    pub(super) fn by_itself(&mut self, now: RigTime, inputs: &Inputs, output: &mut TurnOutput) {
+    /// Gives the commands of the program itself (stop, first reset and start), and ends the run.
+    pub(super) fn own_commands(&mut self, now: RigTime, inputs: &Inputs, output: &mut TurnOutput) {
         if self.machine.ended {
             return;
         }
@@ -50,7 +50,7 @@ impl Station {
             (true, ..) if rests => {
                 self.make_safe("stopped", now, output);
                 let aborted = packml::is_aborted(self.machine.state);
-                let in_trouble = aborted && !self.alarms.annunciator.standing().is_empty();
+                let in_trouble = aborted && !self.alarms.annunciator.listed().is_empty();
                 self.end(
                     if in_trouble {
                         Ending::Alarm
@@ -156,7 +156,7 @@ impl Station {
             State::Resetting => self.reset(now, inputs, output),
             State::Starting => self.begin(now, &inputs, output),
             State::Execute => {
-                self.look_for_check(now, output);
+                self.begin_due_check(now, output);
                 let permits = Permits {
                     release: self.expects_more(),
                     push: true,
@@ -214,25 +214,25 @@ impl Station {
             let moves = self.line.mechanism.moving().next();
             assert_eq!(moves, None, "home while an actuator moves");
             self.line.homed = true;
-            self.take_up(now, output);
+            self.resume(now, output);
         }
     }
 
     /// Resumes the sequence with the parts inside.
-    fn take_up(&mut self, now: RigTime, output: &mut TurnOutput) {
+    fn resume(&mut self, now: RigTime, output: &mut TurnOutput) {
         self.line.feeder.resume(&self.line.ledger);
         if self.lot.gates.is_checking() {
             self.begin_check();
         }
         self.end_reference_run(output);
-        self.take_up_gripped(now, output);
-        self.take_up_nested(output);
+        self.resume_gripped(now, output);
+        self.resume_nested(output);
         output.rig.wake_at = Some(now);
     }
 
     /// Interrupts the part in the nest. A part with a bin was judged already and put back: it goes to retest, and its
     /// row records the reason.
-    fn take_up_nested(&mut self, output: &mut TurnOutput) {
+    fn resume_nested(&mut self, output: &mut TurnOutput) {
         let Some(part) = self.line.ledger.part_mut(Place::NEST) else {
             return;
         };
@@ -249,7 +249,7 @@ impl Station {
     }
 
     /// Sends the part in the gripper to retest; its row records the reason.
-    fn take_up_gripped(&mut self, now: RigTime, output: &mut TurnOutput) {
+    fn resume_gripped(&mut self, now: RigTime, output: &mut TurnOutput) {
         let Some(part) = self.line.ledger.part_mut(Place::Gripper) else {
             return;
         };

@@ -25,7 +25,7 @@ use units::{RigTime, Span};
 
 /// Owner of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Who {
+enum Owner {
     Feed,
     Nest(NestId),
     Sort,
@@ -34,7 +34,7 @@ enum Who {
 /// A step under way.
 #[derive(Debug, Clone, Copy)]
 struct Step {
-    who: Who,
+    who: Owner,
     name: &'static str,
     limit: Option<Span>,
 }
@@ -42,7 +42,7 @@ struct Step {
 /// Start times of the steps of feed, nests and sorter.
 #[derive(Debug, Default)]
 pub struct Timeouts {
-    since: Vec<(Who, &'static str, RigTime)>,
+    since: Vec<(Owner, &'static str, RigTime)>,
 }
 
 impl Timeouts {
@@ -98,7 +98,7 @@ impl Timeouts {
 
     /// Restarts the clock of the sorter while a bin is full.
     pub fn wait_for_bin(&mut self) {
-        self.since.retain(|(who, ..)| *who != Who::Sort);
+        self.since.retain(|(who, ..)| *who != Owner::Sort);
     }
 }
 
@@ -108,12 +108,11 @@ const LIFTING: &str = "lifting";
 fn steps(feeder: &Feeder) -> impl Iterator<Item = Step> {
     let step = |who, (name, limit)| Step { who, name, limit };
     let nests = feeder.nests().iter();
-    std::iter::once(step(Who::Feed, of_feed(feeder.feed())))
-        .chain(nests.map(move |nest| step(Who::Nest(nest.id), of_nest(&nest.state))))
-        .chain([step(Who::Sort, of_sort(feeder.sort()))])
+    std::iter::once(step(Owner::Feed, of_feed(feeder.feed())))
+        .chain(nests.map(move |nest| step(Owner::Nest(nest.id), of_nest(&nest.state))))
+        .chain([step(Owner::Sort, of_sort(feeder.sort()))])
 }
 
-/// Returns true in the states that perform the sequence.
 fn runs(state: State) -> bool {
     matches!(
         state,

@@ -92,7 +92,6 @@ pub(super) struct Notes {
 }
 
 impl Notes {
-    /// Returns true when no note is left.
     fn is_done(&self) -> bool {
         self.trouble.is_empty() && self.feeder.is_empty()
     }

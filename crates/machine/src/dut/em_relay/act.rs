@@ -18,7 +18,7 @@ pub enum Read {
     Drop,
     /// Both gate counters.
     Gates,
-    /// Gate counter 0 alone, which is enough for a ramp; the last count of counter 1 stays with it.
+    /// Gate counter 0 alone, which is enough for a ramp; the readings repeat the last count of counter 1.
     Gate,
     /// Temperature of the magazine track, taken as that of the part.
     Track,

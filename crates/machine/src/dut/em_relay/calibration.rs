@@ -69,7 +69,7 @@ pub struct Overshoot {
     #[serde(default)]
     pub at_coarse_v: f64,
     /// Model of coarse minus fine indication: places the fine ramp, and gives results where a recipe allows it.
-    #[serde(default = "untaught")]
+    #[serde(default = "assumed_model")]
     pub coarse: OvershootModel,
     /// True when enough parts of the lot have taught the model that it may give results.
     #[serde(default)]
@@ -109,7 +109,7 @@ impl Overshoot {
 }
 
 /// Returns the model for a stored calibration that has none.
-fn untaught() -> OvershootModel {
+fn assumed_model() -> OvershootModel {
     OvershootModel::guess(0.0, 1.0)
 }
 
@@ -267,10 +267,10 @@ mod tests {
         assert_eq!(rising(f64::NAN), Factor::new(0.0, 0.028));
         let falling = overshoot.own_v(0.90, Direction::Falling);
         assert_eq!((falling.value, falling.u), (0.0, late.u));
-        let untaught = Overshoot {
+        let without_coarse = Overshoot {
             at_coarse_v: 0.0,
             ..overshoot
         };
-        assert_eq!(untaught.own_v(0.90, Direction::Rising).u, 0.028);
+        assert_eq!(without_coarse.own_v(0.90, Direction::Rising).u, 0.028);
     }
 }

@@ -136,7 +136,6 @@ pub fn card(relay: &RelayRecipe) -> Card {
     }
 }
 
-/// Returns the steps in the order in which the test enters their stages.
 fn steps(relay: &RelayRecipe) -> Vec<Step> {
     let strategy = relay.test.strategy;
     let strategy = [strategy.operate_voltage_v, strategy.release_voltage_v];

@@ -4,7 +4,6 @@
 //! same two channels, so gain errors cancel. Copper: `R(T1) / R(T2) = (234.5 + T1) / (234.5 + T2)`, temperatures in
 //! Celsius (IEC 60028 annealed copper).
 
-use super::Parameter;
 use crate::gauge::Factor;
 use crate::gauge::budget::{Budget, Reading};
 use units::{Celsius, Ohm, Unit, Volt};
@@ -14,7 +13,7 @@ const COPPER_ZERO_C: f64 = 234.5;
 
 /// Uncertainty terms of one scan that do not depend on the part.
 #[derive(Debug, Clone, Copy)]
-pub struct ScanDoubt {
+pub struct ScanUncertainty {
     /// Standard uncertainty of one reading at the terminal (noise and resolution), volts.
     pub reading_v: f64,
     /// Standard uncertainty of the offset of the converter, volts.
@@ -26,14 +25,6 @@ pub struct ScanDoubt {
 /// Returns the factor that converts a resistance or a threshold voltage at temperature `part` to `reference`.
 pub fn to_reference(part: Celsius, reference: Celsius) -> f64 {
     (COPPER_ZERO_C + reference.0) / (COPPER_ZERO_C + part.0)
-}
-
-/// Returns the factor that converts a result at temperature `from` to `to`; 1 for results independent of the copper.
-pub fn factor(parameter: Parameter, from: Celsius, to: Celsius) -> f64 {
-    match parameter.facts().copper {
-        true => to_reference(from, to),
-        false => 1.0,
-    }
 }
 
 /// Returns the relative change of copper resistance per kelvin at `at`.
@@ -49,22 +40,25 @@ pub fn resistance(
     ohm_per_ratio: Factor,
     part: Celsius,
     reference: Celsius,
-    doubt: ScanDoubt,
+    uncertainty: ScanUncertainty,
 ) -> Option<Reading> {
     let n = scans.len() as f64;
     let volts = scans.iter().map(|scan| scan.0.0).sum::<f64>() / n;
     let current = scans.iter().map(|scan| scan.1.0).sum::<f64>() / n;
-    if scans.is_empty() || current.abs() < doubt.reading_v {
+    if scans.is_empty() || current.abs() < uncertainty.reading_v {
         return None;
     }
     let at_part = Ohm(ohm_per_ratio.value * volts / current);
     let value = at_part.0 * to_reference(part, reference);
     let relative = |u_v: f64| u_v * (1.0 / (volts * volts) + 1.0 / (current * current)).sqrt();
     let budget = Budget::default()
-        .with_random("reading", value * relative(doubt.reading_v) / n.sqrt())
+        .with_random(
+            "reading",
+            value * relative(uncertainty.reading_v) / n.sqrt(),
+        )
         .with(
             "offset",
-            value * doubt.offset_v * (1.0 / volts - 1.0 / current),
+            value * uncertainty.offset_v * (1.0 / volts - 1.0 / current),
         )
         .with(
             "reference resistor",
@@ -72,7 +66,7 @@ pub fn resistance(
         )
         .with(
             "coil temperature",
-            value * doubt.temperature_k * relative_per_kelvin(part),
+            value * uncertainty.temperature_k * relative_per_kelvin(part),
         );
     Some(Reading {
         value,
@@ -85,7 +79,7 @@ pub fn resistance(
 mod tests {
     use super::*;
 
-    const DOUBT: ScanDoubt = ScanDoubt {
+    const UNCERTAINTY: ScanUncertainty = ScanUncertainty {
         reading_v: 0.003,
         offset_v: 0.0005,
         temperature_k: 0.18,
@@ -104,7 +98,7 @@ mod tests {
             Factor::new(375.0, 0.01),
             Celsius(28.0),
             Celsius(23.0),
-            DOUBT,
+            UNCERTAINTY,
         );
         let reading = reading.expect("a current flows");
         assert!((reading.value - 400.0 * 257.5 / 262.5).abs() < 1e-9);
@@ -120,7 +114,7 @@ mod tests {
                 Factor::new(375.0, 0.01),
                 Celsius(23.0),
                 Celsius(23.0),
-                DOUBT
+                UNCERTAINTY
             )
             .is_none()
         );
@@ -130,7 +124,7 @@ mod tests {
                 Factor::new(375.0, 0.01),
                 Celsius(23.0),
                 Celsius(23.0),
-                DOUBT
+                UNCERTAINTY
             )
             .is_none()
         );

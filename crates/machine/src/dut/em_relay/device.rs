@@ -10,13 +10,13 @@ use super::overshoot::OvershootModel;
 use super::points::{AnalogOut, Points};
 use super::probe_contact::Trend;
 use super::recipe::RelayRecipe;
-use super::reference::{self, ReferenceFault};
+use super::reference;
 use super::reference_part::{self, Misfit, ReferenceRun};
 use super::settings::ReferencePart;
 use super::threshold::Direction;
-use crate::dut::Recipe;
-use crate::dut::device::{Made, Rig, TestOrder};
+use crate::dut::device::{CalibrationFault, DeviceUnderTest, Made, Rig, TestOrder};
 use crate::dut::record::{Own, TestRecord};
+use crate::dut::{self, Procedure, Recipe};
 use crate::instrument::act::Act;
 use crate::instrument::readings::Readings;
 use crate::rig::point::MissingPoint;
@@ -43,7 +43,7 @@ impl Device {
     /// Names the first point that the rig lacks, or the section of its references.
     pub fn new(
         recipe: Arc<Recipe>,
-        relay: Arc<RelayRecipe>,
+        relay: &RelayRecipe,
         rig: &Rig,
         stored: Option<Calibration>,
     ) -> Result<Self, MissingPoint> {
@@ -58,7 +58,7 @@ impl Device {
         let calibration = stored.unwrap_or_else(|| Calibration::unknown(nominal_v, factor));
         let context = Context {
             recipe,
-            relay,
+            relay: Arc::new(relay.clone()),
             calibration: Arc::new(calibration),
             reference,
             accuracy: *rig.accuracy,
@@ -78,11 +78,11 @@ impl Device {
         let coarse = context
             .calibration
             .overshoots
-            .map_or(context.untaught(), |overshoots| {
+            .map_or(context.assumed_models(), |overshoots| {
                 (overshoots.operate.coarse, overshoots.release.coarse)
             });
         Self {
-            of_lot: context.untaught(),
+            of_lot: context.assumed_models(),
             context,
             certificates,
             reference_parts: ReferenceRun::default(),
@@ -91,153 +91,15 @@ impl Device {
         }
     }
 
-    /// Returns the factors in force.
-    pub fn calibration(&self) -> &Calibration {
-        &self.context.calibration
-    }
-
-    /// Returns the serial numbers of the reference parts, in the order of the magazine.
-    pub fn reference_serials(&self) -> impl Iterator<Item = &str> {
-        self.certificates.iter().map(|part| part.serial.as_str())
-    }
-
-    /// Returns true when the overshoot of the fine ramps is known, so that the test may judge parts.
-    pub fn is_calibrated(&self) -> bool {
-        let overshoots = self.context.calibration.overshoots;
-        overshoots.is_some_and(|overshoots| overshoots.operate.fine_v.u.is_finite())
-    }
-
-    /// Returns the acts that measure the references on the board.
-    pub fn reference_acts(&self) -> Vec<Act> {
-        reference::acts(&self.context)
-    }
-
-    /// Computes the factors from the readings of [`Self::reference_acts`].
-    ///
-    /// # Errors
-    /// Names the channel or the reference whose reading is out of range.
-    pub fn conclude_references(
-        &mut self,
-        readings: &Readings,
-        made: Made,
-    ) -> Result<(), ReferenceFault> {
-        let calibration = reference::conclude(&self.context, readings, made.at_us, made.valid_us)?;
-        self.context.calibration = Arc::new(Calibration {
-            simulated: made.simulated,
-            ..calibration
-        });
-        Ok(())
-    }
-
-    /// Discards the overshoot, so that the rig must measure references and reference parts again.
-    pub fn forget_calibration(&mut self) {
-        self.reference_parts = ReferenceRun::default();
-        self.calibrate(|calibration| calibration.overshoots = None);
-    }
-
-    /// Begins the test of the part in the nest; the probes are up.
-    pub fn begin(&self, order: &TestOrder, now: RigTime) -> Test {
-        let context = Context {
-            thorough: order.thorough,
-            probe_contact: self.probe_contact.mean(),
-            teaching: order
-                .teaching
-                .and_then(|serial| self.certificate(serial))
-                .cloned(),
-            ..self.context.clone()
-        };
-        let test = Test::begin(context, now);
-        match order.number {
-            1 => test,
-            number => test.another(number),
-        }
-    }
-
-    /// Learns from a reference part. After the `last` one, returns the complete calibration.
-    ///
-    /// # Errors
-    /// Names the reason why the part is unusable, or the outlier.
-    pub fn learn_reference(
-        &mut self,
-        serial: &str,
-        record: &TestRecord,
-        last: bool,
-    ) -> Result<Option<Calibration>, Misfit> {
-        let observed = observed(record);
-        self.learn_ramps(observed, false);
-        let missing = || Misfit::NoCertificate {
-            serial: serial.to_owned(),
-        };
-        let part = self.certificate(serial).ok_or_else(missing)?.clone();
-        let reference = self.context.reference_temperature();
-        self.reference_parts
-            .learn(&part, reference, record, observed)?;
-        if last {
-            return self.conclude_reference_parts().map(Some);
-        }
-        let untaught = self.context.untaught_fine_v();
-        let fine_v = self.reference_parts.fine_v().unwrap_or(untaught.into());
-        self.teach(Overshoots {
-            operate: reference_part::interim(self.coarse.0, fine_v.0),
-            release: reference_part::interim(self.coarse.1, fine_v.1),
-        });
-        Ok(None)
-    }
-
-    /// Completes the calibration with the reference parts measured so far.
-    ///
-    /// # Errors
-    /// Names the outlier, or reports too few parts.
-    pub fn conclude_reference_parts(&mut self) -> Result<Calibration, Misfit> {
-        let accuracy = &self.context.accuracy;
-        let overshoots =
-            self.reference_parts
-                .overshoots(&self.certificates, accuracy, self.coarse)?;
-        self.teach(overshoots);
-        Ok(self.calibration().clone())
-    }
-
-    /// Learns from a part of the lot; the overshoot models take only parts that `pass`.
-    pub fn learn(&mut self, record: &TestRecord, pass: bool) {
-        let observed = observed(record);
-        if let Some(ohm) = observed.probe_contact {
-            self.probe_contact.add(ohm);
-        }
-        if pass {
-            self.learn_ramps(observed, true);
-        }
-        let overshoot = |direction| self.context.overshoot(direction);
-        self.calibrate_overshoots(Overshoots {
-            operate: overshoot(Direction::Rising).taught(self.coarse.0, self.of_lot.0),
-            release: overshoot(Direction::Falling).taught(self.coarse.1, self.of_lot.1),
-        });
-    }
-
-    /// Compares the results of a reference part with its certificate.
-    ///
-    /// # Errors
-    /// Names the result that disagrees.
-    pub fn check(&self, serial: &str, record: &TestRecord) -> Result<(), Misfit> {
-        match self.certificate(serial) {
-            Some(part) => reference_part::check(part, record),
-            None => Err(Misfit::NoCertificate {
-                serial: serial.to_owned(),
-            }),
-        }
-    }
-
-    /// Returns the resistance of the coil's two force contacts, mean over the last parts; `None` before the first part.
-    pub fn probe_contact(&self) -> Option<Ohm> {
-        self.probe_contact.mean()
-    }
-
-    /// Returns [`Self::probe_contact`] once it is the mean of enough parts for an alarm.
-    pub fn settled_probe_contact(&self) -> Option<Ohm> {
-        self.probe_contact.settled()
-    }
-
     fn certificate(&self, serial: &str) -> Option<&ReferencePart> {
         self.certificates.iter().find(|part| part.serial == serial)
+    }
+
+    fn certified(&self, serial: &str) -> Result<&ReferencePart, Misfit> {
+        self.certificate(serial)
+            .ok_or_else(|| Misfit::NoCertificate {
+                serial: serial.to_owned(),
+            })
     }
 
     fn learn_ramps(&mut self, observed: &Observed, of_lot: bool) {
@@ -269,6 +131,124 @@ impl Device {
 
     fn calibrate(&mut self, change: impl FnOnce(&mut Calibration)) {
         change(Arc::make_mut(&mut self.context.calibration));
+    }
+}
+
+impl DeviceUnderTest for Device {
+    fn begin(&self, order: &TestOrder, now: RigTime) -> Procedure {
+        let context = Context {
+            thorough: order.thorough,
+            probe_contact: self.probe_contact.mean(),
+            teaching: order
+                .teaching
+                .and_then(|serial| self.certificate(serial))
+                .cloned(),
+            ..self.context.clone()
+        };
+        let test = Test::begin(context, now);
+        Procedure::EmRelay(Box::new(match order.number {
+            1 => test,
+            number => test.another(number),
+        }))
+    }
+
+    fn due_at_us(&self) -> Option<i64> {
+        Some(self.context.calibration.due_at_us)
+    }
+
+    fn reference_serials(&self) -> Vec<String> {
+        let serials = self.certificates.iter().map(|part| part.serial.clone());
+        serials.collect()
+    }
+
+    /// Returns true when the overshoot of the fine ramps is known.
+    fn is_calibrated(&self) -> bool {
+        let overshoots = self.context.calibration.overshoots;
+        overshoots.is_some_and(|overshoots| overshoots.operate.fine_v.u.is_finite())
+    }
+
+    fn reference_acts(&self) -> Vec<Act> {
+        reference::acts(&self.context)
+    }
+
+    fn conclude_references(
+        &mut self,
+        readings: &Readings,
+        made: Made,
+    ) -> Result<(), CalibrationFault> {
+        let calibration = reference::conclude(&self.context, readings, made.at_us, made.valid_us)?;
+        self.context.calibration = Arc::new(Calibration {
+            simulated: made.simulated,
+            ..calibration
+        });
+        Ok(())
+    }
+
+    fn forget_calibration(&mut self) {
+        self.reference_parts = ReferenceRun::default();
+        self.calibrate(|calibration| calibration.overshoots = None);
+    }
+
+    fn learn_reference(
+        &mut self,
+        serial: &str,
+        record: &TestRecord,
+        last: bool,
+    ) -> Result<Option<dut::Calibration>, CalibrationFault> {
+        let observed = observed(record);
+        self.learn_ramps(observed, false);
+        let part = self.certified(serial)?.clone();
+        let reference = self.context.reference_temperature();
+        self.reference_parts
+            .learn(&part, reference, record, observed)?;
+        if last {
+            return self.conclude_reference_parts().map(Some);
+        }
+        let assumed = self.context.assumed_fine_v();
+        let fine_v = self.reference_parts.fine_v().unwrap_or(assumed.into());
+        self.teach(Overshoots {
+            operate: reference_part::interim(self.coarse.0, fine_v.0),
+            release: reference_part::interim(self.coarse.1, fine_v.1),
+        });
+        Ok(None)
+    }
+
+    fn conclude_reference_parts(&mut self) -> Result<dut::Calibration, CalibrationFault> {
+        let accuracy = &self.context.accuracy;
+        let overshoots =
+            self.reference_parts
+                .overshoots(&self.certificates, accuracy, self.coarse)?;
+        self.teach(overshoots);
+        let calibration = Calibration::clone(&self.context.calibration);
+        Ok(dut::Calibration::EmRelay(calibration))
+    }
+
+    /// The overshoot models take only parts that `pass`, the trend of the probes takes every part.
+    fn learn(&mut self, record: &TestRecord, pass: bool) {
+        let observed = observed(record);
+        if let Some(ohm) = observed.probe_contact {
+            self.probe_contact.add(ohm);
+        }
+        if pass {
+            self.learn_ramps(observed, true);
+        }
+        let overshoot = |direction| self.context.overshoot(direction);
+        self.calibrate_overshoots(Overshoots {
+            operate: overshoot(Direction::Rising).taught(self.coarse.0, self.of_lot.0),
+            release: overshoot(Direction::Falling).taught(self.coarse.1, self.of_lot.1),
+        });
+    }
+
+    fn check(&self, serial: &str, record: &TestRecord) -> Result<(), CalibrationFault> {
+        Ok(reference_part::check(self.certified(serial)?, record)?)
+    }
+
+    fn probe_contact(&self) -> Option<Ohm> {
+        self.probe_contact.mean()
+    }
+
+    fn settled_probe_contact(&self) -> Option<Ohm> {
+        self.probe_contact.settled()
     }
 }
 

@@ -8,23 +8,18 @@
 //! | release time | from the last switch-off to the last sample with NC open |
 //!
 //! A bound is neither corrected nor converted to the reference temperature, so it decides only with the margin
-//! [`DOUBT`].
+//! [`MARGIN`].
 
 use super::Parameter;
 use super::points::{AnalogOut, BOARD, DigitalOut};
 use crate::instrument::curve::Curve;
 
 /// Margin: copper 5 K from the reference (2 %), tolerance of the supply, and one poll of the board.
-const DOUBT: f64 = 0.03;
+pub const DOUBT: f64 = 0.03;
 /// Share of the nominal voltage from which the coil counts as driven at nominal.
 const NOMINAL: f64 = 0.98;
 
-/// Returns true when the curves prove that the parameter lies above `high`, for a coil of `nominal_v`.
-pub fn above(curves: &[Curve], parameter: Parameter, high: f64, nominal_v: f64) -> bool {
-    at_least(curves, parameter, nominal_v).is_some_and(|bound| bound * (1.0 - DOUBT) > high)
-}
-
-/// Returns the lower bound in the unit of the parameter.
+/// Returns the lower bound in the unit of the parameter, for a coil of `nominal_v`.
 pub fn at_least(curves: &[Curve], parameter: Parameter, nominal_v: f64) -> Option<f64> {
     let proven = Bounds::of(curves, nominal_v);
     let ms = |us: i64| us as f64 / 1e3;
@@ -37,7 +32,6 @@ pub fn at_least(curves: &[Curve], parameter: Parameter, nominal_v: f64) -> Optio
     bound.and_then(|(_, at_least)| at_least)
 }
 
-/// One event of the curves.
 enum Event {
     /// Command of a supply output, by its index in [`SUPPLY`], volts.
     Command(usize, f64),
@@ -131,8 +125,8 @@ fn events(curves: &[Curve]) -> Vec<(i64, Event)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dut::characteristic::KindCharacteristic;
 
-    /// Curve of a signal from pairs of millisecond and value.
     fn curve(signal: &str, samples: &[(i64, f64)]) -> Curve {
         Curve {
             signal: signal.into(),
@@ -162,8 +156,8 @@ mod tests {
             None,
             "never at nominal voltage"
         );
-        assert!(above(&curves, Parameter::OperateVoltage, 10.6, 12.0));
-        assert!(!above(&curves, Parameter::OperateVoltage, 10.7, 12.0));
+        let sure = Parameter::OperateVoltage.lower_bound(&curves, Some(12.0));
+        assert!(sure.is_some_and(|volts| volts > 10.6 && volts < 10.7));
     }
 
     #[test]

@@ -9,9 +9,10 @@ use super::bins;
 use super::coil::relative_per_kelvin;
 use super::parameter::Expected;
 use super::recipe::RelayRecipe;
-use super::settings::{ReferenceSet, ReferenceSettings};
+use super::settings::ReferenceSet;
 use super::{Parameter, Strategy};
 use crate::dut::accuracy::AccuracySettings;
+use crate::dut::device::Rig;
 use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Counter, Points};
 use crate::dut::recipe::Limits;
 use crate::gauge::budget::COVERAGE_FACTOR;
@@ -124,14 +125,10 @@ fn check_guard_bands(
 /// Refuses a rig without references on its board, or without enough reference parts of this nominal voltage.
 ///
 /// # Errors
-/// Names the missing section of `rig.toml`, or the coil voltages of the reference parts.
-pub fn check_references(
-    nominal_v: f64,
-    board: Option<&ReferenceSettings>,
-    parts: &ReferenceSet,
-) -> Result<(), Fault> {
-    let lacks = match (board, parts.parts.is_empty()) {
-        (Some(_), false) => return check_reference_parts(nominal_v, parts),
+/// Names what `rig.toml` lacks, or the coil voltages of the reference parts.
+pub fn check_references(nominal_v: f64, rig: &Rig) -> Result<(), Fault> {
+    let lacks = match (rig.reference, rig.reference_parts.parts.is_empty()) {
+        (Some(_), false) => return check_reference_parts(nominal_v, rig.reference_parts),
         (None, true | false) => "references: rig.toml has no [reference]",
         (Some(_), true) => "golden parts: rig.toml names no file of them in [calibration].golden",
     };

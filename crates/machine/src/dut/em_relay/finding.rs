@@ -2,8 +2,8 @@
 
 use super::threshold::Direction;
 use super::{Parameter, bins};
-use crate::dut::reason::{Code, Reason};
-use crate::dut::verdict::Bin;
+use crate::dut::finding::Entry;
+use crate::dut::reason::Reason;
 use crate::gauge::Side;
 
 /// Side of the changeover contact.
@@ -80,40 +80,6 @@ pub enum Finding {
     SearchWithoutThreshold(Direction),
 }
 
-/// Code and consequence of a finding.
-struct Entry {
-    code: &'static str,
-    /// Bin of a bad part; `None` for a part that cannot be judged.
-    bin: Option<Bin>,
-    /// Characteristic and side of its limit that the finding proves exceeded.
-    proves: Option<(Parameter, Side)>,
-}
-
-impl Entry {
-    const fn fail(code: &'static str, bin: Bin) -> Self {
-        Self {
-            code,
-            bin: Some(bin),
-            proves: None,
-        }
-    }
-
-    const fn void(code: &'static str) -> Self {
-        Self {
-            code,
-            bin: None,
-            proves: None,
-        }
-    }
-
-    const fn proves(self, parameter: Parameter, side: Side) -> Self {
-        Self {
-            proves: Some((parameter, side)),
-            ..self
-        }
-    }
-}
-
 impl Finding {
     /// Every finding, in the order of the enum.
     pub const ALL: [Self; 36] = [
@@ -155,7 +121,8 @@ impl Finding {
         Self::SearchWithoutThreshold(Direction::Falling),
     ];
 
-    const fn entry(self) -> Entry {
+    /// Returns code and consequence.
+    pub fn entry(self) -> Entry {
         use Contact::{Nc, No};
         use Direction::{Falling, Rising};
         match self {
@@ -205,36 +172,9 @@ impl Finding {
     /// Returns the reason with the figure or the pins that its text names.
     pub fn with(self, detail: impl Into<String>) -> Reason {
         Reason {
-            code: Code::EmRelay(self),
-            side: self.entry().proves.map(|(_, side)| side),
             detail: detail.into(),
+            ..self.into()
         }
-    }
-
-    /// Returns the code in rows and exports.
-    pub fn code(self) -> &'static str {
-        self.entry().code
-    }
-
-    /// Returns the bin of a bad part; `None` for a part that cannot be judged.
-    pub fn bin(self) -> Option<Bin> {
-        self.entry().bin
-    }
-
-    /// Returns the characteristic whose limit the finding proves exceeded, if any.
-    pub fn proves(self) -> Option<Parameter> {
-        self.entry().proves.map(|(parameter, _)| parameter)
-    }
-
-    /// Returns the finding with this code.
-    pub fn from_code(code: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|it| it.code() == code)
-    }
-}
-
-impl From<Finding> for Reason {
-    fn from(finding: Finding) -> Self {
-        finding.with("")
     }
 }
 
@@ -245,7 +185,7 @@ mod tests {
 
     #[test]
     fn every_finding_has_a_code_of_its_own() {
-        let codes: BTreeSet<_> = Finding::ALL.map(Finding::code).into();
+        let codes: BTreeSet<_> = Finding::ALL.map(|it| it.entry().code).into();
         assert_eq!(codes.len(), Finding::ALL.len());
     }
 }

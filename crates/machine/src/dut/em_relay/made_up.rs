@@ -4,15 +4,17 @@ use super::Parameter;
 use super::parameter::Expected;
 use super::points::{BOARD, COIL_VOLTAGE};
 use super::recipe::RelayRecipe;
-use crate::dut::Characteristic;
-use crate::dut::made_up::{Looks, Scatter};
+use crate::dut::made_up::{Looks, MadeUp, Scatter};
 use crate::gauge::Budget;
 use crate::instrument::trace::Signal;
 
-/// Returns the scatter of every parameter.
-pub fn scatter(relay: &RelayRecipe) -> Vec<(Characteristic, Scatter)> {
+/// Returns scatter and looks of made-up relays.
+pub fn made_up(relay: &RelayRecipe) -> MadeUp {
     let all = Parameter::ALL.into_iter();
-    all.map(|it| (it.into(), of(relay, it))).collect()
+    MadeUp {
+        scatter: all.map(|it| (it.into(), of(relay, it))).collect(),
+        looks: looks(),
+    }
 }
 
 fn of(relay: &RelayRecipe, parameter: Parameter) -> Scatter {
@@ -45,8 +47,8 @@ fn of(relay: &RelayRecipe, parameter: Parameter) -> Scatter {
     }
 }
 
-/// Returns the samples per evidence curve: 30 polls of a contact, 120 samples of a voltage.
-pub fn evidence() -> Vec<Looks> {
+/// 30 polls of a contact, 120 samples of a voltage.
+fn looks() -> Vec<Looks> {
     vec![
         Looks {
             signal: Signal::bits(BOARD),

@@ -60,5 +60,16 @@ pub use measure::Observed;
 pub use parameter::Parameter;
 pub use strategy::Strategy;
 
+use super::KindDefinition;
+
+/// What is fixed about the kind.
+pub const DEFINITION: KindDefinition = KindDefinition {
+    name: "em_relay",
+    sections: keys::recipe::SECTIONS,
+    characteristics: || Parameter::ALL.map(Into::into).to_vec(),
+    stages: || measure::Stage::ALL.map(measure::Stage::name).to_vec(),
+    findings: || Finding::ALL.map(Into::into).to_vec(),
+};
+
 #[cfg(test)]
 pub(crate) mod tests;

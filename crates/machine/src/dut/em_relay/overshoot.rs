@@ -4,7 +4,7 @@
 //! armature that is late on a step is late on a ramp, eddy currents that hold the flux after switch-off also delay its
 //! rise, a winding of more ohms has another time constant, and the ramp reaches a higher threshold later. The release
 //! overshoot also depends on springs and travel, which the operate ramp shows. The model is therefore linear in the
-//! logarithms of five results ([`Shown`]), each relative to that of the first part.
+//! logarithms of five results ([`CoarseResults`]), each relative to that of the first part.
 //!
 //! Reference parts and the first parts of a lot teach the line: they have both ramps. It is a regression with a
 //! conjugate prior (normal with inverse gamma), so it gives an uncertainty from the first part on; a result that has
@@ -19,10 +19,10 @@ use units::Volt;
 /// Prior scatter about the line, volts of a 12 V coil (1 sd): two operations, and the residual of reference parts that lie far apart.
 const SCATTER_V: f64 = 0.004;
 /// Weight of the prior, in parts.
-const WORTH: f64 = 4.0;
+const PRIOR_WEIGHT: f64 = 4.0;
 /// Standard uncertainty of the assumed overshoot of the first part, volts of a 12 V coil.
 const GUESS_SD_V: f64 = 0.05;
-/// Prior elasticities of the overshoot, percent per percent of a result (mean and 1 sd), in the order of [`Shown`]. A
+/// Prior elasticities of the overshoot, percent per percent of a result (mean and 1 sd), in the order of [`CoarseResults`]. A
 /// late armature is heavy: its flight is most of the delay of a rising ramp and half of an operate time. A high
 /// threshold delays an operation independently of mass, hence the negative terms. A falling ramp waits for the flux,
 /// which depends a little on each result.
@@ -31,19 +31,18 @@ const FALLING: [f64; RESULTS] = [0.0; RESULTS];
 const ELASTICITY_SD: f64 = 0.25;
 /// Largest residual that the model learns from, in standard uncertainties: one outlier does not bend the line, and a
 /// wrong line widens until it fits.
-const ODD: f64 = 3.0;
+const OUTLIER: f64 = 3.0;
 /// Greatest squared distance from the parts learned, in standard deviations, and its widening after few parts: one
 /// similar part in two thousand lies further away (Hotelling's T2 of five variates, within a tenth from ten parts on).
-const FURTHEST2: f64 = 20.0;
+const MAX_DISTANCE2: f64 = 20.0;
 const WIDER: f64 = 20.0;
-/// Number of results in the model.
 const RESULTS: usize = 5;
 /// Number of coefficients: a constant, and a slope for each result.
 const TERMS: usize = RESULTS + 1;
 
 /// Results of a part at the event of its coarse ramp; NaN for a missing one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shown {
+pub struct CoarseResults {
     /// Indication of the coarse ramp.
     pub indicated: Volt,
     /// Indication of the coarse operate ramp: of this ramp, or of the one before a release.
@@ -56,9 +55,9 @@ pub struct Shown {
     pub coil_ohm: f64,
 }
 
-impl Shown {
+impl CoarseResults {
     /// Results of a part before any measurement.
-    pub const NOTHING: Self = Self {
+    pub const NONE: Self = Self {
         indicated: Volt(f64::NAN),
         operate: Volt(f64::NAN),
         operate_ms: f64::NAN,
@@ -99,7 +98,6 @@ pub struct OvershootModel {
     #[serde(default = "of_12_v")]
     coil: f64,
     parts: u32,
-    /// Logarithms of the first part.
     first: [f64; RESULTS],
     /// Sums over prior and parts: products of the terms, and of the terms with the overshoot minus the guess.
     products: [[f64; TERMS]; TERMS],
@@ -119,7 +117,7 @@ impl OvershootModel {
             first: [0.0; RESULTS],
             products: [[0.0; TERMS]; TERMS],
             with_overshoot: [0.0; TERMS],
-            squares: WORTH * (SCATTER_V * coil).powi(2),
+            squares: PRIOR_WEIGHT * (SCATTER_V * coil).powi(2),
         };
         for term in 0..TERMS {
             let (mean_v, weight) = law.prior(term);
@@ -136,7 +134,7 @@ impl OvershootModel {
     }
 
     /// Learns from a part with both indications; ignores a part with a missing result.
-    pub fn learn(&mut self, shown: &Shown, fine: Volt) {
+    pub fn learn(&mut self, shown: &CoarseResults, fine: Volt) {
         let overshoot_v = (shown.indicated - fine).0;
         let Some(logarithms) = shown.logarithms().filter(|_| overshoot_v.is_finite()) else {
             return;
@@ -145,7 +143,8 @@ impl OvershootModel {
             self.first = logarithms;
         }
         let expected = self.of(shown);
-        let off_v = (overshoot_v - expected.volts).clamp(-ODD * expected.u_v, ODD * expected.u_v);
+        let off_v =
+            (overshoot_v - expected.volts).clamp(-OUTLIER * expected.u_v, OUTLIER * expected.u_v);
         let overshoot_v = expected.volts + off_v - self.guess_v;
         let terms = self.terms(logarithms);
         for (row, one) in terms.iter().enumerate() {
@@ -159,13 +158,13 @@ impl OvershootModel {
     }
 
     /// Returns the expected overshoot of a part; with a missing result that of the first part, not `alike`.
-    pub fn of(&self, shown: &Shown) -> Predicted {
+    pub fn of(&self, shown: &CoarseResults) -> Predicted {
         let logarithms = shown.logarithms().filter(|_| self.parts > 0);
         let terms = self.terms(logarithms.unwrap_or(self.first));
         let line = solved(self.products, self.with_overshoot);
         let spread = dot(terms, solved(self.products, terms));
         let left = (self.squares - dot(line, self.with_overshoot)).max(0.0);
-        let freedom = WORTH + f64::from(self.parts) - self.determined();
+        let freedom = PRIOR_WEIGHT + f64::from(self.parts) - self.determined();
         // Variance of Student's t relative to a normal distribution.
         let student = freedom / (freedom - 2.0);
         let beyond = self.beyond(spread);
@@ -191,7 +190,7 @@ impl OvershootModel {
     fn beyond(&self, spread: f64) -> Option<f64> {
         let parts = f64::from(self.parts);
         let more = parts - RESULTS as f64;
-        (more > 0.0).then(|| (parts * spread - 1.0) / (FURTHEST2 * (1.0 + WIDER / more)))
+        (more > 0.0).then(|| (parts * spread - 1.0) / (MAX_DISTANCE2 * (1.0 + WIDER / more)))
     }
 
     /// Returns the prior mean of a term, volts, and its weight. The overshoot of a rising ramp is positive, that of a

@@ -1,14 +1,16 @@
 //! The nine characteristics of a relay, as data: a new one needs a variant, a place in [`Parameter::ALL`] and a table row.
 
-use super::bins;
 use super::card::CardStep;
+use super::coil::to_reference;
 use super::measure::Stage;
 use super::threshold::Direction;
-use crate::dut::characteristic::{Characteristic, Definition};
+use super::{bins, evidence};
+use crate::dut::characteristic::{Characteristic, Definition, KindCharacteristic};
 use crate::gauge::repetition::MeanOf;
+use crate::instrument::curve::Curve;
 use crate::rig::bin::Bin;
 use std::fmt;
-use units::Unit;
+use units::{Celsius, Unit};
 
 /// One measured quantity. The order is that of reports and of every table kept per parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -47,11 +49,6 @@ impl Parameter {
         Self::ContactResistanceNc,
     ];
 
-    /// Returns key, unit and bin, as for every kind of part.
-    pub const fn definition(self) -> &'static Definition {
-        &self.facts().definition
-    }
-
     /// Returns the data that only relays have.
     pub const fn facts(self) -> &'static Facts {
         &TABLE[self as usize]
@@ -59,7 +56,7 @@ impl Parameter {
 
     /// Returns the key, with the unit as suffix.
     pub const fn name(self) -> &'static str {
-        self.definition().key
+        self.facts().definition.key
     }
 
     /// Returns the position in [`Self::ALL`].
@@ -176,6 +173,25 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
     Facts::of("contact_resistance_no_mohm", CONTACT, OPERATE, Expected::lognormal(18.0, 0.25, 0.04), 0.3),
     Facts::of("contact_resistance_nc_mohm", CONTACT, NC, Expected::lognormal(22.0, 0.25, 0.04), 0.3),
 ];
+
+impl KindCharacteristic for Parameter {
+    fn definition(&self) -> &'static Definition {
+        &self.facts().definition
+    }
+
+    /// Returns the factor of the copper of the coil; 1 for results independent of it.
+    fn conversion(&self, from: Celsius, to: Celsius) -> f64 {
+        match self.facts().copper {
+            true => to_reference(from, to),
+            false => 1.0,
+        }
+    }
+
+    fn lower_bound(&self, curves: &[Curve], rated_v: Option<f64>) -> Option<f64> {
+        let bound = evidence::at_least(curves, *self, rated_v?);
+        bound.map(|bound| bound * (1.0 - evidence::DOUBT))
+    }
+}
 
 impl From<Parameter> for Characteristic {
     fn from(parameter: Parameter) -> Self {

@@ -285,7 +285,6 @@ impl Points {
     }
 }
 
-/// Resolves the points `names`.
 fn all<T: Copy, const N: usize>(
     section: &'static str,
     names: &[&'static str],

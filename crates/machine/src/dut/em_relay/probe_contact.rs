@@ -15,7 +15,7 @@
 use units::{Ohm, Volt};
 
 /// Parts before the mean counts as a trend; from then on each new part has the weight 1/16.
-const ENOUGH: u32 = 16;
+const TREND_PARTS: u32 = 16;
 
 /// Returns the resistance of both force contacts: `coil` gets `at_pins` at the command `command`.
 pub fn in_series(command: Volt, at_pins: Volt, coil: Ohm) -> Ohm {
@@ -34,7 +34,7 @@ impl Trend {
     pub fn add(&mut self, Ohm(ohm): Ohm) {
         self.parts = self.parts.saturating_add(1);
         let mean = self.mean.unwrap_or(ohm);
-        self.mean = Some(mean + (ohm - mean) / f64::from(self.parts.min(ENOUGH)));
+        self.mean = Some(mean + (ohm - mean) / f64::from(self.parts.min(TREND_PARTS)));
     }
 
     /// Returns the mean; `None` before the first part.
@@ -44,7 +44,7 @@ impl Trend {
 
     /// Returns the mean once it covers enough parts for an alarm.
     pub fn settled(&self) -> Option<Ohm> {
-        self.mean().filter(|_| self.parts >= ENOUGH)
+        self.mean().filter(|_| self.parts >= TREND_PARTS)
     }
 }
 

@@ -5,9 +5,19 @@ use super::points::AnalogIn;
 use super::sampling::{CoilSampling, ContactSampling};
 use super::strategy::Strategy;
 use super::threshold::Direction;
-use crate::dut::recipe::Body;
+use super::{card, feasible, made_up};
+use crate::dut::accuracy::AccuracySettings;
+use crate::dut::card::Card;
+use crate::dut::device::Rig;
+use crate::dut::made_up::MadeUp;
+use crate::dut::recipe::{KindRecipe, Limits, PartFacts};
+use crate::dut::{Calibration, Device, Kind, Recipe};
 use crate::rig::fault::Fault;
+use crate::rig::point::MissingPoint;
+use crate::rig::supply::SupplyDemand;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use units::Celsius;
 
 /// The sections `[part]` and `[test]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -18,12 +28,53 @@ pub struct RelayRecipe {
     pub test: TestPlan,
 }
 
-impl RelayRecipe {
+impl KindRecipe for RelayRecipe {
+    fn kind(&self) -> Kind {
+        Kind::EmRelay
+    }
+
+    fn part(&self) -> PartFacts {
+        PartFacts {
+            body_mm: self.part.body_mm,
+            pin_length_mm: self.part.pin_length_mm,
+            reference: Celsius(self.part.reference_temperature_c),
+            nominal_v: Some(self.part.nominal_v),
+        }
+    }
+
+    fn on_rig(
+        &self,
+        recipe: Arc<Recipe>,
+        rig: &Rig,
+        stored: Option<Calibration>,
+    ) -> Result<Device, MissingPoint> {
+        let stored = stored.map(|Calibration::EmRelay(factors)| factors);
+        let device = super::Device::new(recipe, self, rig, stored)?;
+        Ok(Device::EmRelay(Box::new(device)))
+    }
+
+    fn feasible(&self, limits: &Limits, rig: &Rig) -> Result<(), Fault> {
+        feasible::check_references(self.part.nominal_v, rig)?;
+        feasible::check(self, limits, rig.wiring, rig.accuracy)
+    }
+
+    fn demand(&self, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand {
+        feasible::demand(self, limits, accuracy)
+    }
+
+    fn card(&self) -> Card {
+        card::card(self)
+    }
+
+    fn made_up(&self, _limits: &Limits) -> MadeUp {
+        made_up::made_up(self)
+    }
+
     /// Checks that pre-bias and expected thresholds lie in their order below the nominal voltage.
     ///
     /// # Errors
-    /// Names the first key out of order.
-    pub fn check(&self) -> Result<(), Fault> {
+    /// Names the first key that does not.
+    fn check(&self) -> Result<(), Fault> {
         let test = &self.test;
         let ordered = [
             (
@@ -70,17 +121,7 @@ pub struct PartData {
     pub reference_temperature_c: f64,
 }
 
-impl PartData {
-    /// Returns the dimensions for the collision guard.
-    pub fn body(&self) -> Body {
-        Body {
-            size_mm: self.body_mm,
-            pin_length_mm: self.pin_length_mm,
-        }
-    }
-}
-
-/// Channels that measure the coil.
+/// Which channels measure the coil.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CoilChannels {

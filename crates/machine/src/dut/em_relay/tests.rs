@@ -66,7 +66,6 @@ pub fn reference_parts() -> Vec<ReferencePart> {
     set.of_nominal(12.0).cloned().collect()
 }
 
-/// Channels with the gains of the default rig and no error.
 fn calibration() -> Calibration {
     let exact = |value| Factor::new(value, 1e-6);
     let overshoot = |coarse_v| Overshoot {

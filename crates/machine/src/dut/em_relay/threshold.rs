@@ -46,7 +46,7 @@ pub fn indicated(
 
 /// Uncertainty terms of a threshold besides the shift of the reference parts.
 #[derive(Debug, Clone, Copy)]
-pub struct RampDoubt {
+pub struct RampUncertainty {
     /// Slope of the fine ramp, volts per second.
     pub slope_v_per_s: Factor,
     /// True when the overshoot contains the error of the slope already.
@@ -72,7 +72,7 @@ pub fn quasi_static(
     overshoot: Overshoot,
     part: Celsius,
     reference: Celsius,
-    doubt: RampDoubt,
+    uncertainty: RampUncertainty,
 ) -> Reading {
     let at_part = seen.0 - overshoot.fine_v.value - own.value;
     let value = at_part * to_reference(part, reference);
@@ -81,23 +81,26 @@ pub fn quasi_static(
         .with("lag of the part", own.u)
         .with(
             "coil temperature",
-            value * doubt.temperature_k * relative_per_kelvin(part),
+            value * uncertainty.temperature_k * relative_per_kelvin(part),
         )
-        .with_random("repeatability", doubt.operation_v)
+        .with_random("repeatability", uncertainty.operation_v)
         .with(
             "slope",
-            if doubt.slope_known {
+            if uncertainty.slope_known {
                 0.0
             } else {
-                doubt.slope_v_per_s.u * gate.0
+                uncertainty.slope_v_per_s.u * gate.0
             },
         )
         .with_random(
             "resolution",
-            resolution(doubt.slope_v_per_s.value * doubt.refresh.0),
+            resolution(uncertainty.slope_v_per_s.value * uncertainty.refresh.0),
         )
-        .with("level", (at_part - overshoot.at_v) * doubt.level_share)
-        .with("probe contact", value * doubt.contact_share);
+        .with(
+            "level",
+            (at_part - overshoot.at_v) * uncertainty.level_share,
+        )
+        .with("probe contact", value * uncertainty.contact_share);
     Reading {
         value,
         unit: Unit::Volt,
@@ -119,7 +122,7 @@ mod tests {
     }
 
     /// U / 2 of an operate voltage of 7.88 V with these two uncertainty terms alone.
-    fn doubted(contact: f64, temperature_k: f64) -> f64 {
+    fn half_u(contact: f64, temperature_k: f64) -> f64 {
         let overshoot = Overshoot {
             fine_v: Factor::new(0.0, 0.0),
             at_v: 7.88,
@@ -127,7 +130,7 @@ mod tests {
             coarse: OvershootModel::guess(0.85, 1.0),
             judges: false,
         };
-        let doubt = RampDoubt {
+        let uncertainty = RampUncertainty {
             slope_v_per_s: Factor::new(1.5, 0.0),
             slope_known: false,
             operation_v: 0.0,
@@ -142,18 +145,18 @@ mod tests {
             overshoot,
             Celsius(23.0),
             Celsius(23.0),
-            doubt,
+            uncertainty,
         );
         reading.budget.combined()
     }
 
     #[test]
     fn one_kelvin_is_30_millivolts_of_operate_voltage() {
-        assert!((doubted(0.0, 1.0) - 0.0306).abs() < 1e-4);
+        assert!((half_u(0.0, 1.0) - 0.0306).abs() < 1e-4);
     }
 
     #[test]
     fn one_ohm_at_the_probes_is_20_millivolts() {
-        assert!((doubted(1.0 / 400.0, 0.0) - 0.0197).abs() < 1e-4);
+        assert!((half_u(1.0 / 400.0, 0.0) - 0.0197).abs() < 1e-4);
     }
 }

@@ -1,9 +1,9 @@
 //! Findings of a resistor test in addition to its result.
 
 use super::parameter::{BIN, Parameter};
-use crate::dut::reason::{Code, Reason};
+use crate::dut::Reason;
+use crate::dut::finding::Entry;
 use crate::gauge::Side;
-use crate::rig::bin::Bin;
 
 /// A finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -27,53 +27,25 @@ impl Finding {
         Self::OtherSupplyRange,
     ];
 
-    /// Returns the code in rows and exports.
-    pub fn code(self) -> &'static str {
+    /// Returns code and consequence.
+    pub fn entry(self) -> Entry {
         match self {
-            Self::Open => "resistor_open",
-            Self::Short => "resistor_short",
-            Self::CurrentNotReadable => "resistor_current_not_readable",
-            Self::OtherSupplyRange => "resistor_other_supply_range",
+            Self::Open => {
+                Entry::fail("resistor_open", BIN).proves(Parameter::Resistance, Side::High)
+            }
+            Self::Short => {
+                Entry::fail("resistor_short", BIN).proves(Parameter::Resistance, Side::Low)
+            }
+            Self::CurrentNotReadable => Entry::void("resistor_current_not_readable"),
+            Self::OtherSupplyRange => Entry::void("resistor_other_supply_range"),
         }
     }
 
-    /// Returns the bin of a bad part; `None` for a part that cannot be judged.
-    pub fn bin(self) -> Option<Bin> {
-        self.side().map(|_| BIN)
-    }
-
-    /// Returns the characteristic whose limit the finding proves exceeded, if any.
-    pub fn proves(self) -> Option<Parameter> {
-        self.side().map(|_| Parameter::Resistance)
-    }
-
-    /// Returns the finding with this code.
-    pub fn from_code(code: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|it| it.code() == code)
-    }
-
-    fn side(self) -> Option<Side> {
-        match self {
-            Self::Open => Some(Side::High),
-            Self::Short => Some(Side::Low),
-            Self::CurrentNotReadable | Self::OtherSupplyRange => None,
-        }
-    }
-}
-
-impl Finding {
-    /// Returns the reason with the figure or the names that its text holds.
+    /// Returns the reason with the names that its text holds.
     pub fn with(self, detail: impl Into<String>) -> Reason {
         Reason {
-            code: Code::Resistor(self),
-            side: self.side(),
             detail: detail.into(),
+            ..self.into()
         }
-    }
-}
-
-impl From<Finding> for Reason {
-    fn from(finding: Finding) -> Self {
-        finding.with("")
     }
 }

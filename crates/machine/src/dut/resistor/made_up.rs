@@ -1,16 +1,15 @@
 //! Statistics of a lot of resistors, for made-up parts.
 
 use super::Parameter;
-use crate::dut::Characteristic;
-use crate::dut::made_up::Scatter;
+use crate::dut::made_up::{MadeUp, Scatter};
 use crate::dut::recipe::Limits;
 use crate::gauge::Budget;
 
 /// Resistance for a recipe without both limits, ohm.
 const USUAL_OHM: f64 = 390.0;
 
-/// Returns a scatter about the middle of the limits, a tenth of their distance wide.
-pub fn scatter(limits: &Limits) -> Vec<(Characteristic, Scatter)> {
+/// Scatters about the middle of the limits by a tenth of their distance.
+pub fn made_up(limits: &Limits) -> MadeUp {
     let limit = limits.of(Parameter::Resistance);
     let (mean, sd) = match (limit.low, limit.high) {
         (Some(low), Some(high)) => ((low + high) / 2.0, (high - low) / 10.0),
@@ -25,5 +24,8 @@ pub fn scatter(limits: &Limits) -> Vec<(Characteristic, Scatter)> {
         u,
         budget: Budget::default().with("level", u),
     };
-    vec![(Parameter::Resistance.into(), scatter)]
+    MadeUp {
+        scatter: vec![(Parameter::Resistance.into(), scatter)],
+        looks: Vec::new(),
+    }
 }

@@ -4,15 +4,15 @@
 //! contacts are part of R and a term of its budget. A result inside the guard band is
 //! repeated `slow_repeats` times and averaged.
 
+use super::accuracy::ChannelAccuracy;
 use super::points::Points;
-use super::promise::Promise;
 use super::recipe::ResistorRecipe;
 use super::{Finding, Parameter};
-use crate::dut::device::{Rig, TestOrder};
-use crate::dut::procedure::Progress;
-use crate::dut::record::{Own, TestRecord};
-use crate::dut::{Characteristic, Recipe, Verdict};
-use crate::gauge::{Judgement, Reading, judge};
+use crate::dut::device::{DeviceUnderTest, Rig, TestOrder};
+use crate::dut::procedure::{Progress, TestProcedure};
+use crate::dut::record::{Stop, TestRecord};
+use crate::dut::{Characteristic, Kind, Procedure, Recipe};
+use crate::gauge::{Judgement, Reading};
 use crate::instrument::act::{Act, Doing, JobDone, Read, Runner, Word};
 use crate::instrument::readings::Readings;
 use crate::rig::image::Image;
@@ -35,7 +35,7 @@ pub struct Device {
     recipe: Arc<Recipe>,
     resistor: Arc<ResistorRecipe>,
     points: Points,
-    promise: Promise,
+    channel: ChannelAccuracy,
     /// Number of enabled channels of the converter that reads the current.
     channels: u32,
     /// Range of the supply and the points that select it; none on a rig with one range.
@@ -49,7 +49,7 @@ impl Device {
     /// Names the first point that the rig lacks.
     pub fn new(
         recipe: Arc<Recipe>,
-        resistor: Arc<ResistorRecipe>,
+        resistor: &ResistorRecipe,
         rig: &Rig,
     ) -> Result<Self, MissingPoint> {
         let points = Points::resolve(rig.wiring)?;
@@ -57,9 +57,9 @@ impl Device {
         let mask = rig.wiring.module(terminal.module).mask.unwrap_or(u8::MAX);
         Ok(Self {
             recipe,
-            resistor,
+            resistor: Arc::new(resistor.clone()),
             points,
-            promise: Promise {
+            channel: ChannelAccuracy {
                 accuracy: *rig.accuracy,
                 volt_per_ampere: terminal.gain,
             },
@@ -69,21 +69,6 @@ impl Device {
                 .range_selector()
                 .zip(rig.wiring.supply_range.clone()),
         })
-    }
-
-    /// Begins the test of the part in the nest; the probes are up.
-    pub fn begin(&self, order: &TestOrder, now: RigTime) -> Test {
-        Test {
-            runner: Runner::new([self.range_acts(), self.acts()].concat(), now),
-            device: self.clone(),
-            range_mismatch: None,
-            stage: Stage::Measure,
-            thorough: order.thorough,
-            number: order.number,
-            repeats_left: self.recipe.decision.slow_repeats,
-            record: TestRecord::default(),
-            began: now,
-        }
     }
 
     /// Selects the range while all sources are at zero, and goes no further without it.
@@ -116,8 +101,8 @@ impl Device {
 
     fn acts(&self) -> Vec<Act> {
         let test = &self.resistor.test;
-        let one_round = 1.03 / self.promise.accuracy.conversions_per_s * f64::from(self.channels);
-        let fresh = Span::seconds(one_round + 1.03 / self.promise.accuracy.conversions_per_s);
+        let one_round = 1.03 / self.channel.accuracy.conversions_per_s * f64::from(self.channels);
+        let fresh = Span::seconds(one_round + 1.03 / self.channel.accuracy.conversions_per_s);
         let mut acts = vec![
             Act::Level(vec![(self.points.level, Volt(test.level_v))]),
             Act::Set(vec![(self.points.drive, true)]),
@@ -158,15 +143,31 @@ impl Device {
         if !ampere.is_finite() {
             return Err(Finding::CurrentNotReadable);
         }
-        if ampere < self.promise.no_current_ampere() {
+        if ampere < self.channel.no_current_ampere() {
             return Err(Finding::Open);
         }
         let ohm = self.resistor.test.level_v / ampere;
         Ok(Reading {
             value: ohm,
             unit: Unit::Ohm,
-            budget: self.promise.budget(&self.resistor, ohm),
+            budget: self.channel.budget(&self.resistor, ohm),
         })
+    }
+}
+
+impl DeviceUnderTest for Device {
+    fn begin(&self, order: &TestOrder, now: RigTime) -> Procedure {
+        Procedure::Resistor(Box::new(Test {
+            runner: Runner::new([self.range_acts(), self.acts()].concat(), now),
+            device: self.clone(),
+            range_mismatch: None,
+            stage: Stage::Measure,
+            thorough: order.thorough,
+            number: order.number,
+            repeats_left: self.recipe.decision.slow_repeats,
+            record: TestRecord::default(),
+            began: now,
+        }))
     }
 }
 
@@ -202,13 +203,66 @@ pub struct Test {
     number: u8,
     repeats_left: u32,
     began: RigTime,
-    record: TestRecord<()>,
+    record: TestRecord,
     range_mismatch: Option<RangeMismatch>,
 }
 
 impl Test {
-    /// Advances the test as far as `done` and `image` allow.
-    pub fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress {
+    fn book(&mut self, now: RigTime) {
+        let name = match self.stage {
+            Stage::Measure => "resistance",
+            Stage::Off => "off",
+        };
+        self.record.spent.add(self.runner.spent());
+        self.record.took(name, now.since(self.began));
+        self.record
+            .trace
+            .append(std::mem::take(&mut self.runner.readings.trace));
+        self.began = now;
+    }
+
+    /// Adds one measurement; another follows when [`Self::needs_repeat`] holds.
+    fn conclude(&mut self, readings: &Readings, now: RigTime) {
+        let samples: Vec<Sample> = readings
+            .analog(self.device.points.current)
+            .cloned()
+            .collect();
+        if let Some(mismatch) = self.device.mismatch(readings) {
+            let finding = Finding::OtherSupplyRange.with(mismatch.to_string());
+            self.record.stop(finding);
+            self.range_mismatch = Some(mismatch);
+        }
+        if !self.record.stopped() {
+            match self.device.resistance(&samples) {
+                Ok(reading) => self.record.found(Parameter::Resistance, reading, &samples),
+                Err(finding) => self.record.stop(finding),
+            }
+        }
+        let again = !self.record.stopped() && self.repeats_left > 0 && self.needs_repeat();
+        let acts = if again {
+            self.repeats_left -= 1;
+            self.device.acts()
+        } else {
+            self.stage = Stage::Off;
+            self.device.acts_off()
+        };
+        self.runner = Runner::new(acts, now);
+    }
+
+    /// Returns true when a repeat is due: in a thorough test after every result, in others after one inside the guard
+    /// band; repeats once begun go on to the last.
+    fn needs_repeat(&self) -> bool {
+        let repeating = self.record.attempts(Parameter::Resistance) > 1;
+        let conditional = |(_, judgement): &(Characteristic, Judgement)| match judgement {
+            Judgement::Conditional(_) => true,
+            Judgement::Pass | Judgement::Fail(_) | Judgement::Void => false,
+        };
+        self.thorough || repeating || self.judgements().iter().any(conditional)
+    }
+}
+
+impl TestProcedure for Test {
+    fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress {
         let mut done = done;
         loop {
             match self.runner.step(now, done.take(), image) {
@@ -227,97 +281,37 @@ impl Test {
         }
     }
 
-    fn book(&mut self, now: RigTime) {
-        let name = match self.stage {
-            Stage::Measure => "resistance",
-            Stage::Off => "off",
-        };
-        self.record.spent.add(self.runner.spent());
-        self.record.took(name, now.since(self.began));
-        self.record
-            .trace
-            .append(std::mem::take(&mut self.runner.readings.trace));
-        self.began = now;
+    fn kind(&self) -> Kind {
+        Kind::Resistor
     }
 
-    /// Adds one measurement; another follows while the result is in doubt.
-    fn conclude(&mut self, readings: &Readings, now: RigTime) {
-        let samples: Vec<Sample> = readings
-            .analog(self.device.points.current)
-            .cloned()
-            .collect();
-        if let Some(mismatch) = self.device.mismatch(readings) {
-            let finding = Finding::OtherSupplyRange.with(mismatch.to_string());
-            self.record.stop(finding);
-            self.range_mismatch = Some(mismatch);
-        }
-        if !self.record.stopped() {
-            match self.device.resistance(&samples) {
-                Ok(reading) => self.record.found(Parameter::Resistance, reading, &samples),
-                Err(finding) => self.record.stop(finding),
-            }
-        }
-        let again = !self.record.stopped() && self.repeats_left > 0 && self.is_in_doubt();
-        let acts = if again {
-            self.repeats_left -= 1;
-            self.device.acts()
-        } else {
-            self.stage = Stage::Off;
-            self.device.acts_off()
-        };
-        self.runner = Runner::new(acts, now);
-    }
-
-    /// Returns true when a repeat is due: in a thorough test after every result, in others after one inside the guard
-    /// band; repeats once begun go on to the last.
-    fn is_in_doubt(&self) -> bool {
-        let repeating = self.record.attempts(Parameter::Resistance) > 1;
-        let conditional = |(_, judgement): &(Characteristic, Judgement)| match judgement {
-            Judgement::Conditional(_) => true,
-            Judgement::Pass | Judgement::Fail(_) | Judgement::Void => false,
-        };
-        self.thorough || repeating || self.judgements().iter().any(conditional)
-    }
-
-    /// Returns the selected supply range and the one that was read back, once they differ.
-    pub fn range_mismatch(&self) -> Option<&RangeMismatch> {
+    fn range_mismatch(&self) -> Option<&RangeMismatch> {
         self.range_mismatch.as_ref()
     }
 
-    /// Returns the number of this test of the part, from 1.
-    pub fn number(&self) -> u8 {
+    fn number(&self) -> u8 {
         self.number
     }
 
-    /// Returns the name of the stage under way.
-    pub fn stage(&self) -> &'static str {
+    fn stage(&self) -> &'static str {
         self.stage.name()
     }
 
-    /// Returns the result against its limit.
-    pub fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
-        let recipe = &self.device.recipe;
-        let reading = self.record.result(Parameter::Resistance);
-        let limit = recipe.limits.of(Parameter::Resistance);
-        let judged = reading.map(|reading| judge(&reading, &limit, recipe.decision.rule));
-        let named = |judgement| (Parameter::Resistance.into(), judgement);
-        judged.into_iter().map(named).collect()
+    fn why_stopped(&self) -> Option<&Stop> {
+        self.record.why_stopped()
     }
 
-    /// Returns the verdict of the part.
-    pub fn verdict(&self) -> Verdict {
-        let expected = Parameter::ALL.map(Characteristic::from);
-        Verdict::after(self.record.why_stopped(), &expected, self.judgements())
+    fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
+        let all = Kind::Resistor.characteristics();
+        self.record.judged(&self.device.recipe, all)
     }
 
-    /// Returns the record so far.
-    pub fn record(&self) -> &TestRecord<()> {
-        &self.record
+    fn record(&self) -> TestRecord {
+        self.record.clone()
     }
 
-    /// Takes the record out of a finished test.
-    pub fn take_record(&mut self) -> TestRecord {
-        std::mem::take(&mut self.record).of_any_kind(|()| Own::Nothing)
+    fn take_record(&mut self) -> TestRecord {
+        std::mem::take(&mut self.record)
     }
 }
 

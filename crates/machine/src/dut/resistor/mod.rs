@@ -9,12 +9,13 @@
 //! | what is measured, and where a part that fails goes | [`parameter`] |
 //! | what the part is, how it is measured | [`recipe`] |
 //! | which points of the rig it needs | [`points`] |
-//! | how accurate the figure is | [`promise`] |
+//! | how accurate the figure is | [`accuracy`] |
 //! | what a test finds in addition to the figure | [`finding`] |
 //! | the keys of its recipe | [`keys`] |
 //! | the test | [`measure`] |
 //! | the process card | [`card`] |
 
+pub mod accuracy;
 pub mod card;
 pub mod finding;
 pub mod keys;
@@ -22,9 +23,19 @@ pub mod made_up;
 pub mod measure;
 pub mod parameter;
 pub mod points;
-pub mod promise;
 pub mod recipe;
 
 pub use finding::Finding;
 pub use measure::{Device, Test};
 pub use parameter::Parameter;
+
+use super::KindDefinition;
+
+/// What is fixed about the kind.
+pub const DEFINITION: KindDefinition = KindDefinition {
+    name: "resistor",
+    sections: keys::SECTIONS,
+    characteristics: || Parameter::ALL.map(Into::into).to_vec(),
+    stages: || measure::Stage::ALL.map(measure::Stage::name).to_vec(),
+    findings: || Finding::ALL.map(Into::into).to_vec(),
+};

@@ -1,6 +1,6 @@
 //! The one characteristic of a resistor, and its bin.
 
-use crate::dut::characteristic::{Characteristic, Definition};
+use crate::dut::characteristic::{Characteristic, Definition, KindCharacteristic};
 use crate::gauge::repetition::MeanOf;
 use crate::rig::bin::Bin;
 use units::Unit;
@@ -18,9 +18,10 @@ pub enum Parameter {
 impl Parameter {
     /// Every parameter.
     pub const ALL: [Self; 1] = [Self::Resistance];
+}
 
-    /// Returns key, unit and bin.
-    pub const fn definition(self) -> &'static Definition {
+impl KindCharacteristic for Parameter {
+    fn definition(&self) -> &'static Definition {
         match self {
             Self::Resistance => &RESISTANCE,
         }

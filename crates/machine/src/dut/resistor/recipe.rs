@@ -1,16 +1,23 @@
 //! Resistor part of a recipe: the part, and how to measure it.
 
+use super::accuracy::ChannelAccuracy;
 use super::parameter::{BIN, Parameter};
 use super::points::Points;
-use super::promise::Promise;
+use super::{card, made_up};
 use crate::dut::accuracy::AccuracySettings;
-use crate::dut::recipe::{Body, Limits};
+use crate::dut::card::Card;
+use crate::dut::device::Rig;
+use crate::dut::made_up::MadeUp;
+use crate::dut::recipe::{KindRecipe, Limits, PartFacts};
+use crate::dut::{Calibration, Device, Kind, Recipe};
 use crate::gauge::Limit;
 use crate::rig::fault::Fault;
+use crate::rig::point::MissingPoint;
 use crate::rig::supply::SupplyDemand;
 use crate::rig::wiring::Wiring;
 use serde::{Deserialize, Serialize};
-use units::{Ampere, Volt};
+use std::sync::Arc;
+use units::{Ampere, Celsius, Volt};
 
 /// The sections `[part]` and `[test]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -45,26 +52,37 @@ pub struct TestPlan {
     pub readings: u32,
 }
 
-impl ResistorRecipe {
-    /// Returns the dimensions for the collision guard.
-    pub fn body(&self) -> Body {
-        Body {
-            size_mm: self.part.body_mm,
+impl KindRecipe for ResistorRecipe {
+    fn kind(&self) -> Kind {
+        Kind::Resistor
+    }
+
+    fn part(&self) -> PartFacts {
+        PartFacts {
+            body_mm: self.part.body_mm,
             pin_length_mm: self.part.pin_length_mm,
+            reference: Celsius(self.part.reference_temperature_c),
+            nominal_v: None,
         }
     }
 
-    /// Checks that the rig has bin and points, that the modules reach level and current, and that the limits are wider
-    /// than the guard bands.
+    fn on_rig(
+        &self,
+        recipe: Arc<Recipe>,
+        rig: &Rig,
+        _stored: Option<Calibration>,
+    ) -> Result<Device, MissingPoint> {
+        let device = super::Device::new(recipe, self, rig)?;
+        Ok(Device::Resistor(Box::new(device)))
+    }
+
+    /// Checks that the rig has the bin and the points, that level and current lie within reach of the modules, and that the
+    /// uncertainty leaves something between the limits.
     ///
     /// # Errors
-    /// Names the first key that the rig cannot meet.
-    pub fn feasible(
-        &self,
-        limits: &Limits,
-        wiring: &Wiring,
-        accuracy: &AccuracySettings,
-    ) -> Result<(), Fault> {
+    /// Names the first key that asks for what is not there.
+    fn feasible(&self, limits: &Limits, rig: &Rig) -> Result<(), Fault> {
+        let wiring = rig.wiring;
         if !wiring.axis.has(BIN) {
             let expected = format!("a rig with the bins of this kind: rig.toml has no bin.{BIN}");
             return Err(Fault::new("kind", "\"resistor\"", expected));
@@ -73,21 +91,19 @@ impl ResistorRecipe {
             let expected = "a rig with every point that its test needs";
             Fault::new("test", missing, expected)
         })?;
-        let wiring = &wiring.in_range(self.demand(limits, accuracy).range(wiring)?);
-        let promise = Promise {
-            accuracy: *accuracy,
+        let wiring = &wiring.in_range(self.demand(limits, rig.accuracy).range(wiring)?);
+        let channel = ChannelAccuracy {
+            accuracy: *rig.accuracy,
             volt_per_ampere: wiring.analog_in(points.current).gain,
         };
         check_modules(wiring, &points)?;
-        self.check_limit(limits.of(Parameter::Resistance), &promise)?;
+        self.check_limit(limits.of(Parameter::Resistance), &channel)?;
         wiring
             .reaches(points.level, Volt(self.test.level_v))
             .map_err(|cannot| Fault::new("test.level_v", self.test.level_v, cannot.to_string()))
     }
 
-    /// Returns what the test asks of the supply: the level, with the tolerance of its source, and the current of the lowest
-    /// accepted resistance.
-    pub fn demand(&self, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand {
+    fn demand(&self, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand {
         let level_v = self.test.level_v;
         let low_ohm = limits.of(Parameter::Resistance).low;
         SupplyDemand {
@@ -98,13 +114,23 @@ impl ResistorRecipe {
         }
     }
 
-    fn check_limit(&self, limit: Limit, promise: &Promise) -> Result<(), Fault> {
+    fn card(&self) -> Card {
+        card::card(self)
+    }
+
+    fn made_up(&self, limits: &Limits) -> MadeUp {
+        made_up::made_up(limits)
+    }
+}
+
+impl ResistorRecipe {
+    fn check_limit(&self, limit: Limit, channel: &ChannelAccuracy) -> Result<(), Fault> {
         if limit.is_open() {
             let expected = "a low or a high limit: nothing else is measured";
             return Err(Fault::new("limits.resistance_ohm", "neither", expected));
         }
         if let Some(low_ohm) = limit.low {
-            let least_ohm = self.test.level_v / promise.most_ampere();
+            let least_ohm = self.test.level_v / channel.most_ampere();
             if low_ohm < least_ohm {
                 let expected = format!(
                     "at least {least_ohm:.1}: below it the current at test.level_v is over range"
@@ -116,7 +142,7 @@ impl ResistorRecipe {
             return Ok(());
         };
         let bands_ohm =
-            promise.budget(self, low_ohm).expanded() + promise.budget(self, high_ohm).expanded();
+            channel.budget(self, low_ohm).expanded() + channel.budget(self, high_ohm).expanded();
         if high_ohm - low_ohm < bands_ohm {
             let found = format!("{low_ohm} to {high_ohm}");
             let expected = format!(

@@ -15,14 +15,14 @@ fn strict(margin_mm: f64) -> Result<Guard, GuardError> {
 fn the_clearance_is_the_margin_that_refuses_the_motion() {
     let extend = Motion::to(Actuator::Pusher, 60.0);
     let nowhere = Situation::at_rest(jzc_22f());
-    let clearance_mm = guard().clearance_mm(&extend, &nowhere, FAR_MM).unwrap();
+    let least_mm = guard().clearance_mm(&extend, &nowhere, FAR_MM).unwrap();
     assert!(
-        (clearance_mm - 1.0).abs() < 1e-6,
-        "the rail is 1 mm away: {clearance_mm}"
+        (least_mm - 1.0).abs() < 1e-6,
+        "the rail is 1 mm away: {least_mm}"
     );
-    assert!(strict(clearance_mm - 0.01).is_ok());
+    assert!(strict(least_mm - 0.01).is_ok());
     // Building the guard tries every stroke.
-    let refused = strict(clearance_mm + 0.01).map(|_| ()).unwrap_err();
+    let refused = strict(least_mm + 0.01).map(|_| ()).unwrap_err();
     assert!(refused.to_string().contains("pusher"), "{refused}");
 }
 
@@ -32,10 +32,10 @@ fn a_clearance_exceeds_the_margin_and_refusals_have_none() {
     for actuator in Actuator::ALL {
         let (low, high) = guard.stroke_mm(actuator);
         let situation = rest().with(actuator, at(low));
-        let clearance_mm = guard.clearance_mm(&Motion::to(actuator, high), &situation, FAR_MM);
+        let least_mm = guard.clearance_mm(&Motion::to(actuator, high), &situation, FAR_MM);
         assert!(
-            clearance_mm.is_none_or(|it| it > 0.5),
-            "{actuator}: {clearance_mm:?}"
+            least_mm.is_none_or(|it| it > 0.5),
+            "{actuator}: {least_mm:?}"
         );
     }
     let raised = rest().with(Actuator::ProbeLift, at(12.0));

@@ -24,7 +24,6 @@ struct Graph {
 }
 
 impl Graph {
-    /// Adds a step from one state to another, with its commands.
     fn add(&mut self, from: &str, to: &str, output: &Output) {
         self.steps += 1;
         let motions = output.rig.motions.iter().map(|movement| named(*movement));
@@ -92,7 +91,6 @@ enum SensedEnd {
 
 const SEEN: [SensedEnd; 3] = [SensedEnd::Rest, SensedEnd::Far, SensedEnd::Between];
 
-/// Sets the sensors of an actuator.
 fn show(mock: &mut MockRig, rest: &[DigitalIn], far: &[DigitalIn], seen: SensedEnd) {
     for point in rest {
         mock.set(*point, seen == SensedEnd::Rest);

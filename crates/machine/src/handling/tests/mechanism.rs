@@ -22,7 +22,6 @@ fn arrived(mock: &MockRig, movement: Move) -> bool {
     mock.mechanism.has_arrived(movement, mock.now, &mock.image)
 }
 
-/// Each motion with its actuator and its end.
 const MOTIONS: [(Move, Actuator, f64); 13] = [
     (Move::EscapementRelease, Actuator::Escapement, 12.0),
     (Move::EscapementHold, Actuator::Escapement, 0.0),
@@ -125,7 +124,6 @@ fn an_older_sensor_value_shows_no_arrival() {
     assert!(arrived(&mock, Move::PusherRetract));
 }
 
-/// Returns the troubles of an update.
 fn seen(mock: &mut MockRig) -> Vec<Trouble> {
     mock.mechanism.update(mock.now, &mock.image).trouble
 }

@@ -91,7 +91,6 @@ impl Nest {
         self.step(state, Some(failed))
     }
 
-    /// Lowers the open fingers around the part.
     fn fingers_around(&mut self) {
         self.mock.carried_out(Move::SortDown);
         self.sort = Sort::AtPart;
@@ -180,7 +179,6 @@ fn the_nest_holds_a_judged_part_until_gripped() {
     assert!(matches!(state, NestState::Lifting));
 }
 
-/// Lifts the part out of the nest.
 fn lift(nest: &mut Nest) -> NestState {
     let state = nest.judged();
     nest.fingers_around();

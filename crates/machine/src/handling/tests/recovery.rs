@@ -19,7 +19,6 @@ const ORDER: [Move; 7] = [
     Move::AxisTo(AxisStation::Nest),
 ];
 
-/// Puts every actuator at its far end.
 fn nothing_home() -> MockRig {
     let mut mock = MockRig::at_rest();
     for movement in [

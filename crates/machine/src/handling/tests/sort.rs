@@ -38,7 +38,6 @@ fn loaded(bin: Bin) -> MockRig {
     mock
 }
 
-/// Moves over the bin and reads its beam afterwards.
 fn over(bin: Bin, count: u16) -> (Sort, MockRig) {
     let mut mock = loaded(bin);
     let sort = step(Sort::Loaded, &mut mock, false);
@@ -51,7 +50,6 @@ fn over(bin: Bin, count: u16) -> (Sort, MockRig) {
     (sort, mock)
 }
 
-/// Opens the fingers; the part falls.
 fn falling(bin: Bin, count: u16) -> (Sort, MockRig) {
     let (sort, mut mock) = over(bin, count);
     mock.recorded = 1;
@@ -295,7 +293,6 @@ fn never_opened() -> MockRig {
     mock
 }
 
-/// Lets the time pass without a count of the beam.
 fn time_is_over(mock: &mut MockRig) {
     let since = mock.ledger.fall().map(|it| it.since).unwrap();
     mock.now = RigTime(since.0 + 1_500_001);

@@ -27,7 +27,6 @@ fn read_once() -> MockRig {
     mock
 }
 
-/// Returns the write of one word to the board.
 fn armed(mock: &MockRig) -> Act {
     Act::Set(vec![(mock.points.output(DigitalOut::Arm), true)])
 }

@@ -16,8 +16,8 @@ fn jam() -> Alarm {
 }
 
 fn states(list: &Annunciator) -> Vec<(String, Condition)> {
-    let of = |one: &crate::station::annunciator::Standing| one.condition;
-    list.standing()
+    let of = |one: &crate::station::annunciator::ListedAlarm| one.condition;
+    list.listed()
         .iter()
         .map(|one| (one.alarm.code.name(), of(one)))
         .collect()
@@ -47,7 +47,7 @@ fn an_alarm_ends_when_acknowledged_and_without_cause() {
             );
             assert!(list.acknowledge(Some("door_open")));
         }
-        assert!(list.standing().is_empty());
+        assert!(list.listed().is_empty());
     }
 }
 
@@ -90,14 +90,14 @@ fn the_first_alarm_is_first_out_and_repeats_count() {
     list.raise(&door(), RigTime(2));
     assert!(!list.raise(&jam(), RigTime(3)), "it stands already");
     let listed: Vec<_> = list
-        .standing()
+        .listed()
         .iter()
         .map(|one| (one.first_out, one.count))
         .collect();
     assert_eq!(listed, [(true, 2), (false, 1)]);
     list.cleared();
     assert!(list.raise(&jam(), RigTime(4)), "it came again");
-    assert!(!list.standing()[0].first_out, "the door was open before");
+    assert!(!list.listed()[0].first_out, "the door was open before");
 }
 
 #[test]
@@ -107,9 +107,9 @@ fn a_shelved_alarm_returns_after_its_time() {
     let until = RigTime(0) + Span::ms(60_000);
     assert!(list.shelve("door_open", until) && !list.shelve("air_lost", until));
     list.unshelve(RigTime(59_999_999));
-    assert!(list.standing()[0].shelved_until.is_some());
+    assert!(list.listed()[0].shelved_until.is_some());
     list.unshelve(until);
-    assert!(list.standing()[0].shelved_until.is_none());
+    assert!(list.listed()[0].shelved_until.is_none());
 }
 
 #[test]
@@ -124,10 +124,10 @@ fn unacknowledged_alarms_survive_a_restart() {
         list.stopping(Reaction::Abort).is_none(),
         "its cause is found out anew"
     );
-    assert!(list.standing()[0].shelved_until.is_some());
+    assert!(list.listed()[0].shelved_until.is_some());
     list.unshelve(RigTime(10));
-    assert!(list.standing()[0].shelved_until.is_none());
-    assert_eq!(list.standing()[0].count, 3);
+    assert!(list.listed()[0].shelved_until.is_none());
+    assert_eq!(list.listed()[0].count, 3);
 }
 
 #[test]
@@ -135,7 +135,7 @@ fn every_miscounted_part_raises_its_own_alarm() {
     let mut list = Annunciator::default();
     assert!(list.raise(&Alarm::beam(Bin::RETEST, 2), RigTime(1)));
     assert!(list.raise(&Alarm::beam(Bin::PASS, 0), RigTime(2)));
-    let standing = list.standing();
-    assert_eq!((standing.len(), standing[0].count), (1, 2));
-    assert!(standing[0].alarm.args.get("bin") == Some("pass"));
+    let listed = list.listed();
+    assert_eq!((listed.len(), listed[0].count), (1, 2));
+    assert!(listed[0].alarm.args.get("bin") == Some("pass"));
 }

@@ -32,7 +32,7 @@ fn read(part: &ReferencePart, off: Parameter, deviations: f64) -> TestRecord {
         let by = if parameter == off { deviations } else { 0.0 };
         let reading = Reading {
             value: certified.value + by * u.hypot(certified.u),
-            unit: parameter.definition().unit,
+            unit: parameter.facts().definition.unit,
             budget: Budget::default().with("test", u),
         };
         record.found::<Sample>(parameter, reading, []);
@@ -110,7 +110,7 @@ fn after_a_failed_check_only_reference_parts_run() {
     assert_eq!(machine.station.outer(), State::Held);
     machine.order(Order::Command(Command::Unhold)).unwrap();
     assert_eq!(kinds(&mut machine), ["golden"], "the gate attended closed");
-    let failed = machine.station.annunciator().standing();
+    let failed = machine.station.annunciator().listed();
     assert_eq!(failed[0].alarm.code, AlarmCode::ReferenceCheckFailed);
 }
 
@@ -142,7 +142,7 @@ fn a_check_due_by_time_holds_the_line() {
         !made.is_empty() && !made.contains(&"golden".to_owned()),
         "{made:?}"
     );
-    let due = &machine.station.annunciator().standing()[0].alarm;
+    let due = &machine.station.annunciator().listed()[0].alarm;
     assert!(due.code == AlarmCode::ReferenceCheckDue && due.args.get("serial") == Some("G-12-1"));
     machine.order(Order::Command(Command::Unhold)).unwrap();
     assert_eq!(

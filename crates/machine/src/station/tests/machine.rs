@@ -361,7 +361,6 @@ impl Machine {
         }
     }
 
-    /// Places the next part of the magazine in the nest.
     fn insert(&mut self) {
         let specimen = self.magazine.pop_front().unwrap();
         let kelvin = [

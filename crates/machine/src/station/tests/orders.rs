@@ -28,7 +28,7 @@ fn until(machine: &mut Machine, state: State) {
     let list: Vec<_> = machine
         .station
         .annunciator()
-        .standing()
+        .listed()
         .iter()
         .map(|one| one.alarm.text(Lang::En))
         .collect();
@@ -121,19 +121,15 @@ fn a_stuck_part_goes_to_retest_with_one_row() {
     give(&mut machine, Command::Reset);
     until(&mut machine, State::Idle);
     assert_eq!(machine.landed, [(1, Bin::RETEST)]);
-    let turns_with = |what: &str| {
+    let turns = |what: &str| {
         machine
             .turns
             .iter()
             .filter(|it| it.output.contains(what))
             .count()
     };
-    assert_eq!(
-        turns_with("Interrupted { ordinal: 1"),
-        1,
-        "its row is corrected"
-    );
-    assert_eq!(turns_with("judged: [Judged"), 1, "it was judged once");
+    assert_eq!(turns("Interrupted { ordinal: 1"), 1, "its row is corrected");
+    assert_eq!(turns("judged: [Judged"), 1, "it was judged once");
 }
 
 #[test]
@@ -249,10 +245,7 @@ fn an_empty_magazine_suspends_the_line() {
 fn between_lots_nothing_starts() {
     let mut machine = Machine::between_lots();
     for _ in 0..500 {
-        assert!(
-            machine.turn().rig.motions.is_empty(),
-            "no motion without an order"
-        );
+        assert!(machine.turn().rig.motions.is_empty(), "motion unordered");
     }
     assert_eq!(machine.station.outer(), State::Stopped);
     give(&mut machine, Command::Reset);

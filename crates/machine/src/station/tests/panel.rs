@@ -10,7 +10,6 @@ use units::Span;
 
 type Pressed = Vec<(Command, Result<(), Refused>)>;
 
-/// Returns an attended machine in `Stopped`.
 fn stopped() -> Machine {
     let mut machine = Machine::attended(None, vec![Specimen::MissingPin; 50]);
     turns(&mut machine, 2_000);
@@ -96,8 +95,8 @@ fn a_held_button_orders_once_and_raises_an_alarm() {
     let pressed = turns(&mut machine, 6_000);
     assert_eq!(pressed.len(), 1, "{pressed:?}");
     let active = |machine: &Machine| {
-        let standing = machine.station.annunciator().standing();
-        let mut stuck = standing
+        let listed = machine.station.annunciator().listed();
+        let mut stuck = listed
             .iter()
             .filter(|one| one.alarm.code == AlarmCode::ButtonStuck);
         stuck.any(|one| one.is_active())

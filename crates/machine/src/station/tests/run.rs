@@ -89,7 +89,7 @@ fn more_turns_than_needed_change_nothing() {
 }
 
 #[test]
-fn the_same_inputs_give_the_same_wants() {
+fn equal_inputs_give_equal_output() {
     let mut machine = Machine::new(Some(4), MIXED.to_vec());
     machine.run();
     let mut again = station(Some(4), &machine.mock);

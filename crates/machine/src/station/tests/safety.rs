@@ -10,7 +10,6 @@ use crate::station::turn::{Ending, TurnOutput};
 use texts::Lang;
 use units::Span;
 
-/// Runs until the nest holds a part under test.
 fn under_test() -> Machine {
     let mut machine = Machine::new(Some(3), vec![Specimen::MissingPin; 3]);
     for _ in 0..3000 {

@@ -6,7 +6,6 @@ use crate::handling::Place;
 use crate::handling::moves::Move;
 use crate::handling::tests::wiring;
 use crate::handling::trouble::Trouble;
-use crate::handling::trouble::Trouble;
 use crate::handling::wear::Wearing;
 use crate::rig::axis::AxisStation;
 use crate::rig::bin::Bin;

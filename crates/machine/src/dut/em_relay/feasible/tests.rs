@@ -3,11 +3,12 @@
 
 use super::super::bins;
 use super::super::{Parameter, Strategy};
-use super::{hindrance, nominal_v_per_s};
+use super::{check, hindrance, nominal_v_per_s};
 use crate::dut::Recipe;
 use crate::dut::accuracy::AccuracySettings;
 use crate::dut::em_relay::points::{AnalogOut, Points};
 use crate::dut::recipe::DeviceRecipe;
+use crate::rig::fault::Fault;
 use crate::rig::settings::RigSettings;
 use crate::rig::wiring::{Module, Wiring};
 use serde::Deserialize;
@@ -19,7 +20,6 @@ struct Promised {
     accuracy: AccuracySettings,
 }
 
-/// The default plant.
 fn plant() -> (Wiring, AccuracySettings) {
     let settings: RigSettings = toml::from_str(RIG).unwrap();
     let promised: Promised = toml::from_str(RIG).unwrap();
@@ -47,6 +47,13 @@ fn recipe(strategy: Strategy) -> Recipe {
     recipe
 }
 
+fn feasible(recipe: &Recipe, wiring: &Wiring, accuracy: &AccuracySettings) -> Result<(), Fault> {
+    let DeviceRecipe::EmRelay(relay) = &recipe.device else {
+        panic!("a relay");
+    };
+    check(relay, &recipe.limits, wiring, accuracy)
+}
+
 fn module<'a>(wiring: &'a mut Wiring, name: &str) -> &'a mut Module {
     let mut modules = wiring.modules.iter_mut();
     modules.find(|module| module.name == name).unwrap()
@@ -56,11 +63,10 @@ fn module<'a>(wiring: &'a mut Wiring, name: &str) -> &'a mut Module {
 fn refused(strategy: Strategy, change: impl Fn(&mut Wiring)) -> [String; 3] {
     let (mut wiring, accuracy) = plant();
     change(&mut wiring);
-    let fault = recipe(strategy).feasible(&wiring, &accuracy).unwrap_err();
+    let fault = feasible(&recipe(strategy), &wiring, &accuracy).unwrap_err();
     [fault.key, fault.found, fault.expected]
 }
 
-/// Strategies that the changed plant cannot perform.
 fn hindered(change: impl Fn(&mut Wiring)) -> Vec<Strategy> {
     let (mut wiring, accuracy) = plant();
     change(&mut wiring);
@@ -79,7 +85,7 @@ fn the_default_plant_performs_every_strategy() {
     assert_eq!(hindered(|_| {}), []);
     let (wiring, accuracy) = plant();
     for strategy in Strategy::ALL {
-        recipe(strategy).feasible(&wiring, &accuracy).unwrap();
+        feasible(&recipe(strategy), &wiring, &accuracy).unwrap();
     }
     let rate = |output| nominal_v_per_s(&wiring, points(&wiring).source(output));
     assert_eq!(rate(AnalogOut::SupplyCoarse), 96.0);
@@ -96,7 +102,7 @@ fn a_rig_without_a_bin_for_relays_is_refused() {
         let removed = settings.bin.remove(bin.name()).unwrap();
         settings.digital_in.remove(&removed.beam);
         let wiring = Wiring::resolve(&settings, crate::dut::FIXTURES).unwrap();
-        let fault = recipe.feasible(&wiring, &accuracy).unwrap_err();
+        let fault = feasible(&recipe, &wiring, &accuracy).unwrap_err();
         assert_eq!(fault.key, "kind");
         assert!(
             fault.expected.ends_with(&format!("no bin.{bin}")),
@@ -181,9 +187,9 @@ fn an_early_stop_needs_a_limit() {
         panic!("a relay");
     };
     relay.test.strategy.contact.stops_early = true;
-    recipe.feasible(&wiring, &accuracy).unwrap();
+    feasible(&recipe, &wiring, &accuracy).unwrap();
     recipe.limits = toml::from_str("[contact_resistance_no_mohm]\nhigh = 100.0\n").unwrap();
-    let fault = recipe.feasible(&wiring, &accuracy).unwrap_err();
+    let fault = feasible(&recipe, &wiring, &accuracy).unwrap_err();
     assert_eq!(fault.key, "test.strategy.contact.stops_early");
     assert!(fault.expected.contains("contact_resistance_nc_mohm"));
 }
@@ -216,7 +222,7 @@ fn limits_narrower_than_the_guard_bands_are_refused() {
         );
         let mut recipe = recipe(Strategy::CoarseFine);
         recipe.limits = toml::from_str(&table).unwrap();
-        recipe.feasible(&wiring, &accuracy)
+        feasible(&recipe, &wiring, &accuracy)
     };
     // 0.18 K of thermometer and part are 0.28 ohm of a 400 ohm coil: 2 U is 1.12 ohm.
     around(400.0, 1.3).unwrap();

@@ -103,7 +103,7 @@ pub(super) fn acts_off(
     acts.extend(select_diode(context, false));
     if board.armature != Armature::Rested {
         acts.extend((!board.armature.is_released()).then_some(Act::Mark));
-        // The line skips unchanged values: the step to 0 V shows a module that ignores writes.
+        // The line skips unchanged values; this change of level reveals a module that ignores writes.
         acts.extend(stopped.then(|| board.supply.step_to(Volt(0.0))));
         acts.extend(rest(context, &mut board.supply));
     }
@@ -173,7 +173,7 @@ pub(super) fn conclude(
     }
     let part = record.own.track?;
     let reference = context.reference_temperature();
-    match resistance(&scans, ohm, part, reference, context.scan_doubt()) {
+    match resistance(&scans, ohm, part, reference, context.scan_uncertainty()) {
         Some(reading) => {
             let coil = Ohm(reading.value / to_reference(part, reference));
             record.own.probe_contact = probe_contact(context, &readings.coil, coil);

@@ -21,7 +21,6 @@ const EMF_MOVES_V: f64 = 30e-6 * 50.0;
 /// Settling time of source and amplifier.
 pub(super) const SOURCE_SETTLES: Span = Span::ms(1);
 
-/// Sets the direction of the source and reads the drop.
 fn directed(context: &Context, reverse: bool) -> [Act; 4] {
     [
         set(&[(SourceReverse, reverse)]),

@@ -4,7 +4,7 @@ use crate::dut::Recipe;
 use crate::dut::accuracy::AccuracySettings;
 use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::calibration::{Calibration, Overshoot};
-use crate::dut::em_relay::coil::ScanDoubt;
+use crate::dut::em_relay::coil::ScanUncertainty;
 use crate::dut::em_relay::overshoot::OvershootModel;
 use crate::dut::em_relay::points::{AnalogIn, Points};
 use crate::dut::em_relay::recipe::{CoilChannels, RelayRecipe};
@@ -24,11 +24,11 @@ const LSB_V: f64 = 20.0 / 4096.0;
 
 /// Assumed overshoot of a 96 V/s ramp before the first reference part; it only places the first fine ramp. A ramp of
 /// another range overshoots for as long, and so by as many volts as its rate is higher.
-const UNTAUGHT_OPERATE: Volt = Volt(0.85);
-const UNTAUGHT_RELEASE: Volt = Volt(-1.05);
+const ASSUMED_OPERATE: Volt = Volt(0.85);
+const ASSUMED_RELEASE: Volt = Volt(-1.05);
 
 /// Assumed overshoot of a 1.5 V/s ramp, operate and release.
-const UNTAUGHT_FINE: [Volt; 2] = [Volt(0.03), Volt(-0.02)];
+const ASSUMED_FINE: [Volt; 2] = [Volt(0.03), Volt(-0.02)];
 
 /// Recipe, calibration and instrument data of a test.
 #[derive(Debug, Clone)]
@@ -89,8 +89,8 @@ impl Context {
     }
 
     /// Returns the uncertainty terms of a coil scan.
-    pub fn scan_doubt(&self) -> ScanDoubt {
-        ScanDoubt {
+    pub fn scan_uncertainty(&self) -> ScanUncertainty {
+        ScanUncertainty {
             reading_v: self.reading_u_v(),
             offset_v: self.calibration.coil_input.offset_v.u,
             temperature_k: self.accuracy.rtd_k.hypot(self.accuracy.part_minus_track_k),
@@ -141,7 +141,8 @@ impl Context {
 
     /// Returns the overshoot of a direction; before any reference part an assumed one with a wide scatter.
     pub fn overshoot(&self, direction: Direction) -> Overshoot {
-        let ((operate, release), [rising, falling]) = (self.untaught(), self.untaught_fine_v());
+        let ((operate, release), [rising, falling]) =
+            (self.assumed_models(), self.assumed_fine_v());
         match (direction, self.calibration.overshoots) {
             (Direction::Rising, Some(overshoots)) => overshoots.operate,
             (Direction::Falling, Some(overshoots)) => overshoots.release,
@@ -151,15 +152,15 @@ impl Context {
     }
 
     /// Returns the models of both coarse ramps before the first part, operate and release.
-    pub fn untaught(&self) -> (OvershootModel, OvershootModel) {
+    pub fn assumed_models(&self) -> (OvershootModel, OvershootModel) {
         let scale = self.scale();
         let model = |guess| OvershootModel::guess(scale.of_range(guess).0, scale.coil());
-        (model(UNTAUGHT_OPERATE), model(UNTAUGHT_RELEASE))
+        (model(ASSUMED_OPERATE), model(ASSUMED_RELEASE))
     }
 
     /// Returns the assumed overshoot of both fine ramps before the first part, operate and release, volts.
-    pub fn untaught_fine_v(&self) -> [f64; 2] {
-        UNTAUGHT_FINE.map(|volts| self.scale().of_range(volts).0)
+    pub fn assumed_fine_v(&self) -> [f64; 2] {
+        ASSUMED_FINE.map(|volts| self.scale().of_range(volts).0)
     }
 
     /// Returns the scale of the constants of this kind for the coil and its range.

@@ -15,12 +15,11 @@ use units::{Second, Span, Volt};
 /// Fine ramps that may miss the threshold before the test is void.
 const ATTEMPTS: u8 = 5;
 
-/// Outcome of a fine ramp.
-enum Met {
+enum Outcome {
     /// Indicated voltage at the contact event, and length of the gate.
-    At(Volt, Second),
+    Found(Volt, Second),
     /// Event missed; the plan holds the interval for the next ramp.
-    Again,
+    Repeat,
 }
 
 pub(super) fn conclude(
@@ -29,9 +28,9 @@ pub(super) fn conclude(
     state: &mut TestState,
     (direction, attempt): (Direction, u8),
 ) -> Option<Stage> {
-    let (seen, gate) = match meet(context, readings, state, (direction, attempt))? {
-        Met::At(seen, gate) => (seen, gate),
-        Met::Again => return Some(again(context, state, (direction, attempt))),
+    let (seen, gate) = match evaluate(context, readings, state, (direction, attempt))? {
+        Outcome::Found(seen, gate) => (seen, gate),
+        Outcome::Repeat => return Some(repeat(context, state, (direction, attempt))),
     };
     if direction == Direction::Rising {
         state.board.armature = Armature::Operated;
@@ -55,12 +54,12 @@ pub(super) fn conclude(
 }
 
 /// Compares a fine ramp with the contact event; returns `None` when that ends the test.
-fn meet(
+fn evaluate(
     context: &Context,
     readings: &Readings,
     state: &mut TestState,
     (direction, attempt): (Direction, u8),
-) -> Option<Met> {
+) -> Option<Outcome> {
     let TestState {
         board,
         plan,
@@ -90,20 +89,20 @@ fn meet(
         Direction::Rising => Pace::of(record).run_up(v_per_s),
         Direction::Falling => scale.of_range(SETTLED_DOWN),
     };
-    let hasty = met && (seen - sent.start).abs() < scale.of_range(JUMP) + settled;
-    if met && stopped.is_none() && !hasty {
-        return Some(Met::At(seen, gate));
+    let premature = met && (seen - sent.start).abs() < scale.of_range(JUMP) + settled;
+    if met && stopped.is_none() && !premature {
+        return Some(Outcome::Found(seen, gate));
     }
     let operated = direction == Direction::Rising;
     let inputs = readings.boards.last();
     let early = inputs.is_some_and(|it| it.no_closed == operated);
     let next = match stopped {
         Some(end) if met => searched.around(end),
-        Some(_) | None => searched.next(direction, early || hasty),
+        Some(_) | None => searched.next(direction, early || premature),
     };
     plan.expect(direction, next);
     if attempt + 1 < ATTEMPTS {
-        return Some(Met::Again);
+        return Some(Outcome::Repeat);
     }
     record.stop(Finding::ThresholdNotFound(direction).with(ATTEMPTS.to_string()));
     None
@@ -111,7 +110,11 @@ fn meet(
 
 /// Returns the stage after a miss: a ramp over the neighbouring interval; after the second miss, or when that interval
 /// is wide, a search by halves.
-fn again(context: &Context, state: &mut TestState, (direction, attempt): (Direction, u8)) -> Stage {
+fn repeat(
+    context: &Context,
+    state: &mut TestState,
+    (direction, attempt): (Direction, u8),
+) -> Stage {
     let expected = state.plan.expected(direction);
     let wide = expected.is_some_and(|interval| interval.is_wide(context.scale()));
     if attempt + 1 == AFTER_SEARCH || attempt + 1 < AFTER_SEARCH && wide {

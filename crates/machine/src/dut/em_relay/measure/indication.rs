@@ -5,10 +5,10 @@ use super::{Context, Ramp};
 use crate::dut::em_relay::Strategy;
 use crate::dut::em_relay::calibration::Overshoot;
 use crate::dut::em_relay::coil::to_reference;
-use crate::dut::em_relay::overshoot::Shown;
+use crate::dut::em_relay::overshoot::CoarseResults;
 use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::strategy::{from_two_rates, growth_s};
-use crate::dut::em_relay::threshold::{Direction, RampDoubt, quasi_static};
+use crate::dut::em_relay::threshold::{Direction, RampUncertainty, quasi_static};
 use crate::dut::em_relay::timing::counts;
 use crate::gauge::budget::Reading;
 use units::{Celsius, Second, Volt};
@@ -29,7 +29,7 @@ pub(super) fn gate0(context: &Context, readings: &Readings) -> Option<Second> {
 /// The learned scatter already contains resolution, repeatability and slope error, so the budget does not add them.
 pub(super) fn coarse_reading(
     context: &Context,
-    (seen, overshoot): (Shown, Overshoot),
+    (seen, overshoot): (CoarseResults, Overshoot),
     part: Celsius,
     direction: Direction,
 ) -> Option<Reading> {
@@ -37,14 +37,14 @@ pub(super) fn coarse_reading(
     // The learned scatter includes that of the fine operation, which this value does not have.
     let operation_v = context.operation_v();
     let own_v = (predicted.u_v.powi(2) - operation_v.powi(2)).max(operation_v.powi(2));
-    let doubt = RampDoubt {
+    let uncertainty = RampUncertainty {
         slope_v_per_s: context.calibration.coarse_v_per_s,
         slope_known: true,
         operation_v: 0.0,
         refresh: Second(0.0),
         // The model is learned from indications, gain error included.
         level_share: 0.0,
-        ..doubt(context)
+        ..uncertainty(context)
     };
     let reference = context.reference_temperature();
     let own = overshoot.own_v(predicted.volts, direction);
@@ -55,7 +55,7 @@ pub(super) fn coarse_reading(
         overshoot,
         part,
         reference,
-        doubt,
+        uncertainty,
     );
     reading.budget = reading.budget.with_random("strategy", own_v.sqrt());
     predicted.alike.then_some(reading)
@@ -78,7 +78,7 @@ pub(super) fn fine_reading(
         overshoot,
         part,
         reference,
-        doubt(context),
+        uncertainty(context),
     );
     if context.strategy(parameter) == Strategy::TwoRates && ramps.coarse.indicated.0.is_finite() {
         let rates = [
@@ -101,8 +101,8 @@ pub(super) fn fine_reading(
 }
 
 /// Returns the uncertainty terms of a fine ramp beyond those of the reference parts.
-fn doubt(context: &Context) -> RampDoubt {
-    RampDoubt {
+fn uncertainty(context: &Context) -> RampUncertainty {
+    RampUncertainty {
         slope_v_per_s: context.calibration.fine_v_per_s,
         slope_known: false,
         operation_v: context.operation_v(),

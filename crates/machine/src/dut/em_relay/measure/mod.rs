@@ -50,8 +50,9 @@ use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::points::DigitalOut;
 use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::{Finding, Parameter};
-use crate::dut::procedure::Progress;
-use crate::dut::{Characteristic, Verdict};
+use crate::dut::procedure::{MEASURING, Progress, TestProcedure};
+use crate::dut::record::{Own, Stop};
+use crate::dut::{self, Characteristic, Kind};
 use crate::gauge::Judgement;
 use crate::instrument::act::{Doing, JobDone, Runner};
 use crate::rig::image::Image;
@@ -128,70 +129,7 @@ impl Test {
         self
     }
 
-    /// Returns the number of tests of this part so far, including this one.
-    pub fn number(&self) -> u8 {
-        self.number
-    }
-
-    /// Returns the longest time of the conditioning, 0 without any.
-    pub fn conditioning(&self) -> Span {
-        conditioning::longest(self.context.relay.test.conditioning_operations)
-    }
-
-    /// Returns the stage under way, for views.
-    pub fn stage(&self) -> Stage {
-        self.stage
-    }
-
-    /// Returns the selected supply range and the one that was read back, once they differ.
-    pub fn range_mismatch(&self) -> Option<&RangeMismatch> {
-        self.range_mismatch.as_ref()
-    }
-
-    /// Returns the record so far.
-    pub fn record(&self) -> &TestRecord {
-        &self.state.record
-    }
-
-    /// Takes the record out of a finished test.
-    pub fn take_record(&mut self) -> TestRecord {
-        std::mem::take(&mut self.state.record)
-    }
-
-    /// Advances the test as far as `done` and `image` allow.
-    pub fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress {
-        let mut done = done;
-        loop {
-            match self.runner.step(now, done.take(), image) {
-                Doing::Done => {}
-                Doing::Trouble(why) => {
-                    self.abandon(why);
-                    if self.stage == Stage::Off {
-                        return Progress::Judged;
-                    }
-                    self.enter(Stage::Off, now);
-                    self.stages.clear();
-                    continue;
-                }
-                other @ (Doing::Job(_) | Doing::Busy | Doing::Wait(_)) => {
-                    return Progress::Doing(other);
-                }
-            }
-            self.conclude(now);
-            if self.stages.front() == Some(&Stage::Off) {
-                self.add_closure();
-            }
-            if self.stages.front() == Some(&Stage::Off) {
-                self.add_slow_repeats();
-            }
-            let Some(stage) = self.stages.pop_front() else {
-                return Progress::Judged;
-            };
-            self.enter(stage, now);
-        }
-    }
-
-    /// Aborts the stage under way, whose acts have not all run: the state of the board becomes unknown.
+    /// Gives up the stage under way: its acts have not left the board as they were to.
     fn abandon(&mut self, why: String) {
         let seen = std::mem::take(&mut self.runner.readings.trace);
         self.state.record.trace.append(seen);
@@ -205,7 +143,6 @@ impl Test {
         self.runner = Runner::after(self.context.wired(acts), now, &self.runner);
     }
 
-    /// Concludes the stage that has just ended and plans the next ones.
     fn conclude(&mut self, now: RigTime) {
         let record = &mut self.state.record;
         record.spent.add(self.runner.spent());
@@ -261,10 +198,10 @@ impl Test {
             return;
         }
         self.slow_done = true;
-        let doubtful = |judgement: &Judgement| matches!(judgement, Judgement::Conditional(_));
+        let conditional = |judgement: &Judgement| matches!(judgement, Judgement::Conditional(_));
         let again: Vec<Stage> = verdict::judged(&self.context, &self.state.record)
             .iter()
-            .filter(|(_, judgement)| self.context.thorough || doubtful(judgement))
+            .filter(|(_, judgement)| self.context.thorough || conditional(judgement))
             .map(|(parameter, _)| parameter.facts().stage)
             .collect();
         // In the order of the test: a fine release ramp right after the timed operation would start from another flux
@@ -274,23 +211,81 @@ impl Test {
             round.for_each(|stage| self.stages.push_front(*stage));
         }
     }
+}
 
-    /// Returns each result against its limit.
-    pub fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
+impl TestProcedure for Test {
+    fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress {
+        let mut done = done;
+        loop {
+            match self.runner.step(now, done.take(), image) {
+                Doing::Done => {}
+                Doing::Trouble(why) => {
+                    self.abandon(why);
+                    if self.stage == Stage::Off {
+                        return Progress::Judged;
+                    }
+                    self.enter(Stage::Off, now);
+                    self.stages.clear();
+                    continue;
+                }
+                other @ (Doing::Job(_) | Doing::Busy | Doing::Wait(_)) => {
+                    return Progress::Doing(other);
+                }
+            }
+            self.conclude(now);
+            if self.stages.front() == Some(&Stage::Off) {
+                self.add_closure();
+            }
+            if self.stages.front() == Some(&Stage::Off) {
+                self.add_slow_repeats();
+            }
+            let Some(stage) = self.stages.pop_front() else {
+                return Progress::Judged;
+            };
+            self.enter(stage, now);
+        }
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::EmRelay
+    }
+
+    fn range_mismatch(&self) -> Option<&RangeMismatch> {
+        self.range_mismatch.as_ref()
+    }
+
+    fn number(&self) -> u8 {
+        self.number
+    }
+
+    fn stage(&self) -> &'static str {
+        self.stage.name()
+    }
+
+    fn why_stopped(&self) -> Option<&Stop> {
+        self.state.record.why_stopped()
+    }
+
+    fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
         let judged = verdict::judged(&self.context, &self.state.record);
         let general = |(parameter, judgement): (Parameter, _)| (parameter.into(), judgement);
         judged.into_iter().map(general).collect()
     }
 
-    /// Returns the verdict of the part.
-    pub fn verdict(&self) -> Verdict {
-        let expected = Parameter::ALL.map(Characteristic::from);
-        let stop = self.state.record.why_stopped();
-        Verdict::after(stop, &expected, self.judgements())
+    fn record(&self) -> dut::TestRecord {
+        self.state.record.clone().of_any_kind(Own::EmRelay)
+    }
+
+    fn take_record(&mut self) -> dut::TestRecord {
+        std::mem::take(&mut self.state.record).of_any_kind(Own::EmRelay)
+    }
+
+    /// The stages that measure, and the conditioning.
+    fn longest(&self) -> Span {
+        MEASURING + conditioning::longest(self.context.relay.test.conditioning_operations)
     }
 }
 
-/// Returns one write of outputs of the interface board.
 fn set(outputs: &[(DigitalOut, bool)]) -> Act {
     Act::Board(outputs.to_vec())
 }

@@ -92,7 +92,7 @@ pub(super) fn conclude_coarse(
 ) -> Option<Stage> {
     let (board, record) = (&mut state.board, &mut state.record);
     if readings.seen.first() != Some(&true) {
-        // The part has operated at nominal voltage before.
+        // The part operates at nominal voltage: its threshold lies above this ramp.
         record.stop(match readings.boards.last() {
             Some(board) if board.no_closed => Finding::MadeOutsideWindow,
             Some(_) => Finding::AboveCoarseRamp,
@@ -111,7 +111,7 @@ pub(super) fn conclude_coarse(
     let coarse = stopped_at(start, span, seen).unwrap_or(seen);
     board.armature = Armature::Operated;
     board.still_ramping = turning(context, coarse - start);
-    let shown = record.shown(coarse, Direction::Rising);
+    let shown = record.coarse_results(coarse, Direction::Rising);
     record.own.operate = Some(Ramp::coarse_only(shown));
     after_coarse(context, readings, state, (shown, Direction::Rising))
         .then_some(Stage::OperateFine(0))

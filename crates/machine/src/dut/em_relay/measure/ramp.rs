@@ -7,7 +7,7 @@ use super::search::parameter;
 use super::state::TestState;
 use crate::dut::em_relay::calibration::Overshoot;
 use crate::dut::em_relay::coil::to_reference;
-use crate::dut::em_relay::overshoot::Shown;
+use crate::dut::em_relay::overshoot::CoarseResults;
 use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::scale::Scale;
 use crate::dut::em_relay::threshold::Direction;
@@ -69,7 +69,7 @@ impl Expected {
     }
 
     /// Returns the interval that a coarse ramp and the overshoot model predict.
-    pub fn after(coarse: &Shown, overshoot: &Overshoot, scale: Scale) -> Self {
+    pub fn after(coarse: &CoarseResults, overshoot: &Overshoot, scale: Scale) -> Self {
         let predicted = overshoot.coarse.of(coarse);
         let sd_v = predicted.u_v.min(scale.of_range(WIDEST_SD).0);
         Self::new(coarse.indicated - Volt(predicted.volts), sd_v)
@@ -151,7 +151,7 @@ pub(super) fn after_coarse(
     context: &Context,
     readings: &Readings,
     state: &mut TestState,
-    (seen, direction): (Shown, Direction),
+    (seen, direction): (CoarseResults, Direction),
 ) -> bool {
     let Some(part) = state.record.own.track else {
         return false;

@@ -1,7 +1,7 @@
 //! Observations of a relay test in addition to its results: ramps, temperature, probe contact.
 
 use crate::dut::em_relay::Parameter;
-use crate::dut::em_relay::overshoot::Shown;
+use crate::dut::em_relay::overshoot::CoarseResults;
 use crate::dut::em_relay::threshold::Direction;
 use crate::dut::record;
 use crate::gauge::Judgement;
@@ -11,21 +11,21 @@ use units::{Celsius, Ohm, Volt};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ramp {
     /// Results of the part when its coarse ramp ended, including its indication.
-    pub coarse: Shown,
+    pub coarse: CoarseResults,
     /// Indicated voltage of the fine ramp.
     pub fine: Option<Volt>,
 }
 
 impl Ramp {
     /// Returns the indication of a coarse ramp without a fine one.
-    pub fn coarse_only(coarse: Shown) -> Self {
+    pub fn coarse_only(coarse: CoarseResults) -> Self {
         Self { coarse, fine: None }
     }
 
     /// Returns the indication of a fine ramp without a coarse one.
     pub fn fine_only(seen: Volt) -> Self {
         Self {
-            coarse: Shown::NOTHING,
+            coarse: CoarseResults::NONE,
             fine: Some(seen),
         }
     }
@@ -67,12 +67,12 @@ impl TestRecord {
     }
 
     /// Returns the results of the part when a coarse ramp ends at `indicated`.
-    pub fn shown(&self, indicated: Volt, direction: Direction) -> Shown {
+    pub fn coarse_results(&self, indicated: Volt, direction: Direction) -> CoarseResults {
         let value = |parameter| {
             self.result(parameter)
                 .map_or(f64::NAN, |reading| reading.value)
         };
-        Shown {
+        CoarseResults {
             indicated,
             operate: match direction {
                 Direction::Rising => indicated,

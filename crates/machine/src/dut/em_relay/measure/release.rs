@@ -25,7 +25,7 @@ pub const SEAL: f64 = 0.95;
 const LAST_REFRESHES: f64 = 1.5;
 /// Time for operation, bounce and flux to settle.
 const SEAL_TIME: Span = Span::ms(25);
-/// Decay of the seal's flux to a few per cent before a fine ramp begins; the model of the coarse overshoot includes
+/// Time for the seal's flux to decay to a few per cent before a fine ramp; the model of the coarse overshoot includes
 /// what remains after [`SETTLES`].
 const FINE_SETTLES: Span = Span::ms(35);
 /// Latest break after the end of a ramp that still counts.
@@ -140,7 +140,7 @@ pub(super) fn conclude_coarse(
     };
     let window = context.scale().of_range(WINDOW);
     let coarse = indicated((start, window), coarse_v_per_s, gate, Direction::Falling);
-    let shown = record.shown(coarse, Direction::Falling);
+    let shown = record.coarse_results(coarse, Direction::Falling);
     record.own.release = Some(Ramp::coarse_only(shown));
     after_coarse(context, readings, state, (shown, Direction::Falling))
         .then_some(Stage::ReleaseFine(0))

@@ -49,7 +49,6 @@ fn good(value: f64, gain: f64) -> Sample {
     sample(AnalogIn::ContactDrop, Quality::Good, value, gain)
 }
 
-/// Drop at the converter.
 fn drop_of(quality: Quality, volts: f64) -> Sample {
     sample(AnalogIn::ContactDrop, quality, volts, 1.0)
 }
@@ -106,7 +105,6 @@ fn watched(seen: bool, board: BoardInputs, gate_ms: f64) -> Readings {
     }
 }
 
-/// Test of a part whose temperature is known.
 fn at_23_c() -> TestState {
     let mut state = TestState::new(&context());
     state.record.own.track = Some(Celsius(23.0));

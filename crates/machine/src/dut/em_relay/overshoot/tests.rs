@@ -3,12 +3,12 @@
 use super::*;
 
 /// A part of a lot whose overshoot of 0.85 V follows its times, and less so its threshold; every part differs.
-fn part(at: u32) -> (Shown, Volt) {
+fn part(at: u32) -> (CoarseResults, Volt) {
     let turn = |by: f64| (f64::from(at) * by).fract() - 0.5;
     let (slow, holding, high) = (0.16 * turn(0.618), 0.15 * turn(0.382_7), 0.11 * turn(0.271));
     let fine = 7.88 * (1.0 + high);
     let overshoot = 0.85 + 0.9 * slow - 0.1 * holding + 0.3 * high;
-    let shown = Shown {
+    let shown = CoarseResults {
         indicated: Volt(fine + overshoot),
         operate: Volt(fine + overshoot),
         operate_ms: 4.7 * (1.0 + slow),
@@ -91,7 +91,7 @@ fn fitted_terms_reduce_the_degrees_of_freedom() {
 fn extrapolation_widens_with_the_squared_distance() {
     let law = taught(40, 0.002);
     let (lot, fine) = part(3);
-    let at = |further: f64| Shown {
+    let at = |further: f64| CoarseResults {
         indicated: Volt(fine.0 * (1.0 + further)),
         operate: Volt(fine.0 * (1.0 + further)),
         ..lot
@@ -108,12 +108,12 @@ fn only_parts_like_the_lot_are_alike() {
         let strangers = (500..600).filter(|at| !law.of(&part(*at).0).alike);
         assert!(strangers.count() < 5, "{parts} parts");
         let (lot, fine) = part(3);
-        let weak = Shown {
+        let weak = CoarseResults {
             indicated: Volt(fine.0 * 0.83),
             operate: Volt(fine.0 * 0.83),
             ..lot
         };
-        let slow = Shown {
+        let slow = CoarseResults {
             operate_ms: 9.0,
             ..lot
         };
@@ -129,12 +129,12 @@ fn a_part_with_a_missing_result_teaches_nothing() {
     let law = taught(20, 0.0);
     let (shown, fine) = part(3);
     for odd in [
-        Shown::NOTHING,
-        Shown {
+        CoarseResults::NONE,
+        CoarseResults {
             release_ms: f64::NAN,
             ..shown
         },
-        Shown {
+        CoarseResults {
             coil_ohm: f64::INFINITY,
             ..shown
         },
@@ -160,7 +160,7 @@ fn one_outlier_bends_the_line_within_its_uncertainty() {
     };
     let (odd, odder) = (after(0.1), after(0.5));
     assert!((odd.volts - odder.volts).abs() < 1e-9);
-    assert!(odd.volts - before.volts < ODD * before.u_v);
+    assert!(odd.volts - before.volts < OUTLIER * before.u_v);
     assert!(odd.u_v > before.u_v, "{odd:?} {before:?}");
 }
 
@@ -184,7 +184,7 @@ fn persistent_disagreement_bends_the_line() {
 #[test]
 fn the_prior_expects_a_late_armature_to_overshoot() {
     let (one, _) = part(0);
-    let late = Shown {
+    let late = CoarseResults {
         operate_ms: one.operate_ms * 1.1,
         ..one
     };

@@ -3,7 +3,7 @@
 
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::measure::{Ramp, TestRecord};
-use crate::dut::em_relay::overshoot::Shown;
+use crate::dut::em_relay::overshoot::CoarseResults;
 use crate::dut::em_relay::reference_part::{ReferenceRun, interim};
 use crate::dut::em_relay::settings::ReferencePart;
 use crate::dut::em_relay::tests::context;
@@ -47,7 +47,7 @@ fn the_fine_overshoot_is_the_mean_shift() {
         .overshoots(
             &reference_parts(),
             &context().accuracy,
-            context().untaught(),
+            context().assumed_models(),
         )
         .unwrap();
     assert!((overshoots.operate.fine_v.value - 0.014).abs() < 1e-9);
@@ -66,17 +66,17 @@ fn certificates_are_compared_at_the_parts_temperature() {
         let mut record = tested(part, 0.0, 0.0, 0.0);
         record.own.track = Some(warm);
         record.own.operate = Some(Ramp {
-            coarse: Shown::NOTHING,
+            coarse: CoarseResults::NONE,
             fine: Some(Volt(part.operate_voltage_v.value * scale + 0.012)),
         });
         record.own.release = Some(Ramp {
-            coarse: Shown::NOTHING,
+            coarse: CoarseResults::NONE,
             fine: Some(Volt(part.release_voltage_v.value * scale - 0.012)),
         });
         run.learn(part, REFERENCE, &record, &record.own).unwrap();
     }
     let overshoots = run
-        .overshoots(&parts, &context().accuracy, context().untaught())
+        .overshoots(&parts, &context().accuracy, context().assumed_models())
         .unwrap();
     assert!((overshoots.operate.fine_v.value - 0.012).abs() < 1e-9);
     assert!((overshoots.release.fine_v.value + 0.012).abs() < 1e-9);
@@ -89,7 +89,7 @@ fn an_outlier_is_named() {
         .overshoots(
             &reference_parts(),
             &context().accuracy,
-            context().untaught(),
+            context().assumed_models(),
         )
         .unwrap_err();
     let why = why.to_string();
@@ -103,7 +103,7 @@ fn fewer_than_three_reference_parts_teach_no_overshoot() {
         let overshoots = run.overshoots(
             &reference_parts(),
             &context().accuracy,
-            context().untaught(),
+            context().assumed_models(),
         );
         assert_eq!(overshoots.is_ok(), usable, "{n} parts");
     }
@@ -116,7 +116,7 @@ fn more_reference_parts_reduce_the_overshoot_uncertainty() {
         let overshoots = run.overshoots(
             &reference_parts(),
             &context().accuracy,
-            context().untaught(),
+            context().assumed_models(),
         );
         overshoots.unwrap().operate.fine_v.u
     };
@@ -155,7 +155,7 @@ fn an_incomplete_reference_part_is_refused_by_name() {
 
 #[test]
 fn an_interim_overshoot_proves_nothing() {
-    let overshoot = interim(context().untaught().0, 0.0);
+    let overshoot = interim(context().assumed_models().0, 0.0);
     assert_eq!(
         (overshoot.fine_v.value, overshoot.fine_v.u),
         (0.0, f64::INFINITY)

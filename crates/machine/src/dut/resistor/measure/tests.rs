@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
+use crate::dut::Verdict;
 use crate::dut::reason::{Code, Reason};
 use crate::dut::recipe::DeviceRecipe;
 use crate::gauge::Side;
@@ -27,7 +28,7 @@ fn device(limits: &str) -> Device {
     let wiring = wiring();
     let points = Points::resolve(&wiring).unwrap();
     Device {
-        promise: Promise {
+        channel: ChannelAccuracy {
             accuracy: context.accuracy,
             volt_per_ampere: wiring.analog_in(points.current).gain,
         },
@@ -39,8 +40,8 @@ fn device(limits: &str) -> Device {
     }
 }
 
-/// Tests a part of `ohm`; `None` reads over range. Returns the test and the number of readings.
-fn tested(limits: &str, ohm: Option<f64>) -> (Test, usize) {
+/// Tests a part that draws what `ohm` draws; `None` reads over range. Returns the test and how often it was read.
+fn tested(limits: &str, ohm: Option<f64>) -> (Procedure, usize) {
     let mut mock = MockRig::at_rest();
     let device = device(limits);
     let order = TestOrder {
@@ -60,7 +61,7 @@ fn tested(limits: &str, ohm: Option<f64>) -> (Test, usize) {
                     // Volts at the terminal: full scale reads as over range.
                     mock.volts_at(
                         device.points.current,
-                        ohm.map_or(10.0, |ohm| LEVEL_V / ohm * device.promise.volt_per_ampere),
+                        ohm.map_or(10.0, |ohm| LEVEL_V / ohm * device.channel.volt_per_ampere),
                     );
                 }
                 done = Some(JobDone {
@@ -91,8 +92,8 @@ fn a_resistor_inside_its_limits_passes_on_one_reading() {
 fn a_resistor_near_its_limit_is_read_again() {
     let (test, reads) = tested(LIMITS, Some(409.8));
     assert_eq!(reads, 3);
-    let doubt = Reason::not_proven(Parameter::Resistance.into(), Side::High);
-    assert_eq!(test.verdict(), Verdict::Fail(vec![doubt]));
+    let inconclusive = Reason::not_proven(Parameter::Resistance.into(), Side::High);
+    assert_eq!(test.verdict(), Verdict::Fail(vec![inconclusive]));
 }
 
 #[test]
@@ -100,7 +101,7 @@ fn open_and_short_fail_into_the_coil_bin() {
     for (ohm, finding) in [(Some(1e7), Finding::Open), (None, Finding::Short)] {
         let (test, _) = tested(LIMITS, ohm);
         let verdict = test.verdict();
-        assert_eq!(verdict.reasons()[0].code, Code::Resistor(finding));
+        assert_eq!(verdict.reasons()[0].code, Code::Finding(finding.into()));
         assert_eq!(verdict.bin(), Bin::named("coil"));
     }
 }

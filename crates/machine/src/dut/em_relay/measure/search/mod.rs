@@ -15,7 +15,7 @@ mod trial;
 use super::pace::Pace;
 use super::plan::Plan;
 use super::{Context, TestRecord};
-use crate::dut::em_relay::overshoot::Shown;
+use crate::dut::em_relay::overshoot::CoarseResults;
 use crate::dut::em_relay::threshold::Direction;
 use crate::dut::em_relay::{Parameter, Strategy};
 pub(super) use outcome::conclude;
@@ -178,7 +178,7 @@ fn overshot(context: &Context, record: &TestRecord, direction: Direction) -> Opt
     let overshoot_v = context
         .overshoot(direction)
         .coarse
-        .of(&Shown::NOTHING)
+        .of(&CoarseResults::NONE)
         .volts;
     let [near, end] = [MOST_OVERSHOOT, LEAST_OVERSHOOT]
         .map(|overshoots| indicated - Volt(overshoots * overshoot_v));

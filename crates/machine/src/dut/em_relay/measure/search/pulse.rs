@@ -8,7 +8,7 @@ use crate::dut::em_relay::threshold::Direction;
 use units::{Celsius, Volt};
 
 /// Share of the level by which a step operates below the quasi-static threshold: the armature swings over.
-const KINDER: f64 = 0.0035;
+const SWING_SHARE: f64 = 0.0035;
 
 /// Returns the level of the pulse; the expected threshold when the recipe sets no limit.
 pub(super) fn level(context: &Context, direction: Direction, part: Celsius) -> Volt {
@@ -25,7 +25,7 @@ pub(super) fn level(context: &Context, direction: Direction, part: Celsius) -> V
         + at_part_v * (context.calibration.level.gain.u + context.contact_share())
         + context.calibration.level.offset_v.u
         + context.operation_v();
-    Volt(at_part_v - sign * (2.0 * u_v + at_part_v * KINDER))
+    Volt(at_part_v - sign * (2.0 * u_v + at_part_v * SWING_SHARE))
 }
 
 /// Returns the consequence of the pulse.

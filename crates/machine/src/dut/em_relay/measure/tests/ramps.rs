@@ -7,7 +7,7 @@ use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::calibration::{Calibration, Overshoots};
 use crate::dut::em_relay::measure::pace::Pace;
 use crate::dut::em_relay::measure::ramp::Expected;
-use crate::dut::em_relay::overshoot::{OvershootModel, Shown};
+use crate::dut::em_relay::overshoot::{CoarseResults, OvershootModel};
 use crate::dut::em_relay::points::DigitalOut;
 use crate::dut::em_relay::reference_part::interim;
 
@@ -183,9 +183,8 @@ fn a_slow_armature_gets_longer_waits() {
     );
 }
 
-/// Results of a part of the lot.
-fn shown() -> Shown {
-    Shown {
+fn shown() -> CoarseResults {
+    CoarseResults {
         indicated: Volt(8.75),
         operate: Volt(8.75),
         operate_ms: 4.7,

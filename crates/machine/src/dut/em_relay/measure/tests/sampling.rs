@@ -15,7 +15,6 @@ use crate::rig::sample::Sample;
 use std::sync::Arc;
 use units::{Unit, Volt};
 
-/// The default recipe with changed strategies.
 fn with(change: impl Fn(&mut Strategies)) -> Context {
     let mut context = context();
     change(&mut Arc::make_mut(&mut context.relay).test.strategy);
@@ -26,7 +25,6 @@ fn acts_of(stage: Stage, context: &Context) -> Vec<Act> {
     at_23_c().enter(stage, context)
 }
 
-/// The direction of the source at each reading of the drop.
 fn directions(acts: &[Act]) -> Vec<bool> {
     let (mut reverse, mut read) = (false, Vec::new());
     for act in acts {

@@ -7,7 +7,7 @@ use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::bins;
 use crate::dut::em_relay::measure::ramp::Expected;
 use crate::dut::em_relay::measure::{Context, TestState};
-use crate::dut::em_relay::overshoot::{OvershootModel, Shown};
+use crate::dut::em_relay::overshoot::{CoarseResults, OvershootModel};
 use crate::dut::em_relay::points::DigitalOut;
 use crate::dut::em_relay::readings::{BoardInputs, Readings};
 use crate::dut::em_relay::threshold::Direction;
@@ -92,7 +92,7 @@ fn an_unmoved_contact_is_stuck_unless_the_coil_fails() {
 fn a_fine_ramp_with_event_gives_the_threshold() {
     let mut state = ramp_from(7.8, 0.2);
     state.record.own.operate = Some(Ramp {
-        coarse: state.record.shown(Volt(8.8), Direction::Rising),
+        coarse: state.record.coarse_results(Volt(8.8), Direction::Rising),
         fine: None,
     });
     let readings = watched(true, PULLED, 40.0);
@@ -287,7 +287,7 @@ fn on_the_ramp() -> Context {
         let late_ms = 0.8 * turn(0.618);
         let overshoot = Volt(0.85 + 0.096 * late_ms);
         let indicated = Volt(8.87 + 0.9 * turn(0.382_7));
-        let shown = Shown {
+        let shown = CoarseResults {
             indicated,
             operate: indicated,
             operate_ms: 4.7 + late_ms,

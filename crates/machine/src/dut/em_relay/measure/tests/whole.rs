@@ -2,7 +2,6 @@
 
 use super::super::{Armature, Progress, Stage, Test, TestRecord, TestState, order};
 use super::{at_23_c, context};
-use crate::dut::card::Card;
 use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::card::STEPS;
@@ -10,7 +9,9 @@ use crate::dut::em_relay::measure::ramp::Expected;
 use crate::dut::em_relay::points::{AnalogOut, DigitalOut};
 use crate::dut::em_relay::threshold::Direction;
 use crate::dut::em_relay::{Parameter, parameter};
+use crate::dut::procedure::TestProcedure;
 use crate::dut::reason::{Code, Reason};
+use crate::dut::recipe::KindRecipe;
 use crate::dut::verdict::{Bin, Verdict};
 use crate::gauge::budget::{Budget, Reading};
 use crate::handling::tests::MockRig;
@@ -74,13 +75,12 @@ fn the_card_follows_the_order_of_the_test() {
             firsts.push(step);
         }
     }
-    let steps = Card::of(&context().recipe).steps.into_iter();
+    let steps = context().relay.card().steps.into_iter();
     let steps: Vec<&str> = steps.map(|it| it.name).collect();
     assert_eq!(steps, STEPS);
     assert_eq!(steps[2..steps.len() - 1], firsts);
 }
 
-/// Acts of every stage in the order of a good part.
 fn all_acts() -> Vec<(Stage, Vec<Act>)> {
     let stages = stages_of_a_good_part().into_iter();
     stages.map(|(stage, acts, _)| (stage, acts)).collect()
@@ -248,7 +248,6 @@ fn every_commanded_voltage_is_within_its_output() {
     }
 }
 
-/// The job that reads the board.
 fn board() -> Job {
     let inputs = MockRig::unread().points.board.inputs.clone();
     Job::Read(inputs.into_iter().map(Point::Input).collect())
@@ -326,7 +325,7 @@ fn refused_replies_and_restarted_modules_void_the_part() {
     assert_eq!(test.verdict().bin(), Bin::RETEST);
     let restarted = fails_at(&Job::Restarts);
     assert_eq!(restarted.verdict().name(), "void");
-    assert_eq!(restarted.stage(), Stage::Off);
+    assert_eq!(restarted.stage, Stage::Off);
 }
 
 #[test]
@@ -345,7 +344,7 @@ fn measured(values: &[(Parameter, f64)]) -> Test {
     for (parameter, value) in values {
         let reading = Reading {
             value: *value,
-            unit: parameter.definition().unit,
+            unit: parameter.facts().definition.unit,
             budget: Budget::default().with("test", 0.005),
         };
         test.state.record.found::<Sample>(*parameter, reading, []);
@@ -353,7 +352,6 @@ fn measured(values: &[(Parameter, f64)]) -> Test {
     test
 }
 
-/// A good part.
 const GOOD: [(Parameter, f64); 9] = [
     (Parameter::CoilResistance, 400.0),
     (Parameter::OperateVoltage, 7.88),

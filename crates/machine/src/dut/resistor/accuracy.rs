@@ -17,14 +17,14 @@ const PROBES_OHM: f64 = 0.2;
 
 /// Accuracies of the one channel of the test.
 #[derive(Debug, Clone, Copy)]
-pub struct Promise {
+pub struct ChannelAccuracy {
     /// Accuracies of the makers.
     pub accuracy: AccuracySettings,
     /// Volts at the terminal per ampere.
     pub volt_per_ampere: f64,
 }
 
-impl Promise {
+impl ChannelAccuracy {
     fn offset_v(&self) -> f64 {
         self.accuracy.ai_offset_pct_of_range / 100.0 * FULL_SCALE_V
     }
