@@ -15,7 +15,8 @@ use super::signal::{Commands, In, Out, Source};
 use super::specimen::Specimen;
 use super::table::BoardTable;
 use crate::config::References;
-use supply::CoilSupply;
+use crate::truth::Overdrive;
+use supply::{CoilSupply, SupplyRange};
 
 /// Largest resistance between force and sense at which a pin counts as connected.
 const KELVIN_OHM: f64 = 5.0;
@@ -168,6 +169,16 @@ impl Board {
         self.divider = 1.0 + per_mille * 1e-3;
     }
 
+    /// Makes the range relays of the supply stick in a range.
+    pub fn stick(&mut self, range: SupplyRange) {
+        self.supply.stick(range);
+    }
+
+    /// Returns every overdrive of a coil so far, in order of time.
+    pub fn overdrives(&self) -> &[Overdrive] {
+        self.supply.overdrives()
+    }
+
     /// Returns the total open time of a gate, microseconds.
     pub fn gate_open_us(&self, gate: usize) -> f64 {
         self.gates.open_us(gate, self.now_us)
@@ -284,6 +295,8 @@ impl Board {
         self.edges_of_drive();
         let drive_off = !self.switches.drive && !self.commands.is_on(Out::CoilDrive);
         self.supply.follow(now, self.commands, drive_off);
+        let on_coil = part.as_deref().is_some_and(|it| self.drives(it));
+        self.supply.watch(now, self.commands, on_coil);
         if let Some(part) = part.as_deref_mut() {
             let supply = self.coil_supply(part);
             part.drive(now, supply);
@@ -327,12 +340,21 @@ impl Board {
         }
     }
 
+    /// Checks whether the drive reaches the coil of the part.
+    fn drives(&self, part: &Specimen) -> bool {
+        self.driving && self.meets(part) && !self.commands.is_on(Out::ReferenceCoil)
+    }
+
+    /// Checks whether both coil probes touch the coil of the part.
+    fn meets(&self, part: &Specimen) -> bool {
+        self.touching && part.pins().input()
+    }
+
     fn coil_supply(&self, part: &Specimen) -> Supply {
-        let meets = self.touching && part.pins().input();
-        if self.driving && meets && !self.commands.is_on(Out::ReferenceCoil) {
+        if self.drives(part) {
             return Supply::Volts(self.behind_probes_v(part.input_ohm()));
         }
-        let suppression_v = if self.clamp_diode && meets {
+        let suppression_v = if self.clamp_diode && self.meets(part) {
             self.table.diode_v
         } else {
             self.zener_v()

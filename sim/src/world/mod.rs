@@ -35,10 +35,10 @@ pub mod wiring;
 
 use std::path::PathBuf;
 
-use crate::config::{ConfigError, RigFile, read_rig, read_world};
+use crate::config::{ConfigError, RigFile, SupplyRange, read_rig, read_world};
 use crate::error::SimError;
 use crate::terminal::Plant;
-use crate::truth::BodyTruth;
+use crate::truth::{BodyTruth, Overdrive};
 use axis::Axis;
 use board::Board;
 use board::supply::CoilSupply;
@@ -84,6 +84,7 @@ pub struct World {
     edges: Vec<(Wire<In>, Edges)>,
     drift: Option<f64>,
     film: Option<f64>,
+    stuck_range: Option<SupplyRange>,
     noise_seed: Option<u64>,
     clock_hz: f64,
     now_us: u64,
@@ -105,6 +106,7 @@ impl World {
         let magazine = Magazine::load(options, &table, &faults, track, ambient)?;
         let drift = faults.values(Fault::Drift).next();
         let film = faults.values(Fault::ProbeFilm).next();
+        let stuck_range = faults.stuck_range(&rig.supply_ranges, &path)?;
         let noise_seed = faults.noise_seed();
         let wiring = Wiring::new(&rig);
         let supply = CoilSupply::new(&table.board, &wiring, rig.supply_ranges.clone());
@@ -133,10 +135,14 @@ impl World {
             edges,
             drift,
             film,
+            stuck_range,
             noise_seed,
             clock_hz,
             now_us: 0,
         };
+        if !options.reference_parts {
+            world.stick_range();
+        }
         world.begin_edges();
         Ok(world)
     }
@@ -173,6 +179,11 @@ impl World {
     /// Returns a description of each crash, in order of time.
     pub fn crashes(&self) -> Vec<String> {
         self.mechanism.crashes().to_vec()
+    }
+
+    /// Returns every overdrive of a coil, in order of time.
+    pub fn overdrives(&self) -> &[Overdrive] {
+        self.board.overdrives()
     }
 
     /// Activates a fault; `value` is the number of a part.
@@ -246,6 +257,13 @@ impl World {
         }
     }
 
+    /// Makes the range relays of the supply stick, if the fault still waits.
+    fn stick_range(&mut self) {
+        if let Some(range) = self.stuck_range.take() {
+            self.board.stick(range);
+        }
+    }
+
     /// Updates board, sensors and edges after a change in the mechanism.
     fn mechanism_changed(&mut self) {
         let now = self.now_us;
@@ -266,6 +284,7 @@ impl World {
             if let Some(film) = self.film.take() {
                 self.board.soil(film / 100.0);
             }
+            self.stick_range();
         }
     }
 }

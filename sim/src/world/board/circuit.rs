@@ -62,8 +62,8 @@ impl Board {
             };
             return volts / self.reference_coil_ohm;
         }
-        let meets = |it: &&Specimen| self.touching && it.pins().input();
-        part.filter(meets).map_or(0.0, |it| it.input_a())
+        part.filter(|it| self.meets(it))
+            .map_or(0.0, |it| it.input_a())
     }
 
     pub(super) fn coil_v(&self, part: Option<&Specimen>) -> f64 {

@@ -6,6 +6,7 @@
 
 use serde::Deserialize;
 
+use crate::truth::Overdrive;
 use crate::world::signal::{Commands, Out, Source};
 use crate::world::table::BoardTable;
 use crate::world::wiring::Wiring;
@@ -39,6 +40,9 @@ pub struct CoilSupply {
     ramp_start_mv: f64,
     arm_level_v: f64,
     moved: bool,
+    stuck: bool,
+    overdriving: bool,
+    overdrives: Vec<Overdrive>,
 }
 
 impl CoilSupply {
@@ -63,6 +67,9 @@ impl CoilSupply {
             ramp_start_mv: table.ramp_start_mv,
             arm_level_v: 0.0,
             moved: false,
+            stuck: false,
+            overdriving: false,
+            overdrives: Vec::new(),
         }
     }
 
@@ -86,11 +93,41 @@ impl CoilSupply {
         let at_zero = self.volts.iter().all(|v| v.abs() * 1000.0 < self.zero_mv);
         let to = self
             .commanded(commands)
-            .filter(|to| drive_off && at_zero && *to != self.range);
+            .filter(|to| drive_off && at_zero && !self.stuck && *to != self.range);
         self.change = to.map(|to| match self.change {
             Some((moving_to, at_us)) if moving_to == to => (to, at_us),
             Some(_) | None => (to, now_us + self.change_us),
         });
+    }
+
+    /// Makes the relays stick in a range from now on.
+    pub fn stick(&mut self, range: SupplyRange) {
+        self.range = range;
+        self.change = None;
+        self.stuck = true;
+    }
+
+    /// Records an overdrive when it begins; `on_coil` means that the drive reaches a coil.
+    pub fn watch(&mut self, now_us: f64, commands: Commands, on_coil: bool) {
+        // The drive may outlast its command by the lead of the contact source; that is no new drive.
+        let excess = self
+            .commanded(commands)
+            .filter(|_| on_coil && commands.is_on(Out::CoilDrive))
+            .filter(|to| to.code != self.range.code && self.volts() > self.volts_in(*to));
+        let before = std::mem::replace(&mut self.overdriving, excess.is_some());
+        if let Some(to) = excess.filter(|_| !before) {
+            self.overdrives.push(Overdrive {
+                t_us: now_us as u64,
+                commanded: to.code,
+                range: self.range.code,
+                supply_v: self.volts(),
+            });
+        }
+    }
+
+    /// Returns every overdrive so far, in order of time.
+    pub fn overdrives(&self) -> &[Overdrive] {
+        &self.overdrives
     }
 
     /// Returns the instant at which the relays reach another range, microseconds.

@@ -3,6 +3,7 @@
 use super::hand::{Hand, options};
 use super::resistor::{dummies, folder};
 use super::*;
+use crate::journal::{Entry, JournaledWorld};
 
 /// Code, factor, volts and milliampere of each range in `config/rig.toml`.
 const RANGES: [(u8, f64, f64, f64); 4] = [
@@ -218,4 +219,130 @@ fn a_rig_without_ranges_has_limits_of_its_world() {
         hand.world.analog_out(source, 10.0);
     }
     near(hand.value("supply_voltage"), 20.0, "supply");
+}
+
+/// Returns a rig whose range relays stick at this code, with a part on its probes and range 1 commanded.
+fn stuck(code: f64, reference_parts: bool) -> Hand {
+    let mut hand = Hand::new(WorldOptions {
+        faults: vec![("supply_range_stuck".into(), code)],
+        ..options(reference_parts)
+    });
+    hand.feed();
+    hand
+}
+
+#[test]
+fn relays_stuck_above_overdrive_a_coil() {
+    let mut hand = stuck(2.0, false);
+    assert_eq!(hand.range_set(), 2);
+    hand.level(12.0);
+    assert!(hand.world.overdrives().is_empty(), "not driven");
+    hand.set("coil_drive", true);
+    hand.wait(1.0);
+    near(hand.value("supply_voltage"), 24.0, "supply");
+    near(
+        hand.value("coil_voltage"),
+        12.0,
+        "reads like the commanded range",
+    );
+    hand.level(12.1);
+    let expected = Overdrive {
+        t_us: hand.t_us - 1000,
+        commanded: 1,
+        range: 2,
+        supply_v: 24.0,
+    };
+    assert_eq!(hand.world.overdrives(), [expected], "one drive, one entry");
+}
+
+#[test]
+fn relays_stuck_below_do_not_overdrive() {
+    let mut hand = stuck(0.0, false);
+    assert_eq!(hand.range_set(), 0);
+    hand.level(12.0);
+    hand.set("coil_drive", true);
+    hand.wait(1.0);
+    near(hand.value("supply_voltage"), 6.0, "supply");
+    assert!(hand.world.overdrives().is_empty());
+}
+
+#[test]
+fn a_drive_without_a_coil_overdrives_nothing() {
+    let mut hand = stuck(3.0, false);
+    hand.set("reference_coil", true);
+    hand.level(5.0);
+    hand.set("coil_drive", true);
+    hand.wait(1.0);
+    assert!(hand.world.overdrives().is_empty());
+    hand.set("reference_coil", false);
+    assert_eq!(hand.world.overdrives().len(), 1);
+}
+
+#[test]
+fn a_lead_of_the_source_is_no_overdrive() {
+    let mut hand = Hand::new(options(false));
+    hand.feed();
+    hand.level(12.0);
+    hand.set("source_on", true);
+    hand.set("coil_drive", true);
+    hand.set("select_no", true);
+    hand.wait(40.0);
+    assert!(hand.value("contact_current") > 0.9);
+    let source_on_no = 1 << 2 | 1 << 3;
+    hand.world.digital_out("board_do", source_on_no);
+    hand.wait(1.0);
+    assert!(hand.value("coil_voltage") > 11.9, "the drive lasts longer");
+    hand.wait(10.0);
+    assert!(hand.world.overdrives().is_empty());
+}
+
+#[test]
+fn the_range_sticks_after_the_reference_parts() {
+    let mut hand = stuck(3.0, true);
+    assert_eq!(hand.range_set(), 1);
+    for _ in 0..5 {
+        hand.sort(7);
+        hand.feed();
+    }
+    assert_eq!(hand.range_set(), 3);
+}
+
+#[test]
+fn an_overdriven_coil_is_in_the_journal() {
+    let mut hand = stuck(3.0, false);
+    hand.level(12.0);
+    let bits = hand.bits["board_do"];
+    let mut journal = JournaledWorld::new(Box::new(hand.world));
+    let entries = journal.listen();
+    journal.digital_out("board_do", bits | 1);
+    journal.advance(hand.t_us + 1000);
+    let entries: Vec<_> = entries.try_iter().collect();
+    let [Entry::Output { .. }, Entry::CoilOverdriven(overdrive)] = entries[..] else {
+        panic!("{entries:?}");
+    };
+    assert_eq!((overdrive.commanded, overdrive.range), (1, 3));
+    let line = serde_json::to_value(&entries[1]).unwrap();
+    assert_eq!(line["type"], "coil_overdriven");
+    assert_eq!(line["supply_v"], 48.0);
+}
+
+#[test]
+fn an_unknown_range_cannot_be_stuck() {
+    let stuck_in = |code, folder: &std::path::Path| {
+        let options = WorldOptions {
+            config_dir: folder.into(),
+            faults: vec![("supply_range_stuck".into(), code)],
+            recipe: "dummy".into(),
+            ..options(false)
+        };
+        World::build(&options).unwrap_err().to_string()
+    };
+    let (ranged, single) = (folder("resistor"), without_ranges());
+    let error = stuck_in(4.0, ranged.path());
+    assert!(
+        error.ends_with("found 4, expected the code of a range: 0, 1, 2, 3"),
+        "{error}"
+    );
+    let error = stuck_in(0.0, single.path());
+    assert!(error.ends_with("the rig has no [supply_range]"), "{error}");
 }
