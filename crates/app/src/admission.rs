@@ -136,7 +136,7 @@ fn pass_gates(
     order: &LotOrder,
 ) -> Result<(), NotAdmitted> {
     if let Some(nominal_v) = recipe.device.part().nominal_v
-        && plant.lot.golden_check.any()
+        && plant.lot.reference_check.any()
         && plant.golden.of_nominal(nominal_v).next().is_none()
     {
         return Err(NotAdmitted::NoReferencePart {

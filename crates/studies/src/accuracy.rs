@@ -33,7 +33,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
 /// Returns the greatest acceptable rms error in the unit of [`unit`]: that of a threshold is a share of the nominal voltage.
 fn allowed(parameter: Parameter, nominal_v: f64) -> f64 {
     let allowed = parameter.facts().allowed_rms;
-    match parameter.definition().unit {
+    match parameter.facts().definition.unit {
         Unit::Volt => (allowed * nominal_v * 1e4).round() / 1e3,
         _ => allowed,
     }

@@ -201,7 +201,8 @@ pub fn transient(cases: &Path, rtol: f64, json: bool) -> anyhow::Result<String> 
 /// # Errors
 /// A recipe that is refused.
 pub fn nominal_v(config: &Path, recipe: &str) -> anyhow::Result<f64> {
-    Ok(load_recipe(config, recipe)?.rated_v().unwrap_or(f64::NAN))
+    let part = load_recipe(config, recipe)?.device.part();
+    Ok(part.nominal_v.unwrap_or(f64::NAN))
 }
 
 /// What the recipe admits; a limit that it does not set is infinite.

@@ -8,6 +8,7 @@ use bus::Pace;
 use config::Plant;
 use history::UnacknowledgedAlarm;
 use machine::dut::Recipe;
+use machine::dut::device::Rig;
 use machine::guard::{Actuator, Guard, PartSize};
 use machine::handling::mechanism::Mechanism;
 use machine::handling::moves::Strokes;
@@ -48,9 +49,13 @@ pub(super) fn cycle(
             .collect::<Vec<(AxisStation, f64)>>(),
     };
     let calibrated = calibration.is_some();
+    let rig = Rig {
+        wiring: &wiring,
+        ..plant.rig()
+    };
     let device = recipe
         .device
-        .on_rig(Arc::clone(&recipe), &plant.rig(), calibration)?;
+        .on_rig(Arc::clone(&recipe), &rig, calibration)?;
     let plan = Plan {
         attended,
         between_lots: context.purpose.rests_in(),

@@ -9,7 +9,7 @@ use machine::handling::wear::Uses;
 
 /// What a run takes over.
 pub(super) struct TakenOver {
-    /// A calibration that is still valid.
+    /// A calibration that is still valid, made in the supply range of the recipe.
     pub calibration: Option<Calibration>,
     /// Uses of what wears.
     pub worn: Uses,
@@ -28,6 +28,10 @@ impl TakenOver {
             Purpose::Calibration => None,
             Purpose::Lot | Purpose::BetweenLots(_) => valid_calibration(store, context)?,
         };
+        let (plant, recipe) = (context.plant, context.recipe);
+        let wiring = recipe.wired(&plant.wiring, &plant.accuracy)?;
+        let range = wiring.supply_range.as_ref();
+        let calibration = calibration.filter(|it| range.is_none_or(|range| it.holds_in(range)));
         // What an earlier run left inside was inside of another rig.
         let left = match simulated && is_new(context) {
             true => Inside::default(),

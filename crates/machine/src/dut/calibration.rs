@@ -2,6 +2,7 @@
 
 use super::em_relay;
 use crate::gauge::factor::Named;
+use crate::rig::supply::SupplyRange;
 use serde::{Deserialize, Serialize};
 
 /// Factors of a kind, as the history keeps them.
@@ -45,6 +46,13 @@ impl Calibration {
     pub fn nominal_v(&self) -> f64 {
         match self {
             Self::EmRelay(relay) => relay.nominal_v,
+        }
+    }
+
+    /// True when it holds with the supply in this range.
+    pub fn holds_in(&self, range: &SupplyRange) -> bool {
+        match self {
+            Self::EmRelay(relay) => relay.range_factor == range.factor,
         }
     }
 

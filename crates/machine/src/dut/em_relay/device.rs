@@ -54,6 +54,7 @@ impl Device {
         })?;
         let nominal_v = relay.part.nominal_v;
         let range = rig.wiring.supply_range.clone();
+        assert!(range.is_some(), "a relay on a supply without a range");
         let factor = range.as_ref().map_or(1.0, |range| range.factor);
         let calibration = stored.unwrap_or_else(|| Calibration::unknown(nominal_v, factor));
         let context = Context {

@@ -53,6 +53,8 @@ impl Device {
         rig: &Rig,
     ) -> Result<Self, MissingPoint> {
         let points = Points::resolve(rig.wiring)?;
+        let range = rig.wiring.supply_range.clone();
+        assert!(range.is_some(), "a resistor on a supply without a range");
         let terminal = rig.wiring.analog_in(points.current);
         let mask = rig.wiring.module(terminal.module).mask.unwrap_or(u8::MAX);
         Ok(Self {
@@ -64,10 +66,7 @@ impl Device {
                 volt_per_ampere: terminal.gain,
             },
             channels: mask.count_ones(),
-            range: rig
-                .wiring
-                .range_selector()
-                .zip(rig.wiring.supply_range.clone()),
+            range: rig.wiring.range_selector().zip(range),
         })
     }
 
