@@ -17,6 +17,7 @@ use super::threshold::Direction;
 use crate::dut::device::{CalibrationFault, DeviceUnderTest, Made, Rig, TestOrder};
 use crate::dut::record::{Own, TestRecord};
 use crate::dut::{self, Procedure, Recipe};
+use crate::gauge::budget::COVERAGE_FACTOR;
 use crate::instrument::act::Act;
 use crate::instrument::readings::Readings;
 use crate::rig::point::MissingPoint;
@@ -248,8 +249,13 @@ impl DeviceUnderTest for Device {
         self.probe_contact.mean()
     }
 
+    /// Less what the calibration of the supply level leaves in doubt (k = 2): an ohm cannot be told from the error of the
+    /// level where the coil has thousands.
     fn settled_probe_contact(&self) -> Option<Ohm> {
-        self.probe_contact.settled()
+        let Ohm(mean) = self.probe_contact.settled()?;
+        let level = self.context.calibration.level.gain;
+        let doubt = COVERAGE_FACTOR * self.context.relay.part.nominal_coil_ohm * level.u;
+        Some(Ohm((mean - doubt).max(0.0)))
     }
 }
 

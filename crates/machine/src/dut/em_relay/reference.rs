@@ -115,7 +115,7 @@ fn at_zero(context: &Context, scanned: &[AnalogIn]) -> Vec<Act> {
         [Act::SelectRange(code), Act::ConfirmRange { code, within }]
     }));
     acts.push(Act::Wait(Span::ms(200) + context.fresh(scanned.len())));
-    scans(context, scanned, &mut acts);
+    scans(context, (scanned, SCANS), &mut acts);
     acts
 }
 
@@ -123,14 +123,16 @@ fn at_zero(context: &Context, scanned: &[AnalogIn]) -> Vec<Act> {
 fn levels(context: &Context, scanned: &[AnalogIn]) -> Vec<Act> {
     let levels = Levels::of(context);
     let mut acts = Vec::new();
-    let steps = levels.steps().map(|level| vec![(SupplyLevel, level)]);
+    let steps = levels
+        .steps()
+        .map(|(level, n)| (vec![(SupplyLevel, level)], n));
     let coarse = vec![(SupplyLevel, levels.low), (SupplyCoarse, levels.span())];
-    for step in steps.chain([coarse]) {
+    for (step, n) in steps.chain([(coarse, SCANS)]) {
         acts.extend([
             Act::Supply(step),
             Act::Wait(Span::ms(60) + context.fresh(scanned.len())),
         ]);
-        scans(context, scanned, &mut acts);
+        scans(context, (scanned, n), &mut acts);
     }
     acts.extend([
         Act::Supply(vec![(SupplyCoarse, Volt(0.0))]),
@@ -145,7 +147,7 @@ fn levels(context: &Context, scanned: &[AnalogIn]) -> Vec<Act> {
         acts.extend([Act::Read(Read::Coil), wait.clone()]);
     }
     acts.push(Act::Wait(Span::ms(1500)));
-    scans(context, scanned, &mut acts);
+    scans(context, (scanned, SCANS), &mut acts);
     acts
 }
 
@@ -163,9 +165,9 @@ fn all_off() -> Act {
     Act::Board(off.map(|output| (output, false)).to_vec())
 }
 
-fn scans(context: &Context, scanned: &[AnalogIn], acts: &mut Vec<Act>) {
+fn scans(context: &Context, (scanned, n): (&[AnalogIn], usize), acts: &mut Vec<Act>) {
     let round = context.round(scanned.len());
-    for _ in 0..SCANS {
+    for _ in 0..n {
         acts.extend([Act::Read(Read::Coil), Act::Wait(round)]);
     }
 }

@@ -1,5 +1,6 @@
 //! Levels of the reference coil, within the limits of the supply range.
 
+use super::SCANS;
 use crate::dut::em_relay::measure::Context;
 use std::ops::Range;
 use units::Volt;
@@ -12,6 +13,8 @@ const LOW: f64 = 1.5 / 5.7;
 const SLOPE_MARGIN: f64 = 0.3 / 5.7;
 /// Share of the limits of a supply range that a level uses.
 const USED: f64 = 0.9;
+/// Scans where voltage or current is a small part of the range of its channel.
+const CURRENT_SCANS: usize = 4 * SCANS;
 /// Full scale of the coil converter.
 const FULL: Volt = Volt(10.0);
 /// Relative difference of two levels that are as good as one.
@@ -59,9 +62,10 @@ impl Levels {
         (self.low + margin).0..(self.high - margin).0
     }
 
-    /// Returns the levels of the level output, in order.
-    pub(super) fn steps(self) -> impl Iterator<Item = Volt> {
-        [Some(self.low), Some(self.high), self.current]
+    /// Returns the levels of the level output in order, each with the number of its scans.
+    pub(super) fn steps(self) -> impl Iterator<Item = (Volt, usize)> {
+        let current = self.current.map(|level| (level, CURRENT_SCANS));
+        [Some((self.low, SCANS)), Some((self.high, SCANS)), current]
             .into_iter()
             .flatten()
     }

@@ -36,7 +36,7 @@ impl Ohms<'_> {
             });
         };
         let offset_v = self.input.offset_v.value;
-        let u_read = context.reading_u_v() / (SCANS as f64).sqrt();
+        let u_read = context.reading_u_v() / (scans.len() as f64).sqrt();
         let (voltage_v, u_voltage_v) = self.voltage(at, scans, u_read)?;
         let current_v = current(scans, channels)? - offset_v;
         let u = (u_voltage_v / voltage_v).hypot(u_read / current_v);
@@ -63,6 +63,7 @@ impl Ohms<'_> {
         let further = (at - levels.low).0 / levels.span().0;
         let gain = self.voltage_gain * self.input.gain.value;
         let voltage_v = self.level.delivers(at).0 * gain;
-        Ok((voltage_v, 2f64.sqrt() * u_read * further))
+        let u_level = self.context.reading_u_v() / (SCANS as f64).sqrt();
+        Ok((voltage_v, 2f64.sqrt() * u_level * further))
     }
 }

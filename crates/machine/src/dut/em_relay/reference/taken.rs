@@ -71,20 +71,24 @@ pub(super) struct Taken<'a> {
 impl<'a> Taken<'a> {
     /// Sorts all scans; fails when some are missing.
     pub(super) fn of(levels: Levels, readings: &'a Readings) -> Result<Self, ReferenceFault> {
-        let steps: Vec<Volt> = levels.steps().collect();
-        let expected = (steps.len() + 3) * SCANS + RAMP_SCANS;
+        let expected = levels.steps().map(|(_, n)| n).sum::<usize>() + 3 * SCANS + RAMP_SCANS;
         let found = readings.coil.len();
         let complete = readings.drops.len() == 2 * DROPS && readings.gates.len() == 2;
         if found != expected || !complete {
             return Err(ReferenceFault::Scans { found, expected });
         }
-        let (zero, rest) = readings.coil.split_at(SCANS);
-        let (levels, rest) = rest.split_at(steps.len() * SCANS);
+        let (zero, mut rest) = readings.coil.split_at(SCANS);
+        let mut steps = Vec::new();
+        for (level, n) in levels.steps() {
+            let (scans, further) = rest.split_at(n);
+            steps.push((level, scans));
+            rest = further;
+        }
         let (coarse, rest) = rest.split_at(SCANS);
         let (ramp, fine) = rest.split_at(RAMP_SCANS);
         Ok(Self {
             zero,
-            steps: steps.into_iter().zip(levels.chunks(SCANS)).collect(),
+            steps,
             coarse,
             ramp,
             fine,
