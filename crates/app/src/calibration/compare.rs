@@ -1,14 +1,15 @@
 //! The factors of a calibration by name, and whether those found again agree with those stored.
 
 use machine::dut::Calibration;
+use machine::gauge::factor::Named;
 use std::fmt;
 use units::Unit;
 
 /// Coverage factor of what is told: about 95 %.
 pub const K: f64 = 2.0;
 
-/// Coverage factor of a comparison. Fourteen factors have to agree at once: at 2 every second rig that has not changed
-/// would fail (1 - 0.95^14), at 3 one in thirty (1 - 0.9973^14), and terms that both measurements share make it fewer.
+/// Coverage factor of a comparison. Fifteen factors have to agree at once: at 2 every second rig that has not changed
+/// would fail (1 - 0.95^15), at 3 one in 25 (1 - 0.9973^15), and terms that both measurements share make it fewer.
 pub const K_OF_ALL: f64 = 3.0;
 
 /// A factor found again.
@@ -48,9 +49,14 @@ impl fmt::Display for Compared {
     }
 }
 
-/// Factor by factor.
+/// Factor by factor; one that either calibration lacks is left out.
 pub fn compare(found: &Calibration, expected: &Calibration) -> Vec<Compared> {
-    let pairs = found.factors().into_iter().zip(expected.factors());
+    let expected = expected.factors();
+    let of_both = |found: Named| {
+        let mut named = expected.iter().filter(|it| it.name == found.name);
+        named.next().map(|expected| (found, *expected))
+    };
+    let pairs = found.factors().into_iter().filter_map(of_both);
     pairs
         .map(|(found, expected)| Compared {
             name: found.name,

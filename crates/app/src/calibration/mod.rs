@@ -2,7 +2,7 @@
 //!
 //! Both measure as a run does before its lot, with no part of a lot after the golden ones. Calibrating stores
 //! what was found. A verification stores no factors: each found factor must lie within the combined expanded
-//! uncertainty (k = 3, for fourteen must hold at once) of the stored one, and the stored calibration is marked with
+//! uncertainty (k = 3, for fifteen must hold at once) of the stored one, and the stored calibration is marked with
 //! the outcome. A rig whose calibration ran out or failed takes no lot until it was calibrated again.
 
 mod compare;
