@@ -13,7 +13,7 @@ use history::{
 use machine::dut::Recipe;
 use machine::station::trouble::Alarm;
 use machine::station::turn::Ending;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use texts::{Lang, Message};
 
@@ -32,19 +32,6 @@ pub enum NotAdmitted {
     /// There is no such recipe, it is wrong, or this plant cannot measure it.
     #[error(transparent)]
     Recipe(#[from] ConfigError),
-    /// Golden checks are asked for and nothing is certified for this coil voltage.
-    #[error(
-        "{}: [golden_check]: found a check and no golden part of {nominal_v} V, expected one in {golden}",
-        file.display()
-    )]
-    NoReferencePart {
-        /// Where the check is asked for.
-        file: PathBuf,
-        /// Nominal coil voltage of the recipe.
-        nominal_v: f64,
-        /// Where golden parts stand.
-        golden: String,
-    },
     /// A retest of a lot that nobody has run.
     #[error("--retest: found no run of lot \"{lot}\", expected one whose parts are tested again")]
     NothingToRetest {
@@ -96,9 +83,7 @@ impl NotAdmitted {
                 .with("lot", lot)
                 .with("recipe", &standing.recipe),
             Self::NothingToRetest { lot } => of("nothing_to_retest").with("lot", lot),
-            Self::Recipe(_) | Self::NoReferencePart { .. } | Self::History(_) => {
-                of("lot_not_begun").with("detail", self)
-            }
+            Self::Recipe(_) | Self::History(_) => of("lot_not_begun").with("detail", self),
         }
     }
 }
@@ -106,8 +91,8 @@ impl NotAdmitted {
 /// The recipe of a lot that may be run.
 ///
 /// # Errors
-/// The lot is held, was begun with another recipe and is not complete, there is nothing to test again, a golden
-/// check without golden parts, or a recipe that this plant cannot measure.
+/// The lot is held, was begun with another recipe and is not complete, there is nothing to test again, or a
+/// recipe that this plant cannot measure.
 pub fn admit(
     db: &Path,
     plant: &Plant,
@@ -124,27 +109,16 @@ pub fn admit(
     let recipe = load_recipe(&plant.dir, &order.recipe)?;
     plant.admit(&recipe)?;
     if purpose == Purpose::Lot {
-        pass_gates(db, plant, &recipe, order)?;
+        pass_gates(db, &recipe, order)?;
     }
     Ok(Arc::new(recipe))
 }
 
 fn pass_gates(
     db: &Path,
-    plant: &Plant,
     recipe: &Recipe,
     order: &LotOrder,
 ) -> Result<(), NotAdmitted> {
-    if let Some(nominal_v) = recipe.device.part().nominal_v
-        && plant.lot.reference_check.any()
-        && plant.golden.of_nominal(nominal_v).next().is_none()
-    {
-        return Err(NotAdmitted::NoReferencePart {
-            file: plant.dir.join("lot.toml"),
-            nominal_v,
-            golden: plant.calibration.reference_file.clone().unwrap_or_default(),
-        });
-    }
     let standing = match db.exists() {
         true => Archive::open(db)?.standing(&order.lot)?,
         false => None,

@@ -357,3 +357,6 @@ fn gate_delay(
     let count_us = 1e6 / context.reference.counter_clock_hz / 6f64.sqrt();
     Ok(Factor::new(delay, count_us / f64::from(PULSES).sqrt()))
 }
+
+#[cfg(test)]
+mod tests;

@@ -26,7 +26,7 @@ pub(super) struct Levels {
     pub(super) low: Volt,
     pub(super) high: Volt,
     /// Where the current channel of the recipe reads the reference coil best; none where that is `high`.
-    current: Option<Volt>,
+    pub(super) current: Option<Volt>,
 }
 
 impl Levels {
