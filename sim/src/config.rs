@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use crate::terminal::ModuleSpec;
+pub use crate::world::board::supply::SupplyRange;
 pub use crate::world::table::{DeviceWorld, FaultSpec, WorldTable, read_world};
 
 /// Reason why a configuration file cannot be used.
@@ -133,6 +134,8 @@ pub struct RigFile {
     pub analog_in: BTreeMap<String, Terminal>,
     /// Analog outputs by point name.
     pub analog_out: BTreeMap<String, Terminal>,
+    /// Ranges of the coil supply; empty for a rig with only one.
+    pub supply_ranges: Vec<SupplyRange>,
     /// Digital inputs by point name.
     pub digital_in: BTreeMap<String, Terminal>,
     /// Digital outputs by point name.
@@ -196,6 +199,8 @@ struct RawRig {
     module: BTreeMap<String, RawModule>,
     analog_in: BTreeMap<String, RawPoint>,
     analog_out: BTreeMap<String, RawPoint>,
+    #[serde(default)]
+    supply_range: BTreeMap<String, SupplyRange>,
     digital_in: BTreeMap<String, RawPoint>,
     digital_out: BTreeMap<String, RawPoint>,
     counter: BTreeMap<String, RawPoint>,
@@ -273,6 +278,7 @@ fn resolve(raw: RawRig) -> RigFile {
         host_watchdog_ms: raw.bus.host_watchdog_ms,
         analog_in: points(raw.analog_in),
         analog_out: points(raw.analog_out),
+        supply_ranges: raw.supply_range.into_values().collect(),
         digital_in: points(raw.digital_in),
         digital_out: points(raw.digital_out),
         counter: points(raw.counter),

@@ -1,5 +1,5 @@
 //! Journal of the outputs: every change of a digital output, every expiry of a host watchdog, every fault that
-//! strikes.
+//! strikes, every coil that is overdriven.
 //!
 //! The journal records at the terminals, between modules and world, and so holds the signals of the actuators. It
 //! is off until [`JournaledWorld::listen`].
@@ -12,7 +12,7 @@ use serde::Serialize;
 use crate::error::SimError;
 use crate::rig::{WorldModel, WorldRecord};
 use crate::terminal::Plant;
-use crate::truth::BodyTruth;
+use crate::truth::{BodyTruth, Overdrive};
 use crate::world::WorldOptions;
 
 /// One entry of the journal.
@@ -46,6 +46,8 @@ pub enum Entry {
         /// Present value of the output: bits, or volts.
         carries: f64,
     },
+    /// A coil is driven in a supply range above the commanded one.
+    CoilOverdriven(Overdrive),
 }
 
 /// A world with a journal of its output terminals.
@@ -55,6 +57,8 @@ pub(crate) struct JournaledWorld {
     now_us: u64,
     last_request_us: u64,
     carries: BTreeMap<String, f64>,
+    /// Number of overdrives in the journal.
+    overdrives: usize,
 }
 
 impl JournaledWorld {
@@ -65,6 +69,7 @@ impl JournaledWorld {
             now_us: 0,
             last_request_us: 0,
             carries: BTreeMap::new(),
+            overdrives: 0,
         }
     }
 
@@ -105,6 +110,15 @@ impl JournaledWorld {
         }
     }
 
+    /// Records the overdrives since the last call.
+    fn record_overdrives(&mut self) {
+        let all = self.scene.overdrives();
+        for overdrive in &all[self.overdrives..] {
+            self.send(Entry::CoilOverdriven(*overdrive));
+        }
+        self.overdrives = all.len();
+    }
+
     fn carry(&mut self, module: &str, value: f64) -> bool {
         match self.carries.get_mut(module) {
             Some(carried) => std::mem::replace(carried, value) != value,
@@ -120,6 +134,7 @@ impl Plant for JournaledWorld {
     fn advance(&mut self, t_us: u64) {
         self.now_us = t_us;
         self.scene.advance(t_us);
+        self.record_overdrives();
     }
 
     fn analog_in(&mut self, module: &str, channel: u8) -> f64 {
@@ -129,6 +144,7 @@ impl Plant for JournaledWorld {
     fn analog_out(&mut self, module: &str, volts: f64) {
         self.carry(module, volts);
         self.scene.analog_out(module, volts);
+        self.record_overdrives();
     }
 
     fn digital_in(&mut self, module: &str) -> u16 {
@@ -144,6 +160,7 @@ impl Plant for JournaledWorld {
             });
         }
         self.scene.digital_out(module, bits);
+        self.record_overdrives();
     }
 
     fn edges(&mut self, module: &str, channel: u8) -> u64 {
@@ -166,6 +183,10 @@ impl WorldRecord for JournaledWorld {
 
     fn crashes(&mut self) -> Vec<String> {
         self.scene.crashes()
+    }
+
+    fn overdrives(&self) -> &[Overdrive] {
+        self.scene.overdrives()
     }
 
     fn inject(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {

@@ -18,7 +18,7 @@ use crate::line::wire_us;
 use crate::module::Module;
 use crate::shared;
 use crate::terminal::Plant;
-use crate::truth::BodyTruth;
+use crate::truth::{BodyTruth, Overdrive};
 use crate::uart;
 use crate::world::WorldOptions;
 
@@ -29,6 +29,11 @@ pub trait WorldRecord {
 
     /// Returns a description of each crash: two bodies that touch although they must not.
     fn crashes(&mut self) -> Vec<String>;
+
+    /// Returns every overdrive of a coil, in order of time; none in a world without a coil supply.
+    fn overdrives(&self) -> &[Overdrive] {
+        &[]
+    }
 
     /// Activates a fault of the world; `value` is the number of a part.
     ///
@@ -269,6 +274,11 @@ impl Rig {
     /// See [`WorldRecord::crashes`].
     pub fn crashes(&mut self) -> Vec<String> {
         self.scene.crashes()
+    }
+
+    /// See [`WorldRecord::overdrives`].
+    pub fn overdrives(&self) -> &[Overdrive] {
+        self.scene.overdrives()
     }
 
     /// See [`WorldRecord::bodies`].

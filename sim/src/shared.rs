@@ -12,7 +12,7 @@ use crate::module::base::Commissioning;
 use crate::module::tolerances::{self, Tolerances};
 use crate::rig::{Reply, Rig, WorldRecord};
 use crate::terminal::ModuleSpec;
-use crate::truth::BodyTruth;
+use crate::truth::{BodyTruth, Overdrive};
 use crate::world::{World, WorldOptions};
 
 /// Choice of rig, lot and faults.
@@ -192,6 +192,10 @@ impl WorldRecord for World {
         World::crashes(self)
     }
 
+    fn overdrives(&self) -> &[Overdrive] {
+        World::overdrives(self)
+    }
+
     fn inject(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
         World::inject(self, fault, value)
     }
@@ -316,6 +320,11 @@ impl SharedRig {
     /// Returns a description of each crash.
     pub fn crashes(&self) -> Vec<String> {
         self.rig().crashes()
+    }
+
+    /// Returns every drive of a coil in a supply range above the commanded one, in order of time.
+    pub fn overdrives(&self) -> Vec<Overdrive> {
+        self.rig().overdrives().to_vec()
     }
 
     /// Locks the rig. A poisoned lock is safe: a line that panics leaves the rig between two events.

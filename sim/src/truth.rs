@@ -41,6 +41,19 @@ pub struct PartTruth {
     pub levels: Levels,
 }
 
+/// Drive of a coil in another supply range than the commanded one, at more volts than the commanded one would give.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Overdrive {
+    /// Rig time, microseconds.
+    pub t_us: u64,
+    /// Code of the commanded range.
+    pub commanded: u8,
+    /// Code of the range of the supply.
+    pub range: u8,
+    /// Voltage of the supply without load, V.
+    pub supply_v: f64,
+}
+
 /// Location of a body between magazine and bin.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Place {

@@ -90,6 +90,7 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<Exit> {
         config: config.to_owned(),
         recipe: args.recipe.clone(),
         admitted: studies::admitted(config, &args.recipe)?,
+        nominal_v: studies::nominal_v(config, &args.recipe)?,
         world: args.world.clone(),
         faults: Vec::new(),
         lots: args.seeds.unwrap_or(lots),

@@ -215,17 +215,16 @@ fn gates_are_optional_and_a_wrong_key_is_named() {
 }
 
 #[test]
-fn a_check_without_a_reference_part_is_refused() {
-    let workshop = with_lot("gates_no_golden", "[golden_check]\nafter_h = 1.0\n");
+fn a_recipe_without_reference_parts_is_refused() {
+    let workshop = Workshop::new("gates_no_golden");
     let text = workshop
         .read("config/golden.toml")
         .replace("nominal_v = 12.0", "nominal_v = 11.0");
     workshop.write("config/golden.toml", &text);
     let said = run(&workshop, 1, "").with_status(2);
-    assert!(
-        said.stderr.contains("[golden_check]") && said.stderr.contains("12 V"),
-        "{said}"
-    );
+    let refused =
+        "[part].nominal_v: found 12, expected a coil voltage with at least 3 golden parts";
+    assert!(said.stderr.contains(refused), "{said}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Recorded rows: four recipes, five seeds, forty parts each.
+//! Recorded rows: six recipes, five seeds, forty parts each.
 //!
 //! A change that only moves code leaves every value, uncertainty, verdict, bin and time unchanged. A change of the
 //! measurement records the rows again with `RECORD_ROWS=1 cargo test --test line rows`, and its commit gives the reason.
@@ -35,6 +35,16 @@ fn rows_of_the_9_v_recipe_are_as_recorded() {
 #[test]
 fn rows_of_the_6_v_recipe_are_as_recorded() {
     compare("jzc-22f-006");
+}
+
+#[test]
+fn rows_of_the_3_v_recipe_are_as_recorded() {
+    compare("jzc-22f-003");
+}
+
+#[test]
+fn rows_of_the_48_v_recipe_are_as_recorded() {
+    compare("jzc-22f-048");
 }
 
 fn compare(recipe: &str) {

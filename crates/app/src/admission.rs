@@ -13,7 +13,7 @@ use history::{
 use machine::dut::Recipe;
 use machine::station::trouble::Alarm;
 use machine::station::turn::Ending;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use texts::{Lang, Message};
 
@@ -32,19 +32,6 @@ pub enum AdmissionError {
     /// The recipe is missing or invalid, or this plant cannot measure it.
     #[error(transparent)]
     Recipe(#[from] ConfigError),
-    /// `lot.toml` asks for reference checks and no reference part has this coil voltage.
-    #[error(
-        "{}: [golden_check]: found a check and no reference part of {nominal_v} V, expected one in {file_of_parts}",
-        file.display()
-    )]
-    NoReferencePart {
-        /// `lot.toml`, which asks for the check.
-        file: PathBuf,
-        /// Nominal coil voltage of the recipe, volts.
-        nominal_v: f64,
-        /// Path of the file of reference parts; empty where `rig.toml` names none.
-        file_of_parts: String,
-    },
     /// The order is a retest of a lot that never ran.
     #[error("--retest: found no run of lot \"{lot}\", expected a lot to test again")]
     NothingToRetest {
@@ -96,9 +83,7 @@ impl AdmissionError {
                 .with("lot", lot)
                 .with("recipe", &standing.recipe),
             Self::NothingToRetest { lot } => refusal("nothing_to_retest").with("lot", lot),
-            Self::Recipe(_) | Self::NoReferencePart { .. } | Self::History(_) => {
-                refusal("lot_not_begun").with("detail", self)
-            }
+            Self::Recipe(_) | Self::History(_) => refusal("lot_not_begun").with("detail", self),
         }
     }
 }
@@ -107,7 +92,7 @@ impl AdmissionError {
 ///
 /// # Errors
 /// Fails when the lot is held, when it is not complete and began with another recipe, when a retest has no earlier run,
-/// when a reference check has no reference part, or when this plant cannot measure the recipe.
+/// or when this plant cannot measure the recipe.
 pub fn admit(
     db: &Path,
     plant: &Plant,
@@ -124,27 +109,12 @@ pub fn admit(
     let recipe = load_recipe(&plant.dir, &order.recipe)?;
     plant.admit(&recipe)?;
     if purpose == Purpose::Lot {
-        check_lot_state(db, plant, &recipe, order)?;
+        check_lot_state(db, &recipe, order)?;
     }
     Ok(Arc::new(recipe))
 }
 
-fn check_lot_state(
-    db: &Path,
-    plant: &Plant,
-    recipe: &Recipe,
-    order: &LotOrder,
-) -> Result<(), AdmissionError> {
-    if let Some(nominal_v) = recipe.device.part().nominal_v
-        && plant.lot.reference_check.any()
-        && plant.reference_parts.of_nominal(nominal_v).next().is_none()
-    {
-        return Err(AdmissionError::NoReferencePart {
-            file: plant.dir.join("lot.toml"),
-            nominal_v,
-            file_of_parts: plant.calibration.reference_file.clone().unwrap_or_default(),
-        });
-    }
+fn check_lot_state(db: &Path, recipe: &Recipe, order: &LotOrder) -> Result<(), AdmissionError> {
     let standing = match db.exists() {
         true => Archive::open(db)?.standing(&order.lot)?,
         false => None,

@@ -220,7 +220,7 @@ fn a_missing_key_is_refused_at_its_table() {
         "nominal_v = 12.0\n",
         "",
         "[part]",
-        "[part].nominal_v: found nothing, expected a number of V above 0 up to 20",
+        "[part].nominal_v: found nothing, expected a number of V above 0 up to 1000",
     );
 }
 
@@ -242,7 +242,7 @@ fn a_wrong_unit_or_type_is_refused() {
         "nominal_v = 12.0",
         "nominal_v = \"12 V\"",
         "nominal_v",
-        "[part].nominal_v: found \"12 V\", expected a number of V above 0 up to 20",
+        "[part].nominal_v: found \"12 V\", expected a number of V above 0 up to 1000",
     );
     refused_recipe(
         "pin_length_mm = 3.5",

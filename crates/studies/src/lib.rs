@@ -147,6 +147,15 @@ impl Study {
     }
 }
 
+/// Returns the nominal coil voltage of the recipe, V; NaN for a kind without one.
+///
+/// # Errors
+/// A recipe that does not load.
+pub fn nominal_v(config: &Path, recipe: &str) -> anyhow::Result<f64> {
+    let part = load_recipe(config, recipe)?.device.part();
+    Ok(part.nominal_v.unwrap_or(f64::NAN))
+}
+
 /// Returns the range that the recipe admits for every parameter; a limit that it does not set is infinite.
 ///
 /// # Errors

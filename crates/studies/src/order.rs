@@ -22,6 +22,8 @@ pub struct Order {
     pub recipe: String,
     /// Range that the recipe admits, by parameter.
     pub admitted: Admitted,
+    /// Nominal coil voltage of the recipe, V; NaN for a kind without one.
+    pub nominal_v: f64,
     /// World of the simulated rig; `None` uses the one of the configuration.
     pub world: Option<PathBuf>,
     /// Faults of the simulated rig, in the form of `--fault`.

@@ -16,6 +16,7 @@ use super::lot::Lot;
 use super::order::Order;
 use super::output::Report;
 use machine::dut::em_relay::Parameter;
+use units::Unit;
 
 /// Range of the coverage, percent of values.
 const COVERAGE_PCT: (f64, f64) = (93.0, 98.0);
@@ -27,7 +28,7 @@ const CHART_FROM_PCT: f64 = 80.0;
 /// # Errors
 /// A lot that did not run.
 pub fn accuracy(order: &Order) -> anyhow::Result<Report> {
-    let allowed = |parameter: Parameter| parameter.facts().allowed_rms;
+    let nominal_v = order.nominal_v;
     let row = |parameter: Parameter, errors: &Pooled| {
         let (n, rms) = (errors.n(), errors.median_rms());
         Figure::new(parameter.name(), n, rms, unit(parameter))
@@ -35,12 +36,21 @@ pub fn accuracy(order: &Order) -> anyhow::Result<Report> {
             .with("bias", errors.median_bias())
             .with("max", errors.worst())
             .with("coverage_pct", errors.coverage_pct())
-            .bar(Bar::AtMost(allowed(parameter)))
+            .bar(Bar::AtMost(allowed(parameter, nominal_v)))
     };
-    let share = |parameter, rms| 100.0 * rms / allowed(parameter);
+    let share = |parameter, rms| 100.0 * rms / allowed(parameter, nominal_v);
     let title = "rms error as a share of what is allowed";
     let chart = Chart::new(title, "%", vec![100.0], []);
     study("accuracy", order, row, share, chart)
+}
+
+/// Returns the greatest accepted rms error in [`unit`]; that of a threshold is a share of the nominal voltage.
+fn allowed(parameter: Parameter, nominal_v: f64) -> f64 {
+    let allowed = parameter.facts().allowed_rms;
+    match parameter.facts().definition.unit {
+        Unit::Volt => (allowed * nominal_v * 1e4).round() / 1e3,
+        _ => allowed,
+    }
 }
 
 /// Counts how often the stated uncertainty of every parameter covers the truth.

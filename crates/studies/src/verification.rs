@@ -110,11 +110,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn fourteen_factors_fail_an_unchanged_rig_once_in_thirty() {
+    fn fifteen_factors_fail_an_unchanged_rig_once_in_25() {
         assert!(
-            (chosen_failure_rate(14) - 0.0372).abs() < 1e-3,
+            (chosen_failure_rate(15) - 0.0398).abs() < 1e-3,
             "{}",
-            chosen_failure_rate(14)
+            chosen_failure_rate(15)
         );
         assert!((chosen_failure_rate(1) - 0.0027).abs() < 1e-4);
     }

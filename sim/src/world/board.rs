@@ -6,6 +6,7 @@
 //! or without a part.
 
 mod circuit;
+pub mod supply;
 
 use super::draw::Draw;
 use super::gates::Gates;
@@ -14,6 +15,8 @@ use super::signal::{Commands, In, Out, Source};
 use super::specimen::Specimen;
 use super::table::BoardTable;
 use crate::config::References;
+use crate::truth::Overdrive;
+use supply::{CoilSupply, SupplyRange};
 
 /// Largest resistance between force and sense at which a pin counts as connected.
 const KELVIN_OHM: f64 = 5.0;
@@ -36,8 +39,7 @@ pub struct Board {
     reference_contact_ohm: f64,
     reference_v: f64,
     pulse_us: f64,
-    volts: [f64; 3],
-    gain: [f64; 3],
+    supply: CoilSupply,
     divider: f64,
     commands: Commands,
     switches: Switches,
@@ -51,17 +53,15 @@ pub struct Board {
     film_per_touch_ohm: f64,
     source_live: bool,
     closed_since_us: Option<f64>,
-    arm_level_v: f64,
-    moved: bool,
     now_us: f64,
 }
 
 impl Board {
-    /// Creates a board with drawn errors; `gain` is volts of supply per volt of each source.
+    /// Creates a board with drawn errors.
     pub fn new(
         table: &BoardTable,
         reference: &References,
-        gain: [f64; 3],
+        supply: CoilSupply,
         draw: &mut Draw,
     ) -> Self {
         let mut within = |value: f64, pct: f64| value * (1.0 + draw.half(pct / 100.0));
@@ -81,8 +81,7 @@ impl Board {
             reference_contact_ohm: contact * 1e-3,
             reference_v,
             pulse_us: reference.gate_pulse_ms * 1000.0,
-            volts: [0.0; 3],
-            gain,
+            supply,
             divider: 1.0,
             commands: Commands::default(),
             switches: Switches::default(),
@@ -95,8 +94,6 @@ impl Board {
             film_per_touch_ohm: 0.0,
             source_live: false,
             closed_since_us: None,
-            arm_level_v: 0.0,
-            moved: false,
             now_us: 0.0,
         }
     }
@@ -122,14 +119,11 @@ impl Board {
         }
     }
 
-    /// Sets a source of the coil supply to `volts`.
+    /// Sets the terminal of a source of the coil supply to `volts`.
     pub fn supply(&mut self, source: Source, volts: f64, part: Option<&mut Specimen>) {
-        self.volts[source as usize] = volts;
-        let away = (self.supply_v() - self.arm_level_v).abs() * 1000.0 > self.table.ramp_start_mv;
-        if away && !self.moved && self.commands.is_on(Out::RampMode) {
+        if self.supply.set(source, volts) && self.commands.is_on(Out::RampMode) {
             self.gates.start(self.now_us);
         }
-        self.moved = away;
         self.refresh(part);
     }
 
@@ -138,8 +132,7 @@ impl Board {
         let before = std::mem::replace(&mut self.commands, commands);
         self.refresh(part.as_deref_mut());
         if commands.rises(before, Out::Arm) {
-            self.arm_level_v = self.supply_v();
-            self.moved = false;
+            self.supply.arm();
             let pulse = commands
                 .is_on(Out::ReferenceContact)
                 .then_some(self.pulse_us);
@@ -176,6 +169,16 @@ impl Board {
         self.divider = 1.0 + per_mille * 1e-3;
     }
 
+    /// Makes the range relays of the supply stick in a range.
+    pub fn stick(&mut self, range: SupplyRange) {
+        self.supply.stick(range);
+    }
+
+    /// Returns every overdrive of a coil so far, in order of time.
+    pub fn overdrives(&self) -> &[Overdrive] {
+        self.supply.overdrives()
+    }
+
     /// Returns the total open time of a gate, microseconds.
     pub fn gate_open_us(&self, gate: usize) -> f64 {
         self.gates.open_us(gate, self.now_us)
@@ -201,6 +204,8 @@ impl Board {
             In::Latch => Some(self.gates.latch()),
             In::SourceCompliance => Some(self.source_limited(part)),
             In::ProbeChain => Some(self.chain),
+            In::SupplyRange0Set => Some(self.supply.range().code & 1 != 0),
+            In::SupplyRange1Set => Some(self.supply.range().code & 2 != 0),
             _ => None,
         }
     }
@@ -230,6 +235,7 @@ impl Board {
         let times = [
             self.switch_at_us,
             self.source_due_us(),
+            self.supply.next_us(),
             self.gates.next_us(),
         ];
         times.into_iter().flatten().min_by(f64::total_cmp)
@@ -249,6 +255,8 @@ impl Board {
         if self.switch_at_us.is_some_and(|at| at <= now) {
             self.switch_at_us = None;
             self.set_switches(part);
+        } else if self.supply.expire(now) {
+            self.refresh(part);
         } else if self.source_due_us().is_some_and(|at| at <= now) {
             self.source_live = true;
             self.refresh(part);
@@ -285,6 +293,10 @@ impl Board {
         let now = self.now_us;
         self.select_clamp(part.as_deref());
         self.edges_of_drive();
+        let drive_off = !self.switches.drive && !self.commands.is_on(Out::CoilDrive);
+        self.supply.follow(now, self.commands, drive_off);
+        let on_coil = part.as_deref().is_some_and(|it| self.drives(it));
+        self.supply.watch(now, self.commands, on_coil);
         if let Some(part) = part.as_deref_mut() {
             let supply = self.coil_supply(part);
             part.drive(now, supply);
@@ -328,15 +340,24 @@ impl Board {
         }
     }
 
+    /// Checks whether the drive reaches the coil of the part.
+    fn drives(&self, part: &Specimen) -> bool {
+        self.driving && self.meets(part) && !self.commands.is_on(Out::ReferenceCoil)
+    }
+
+    /// Checks whether both coil probes touch the coil of the part.
+    fn meets(&self, part: &Specimen) -> bool {
+        self.touching && part.pins().input()
+    }
+
     fn coil_supply(&self, part: &Specimen) -> Supply {
-        let meets = self.touching && part.pins().input();
-        if self.driving && meets && !self.commands.is_on(Out::ReferenceCoil) {
+        if self.drives(part) {
             return Supply::Volts(self.coil_input_v(part.input_ohm()));
         }
-        let suppression_v = if self.clamp_diode && meets {
+        let suppression_v = if self.clamp_diode && self.meets(part) {
             self.table.diode_v
         } else {
-            self.table.zener_v
+            self.zener_v()
         };
         Supply::Off { suppression_v }
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::table::FaultSpec;
-use crate::config::ConfigError;
+use crate::config::{ConfigError, SupplyRange};
 use std::collections::BTreeMap;
 
 /// Meaning of a fault's value.
@@ -55,7 +55,7 @@ faults! {
     OfStart {
         Drift = "drift", Refeed = "refeed", PartsSeed = "parts_seed",
         NoiseSeed = "noise_seed", ProbeFilm = "probe_film",
-        ReferenceEvery = "golden_every",
+        ReferenceEvery = "golden_every", SupplyRangeStuck = "supply_range_stuck",
     }
 }
 
@@ -113,6 +113,33 @@ impl WorldFaults {
     /// Returns the seed of noise and temperatures, where it differs from the seed of the rig.
     pub fn noise_seed(&self) -> Option<u64> {
         self.values(Fault::NoiseSeed).next().map(|it| it as u64)
+    }
+
+    /// Returns the range in which the relays of the coil supply shall stick, if any.
+    ///
+    /// # Errors
+    /// Fails when no range has that code.
+    pub fn stuck_range(
+        &self,
+        ranges: &[SupplyRange],
+        path: &Path,
+    ) -> Result<Option<SupplyRange>, ConfigError> {
+        let Some(code) = self.values(Fault::SupplyRangeStuck).next() else {
+            return Ok(None);
+        };
+        let range = ranges.iter().find(|range| f64::from(range.code) == code);
+        let codes: Vec<String> = ranges.iter().map(|it| it.code.to_string()).collect();
+        range.copied().map(Some).ok_or_else(|| ConfigError::Value {
+            path: path.to_path_buf(),
+            key: "fault.supply_range_stuck".into(),
+            message: match ranges.is_empty() {
+                true => "the rig has no [supply_range]".into(),
+                false => format!(
+                    "found {code}, expected the code of a range: {}",
+                    codes.join(", ")
+                ),
+            },
+        })
     }
 
     /// Cancels every fault that waits for its part.

@@ -35,12 +35,13 @@ pub mod wiring;
 
 use std::path::PathBuf;
 
-use crate::config::{ConfigError, RigFile, read_rig, read_world};
+use crate::config::{ConfigError, RigFile, SupplyRange, read_rig, read_world};
 use crate::error::SimError;
 use crate::terminal::Plant;
-use crate::truth::BodyTruth;
+use crate::truth::{BodyTruth, Overdrive};
 use axis::Axis;
 use board::Board;
+use board::supply::CoilSupply;
 use bodies::Bodies;
 use draw::{Draw, Subject};
 use edges::Edges;
@@ -48,7 +49,7 @@ use environment::Environment;
 use fault::{Fault, Kind, WorldFaults};
 use magazine::{Magazine, Part};
 use mechanism::Mechanism;
-use signal::{Commands, In, Source};
+use signal::{Commands, In};
 use specimen::Specimen;
 use table::WorldTable;
 use wiring::{Wire, Wiring};
@@ -83,6 +84,7 @@ pub struct World {
     edges: Vec<(Wire<In>, Edges)>,
     drift: Option<f64>,
     film: Option<f64>,
+    stuck_range: Option<SupplyRange>,
     noise_seed: Option<u64>,
     clock_hz: f64,
     now_us: u64,
@@ -104,14 +106,11 @@ impl World {
         let magazine = Magazine::load(options, &table, &faults, track, ambient)?;
         let drift = faults.values(Fault::Drift).next();
         let film = faults.values(Fault::ProbeFilm).next();
+        let stuck_range = faults.stuck_range(&rig.supply_ranges, &path)?;
         let noise_seed = faults.noise_seed();
         let wiring = Wiring::new(&rig);
-        let board = Board::new(
-            &table.board,
-            &rig.reference,
-            supply_gains(&wiring),
-            &mut draw,
-        );
+        let supply = CoilSupply::new(&table.board, &wiring, rig.supply_ranges.clone());
+        let board = Board::new(&table.board, &rig.reference, supply, &mut draw);
         let clock_hz =
             rig.reference.counter_clock_hz * (1.0 + draw.half(table.devices.clock_ppm * 1e-6));
         let strokes = Draw::new(options.seed, Subject::Mechanism, 0);
@@ -136,10 +135,14 @@ impl World {
             edges,
             drift,
             film,
+            stuck_range,
             noise_seed,
             clock_hz,
             now_us: 0,
         };
+        if !options.reference_parts {
+            world.stick_range();
+        }
         world.begin_edges();
         Ok(world)
     }
@@ -176,6 +179,11 @@ impl World {
     /// Returns a description of each crash, in order of time.
     pub fn crashes(&self) -> Vec<String> {
         self.mechanism.crashes().to_vec()
+    }
+
+    /// Returns every overdrive of a coil, in order of time.
+    pub fn overdrives(&self) -> &[Overdrive] {
+        self.board.overdrives()
     }
 
     /// Activates a fault; `value` is the number of a part.
@@ -249,6 +257,13 @@ impl World {
         }
     }
 
+    /// Makes the range relays of the supply stick, if the fault still waits.
+    fn stick_range(&mut self) {
+        if let Some(range) = self.stuck_range.take() {
+            self.board.stick(range);
+        }
+    }
+
     /// Updates board, sensors and edges after a change in the mechanism.
     fn mechanism_changed(&mut self) {
         let now = self.now_us;
@@ -269,6 +284,7 @@ impl World {
             if let Some(film) = self.film.take() {
                 self.board.add_film_per_touch(film / 100.0);
             }
+            self.stick_range();
         }
     }
 }
@@ -357,19 +373,6 @@ fn in_nest(mechanism: &mut Mechanism) -> Option<&mut Specimen> {
         .nest
         .as_deref_mut()
         .map(|part: &mut Part| &mut part.specimen)
-}
-
-/// Returns the volts of supply per volt of each source; 0 for a source without a wire.
-fn supply_gains(wiring: &Wiring) -> [f64; 3] {
-    let mut gains = [0.0; 3];
-    for (_, wire) in wiring.sources.values().flatten() {
-        match wire.signal {
-            Source::Level | Source::Coarse | Source::Fine => {
-                gains[wire.signal as usize] = wire.gain;
-            }
-        }
-    }
-    gains
 }
 
 /// Builds the slide with the stops and bins of the rig file, braked at its park position.

@@ -26,6 +26,7 @@ vocabulary! {
         KelvinNo = "kelvin_no", KelvinNc = "kelvin_nc", NoClosed = "no_closed",
         NcClosed = "nc_closed", Window = "window", Latch = "latch",
         SourceCompliance = "source_compliance", ProbeChain = "probe_chain",
+        SupplyRange0Set = "supply_range_0_set", SupplyRange1Set = "supply_range_1_set",
         EmergencyStopOk = "emergency_stop_ok", DoorClosed = "door_closed", AirOk = "air_ok",
         EscapementHold = "escapement_hold", PocketPresent = "pocket_present",
         TrackLevel = "track_level", PusherRetracted = "pusher_retracted",
@@ -48,6 +49,7 @@ vocabulary! {
         SelectNo = "select_no", SourceReverse = "source_reverse", ReferenceCoil = "reference_coil",
         ReferenceContact = "reference_contact", RampMode = "ramp_mode", Arm = "arm",
         EventNoBreak = "event_no_break", KelvinTest = "kelvin_test",
+        SupplyRange0 = "supply_range_0", SupplyRange1 = "supply_range_1",
         EscapementRelease = "escapement_release", PusherExtend = "pusher_extend",
         ClampClose = "clamp_close", ClampOpen = "clamp_open", ProbeLift = "probe_lift",
         SortZLower = "sort_z_lower", GripperClose = "gripper_close",
@@ -64,6 +66,7 @@ vocabulary! {
         CoilVoltage = "coil_voltage", CoilCurrent = "coil_current",
         ContactCurrent = "contact_current", SupplyVoltage = "supply_voltage",
         CoilVoltageFine = "coil_voltage_fine", CoilCurrentFine = "coil_current_fine",
+        CoilCurrentHigh = "coil_current_high",
         ReferenceVoltage = "reference_voltage", ContactDrop = "contact_drop",
     }
 }

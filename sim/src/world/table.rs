@@ -37,8 +37,8 @@ table!(
     BoardTable {
         gate_delay_us: f64, source_current_a: f64, source_error_pct: f64,
         source_compliance_v: f64, emf_drift_uv_per_s: f64, source_wait_ms: f64, source_lead_ms: f64,
-        supply_max_v: f64, supply_limit_ma: f64, zener_v: f64, diode_v: f64,
-        ramp_start_mv: f64, window_after_latch_ms: f64,
+        supply_max_v: f64, supply_limit_ma: f64, supply_range_ms: f64, supply_zero_mv: f64,
+        zener_v: f64, diode_v: f64, ramp_start_mv: f64, window_after_latch_ms: f64,
         monitor_v: f64, monitor_ohm: f64, monitor_threshold_pct: f64,
         input_limit_v: f64, clamp_select_below_ma: f64,
     }

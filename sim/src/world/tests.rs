@@ -6,6 +6,7 @@ mod hand;
 mod line;
 mod magazine;
 mod resistor;
+mod supply;
 
 use std::path::PathBuf;
 

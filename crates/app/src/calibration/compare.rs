@@ -1,14 +1,15 @@
 //! Compares the factors of two calibrations of the same rig, one by one.
 
 use machine::dut::Calibration;
+use machine::gauge::factor::Named;
 use std::fmt;
 use units::Unit;
 
 /// Coverage factor of printed uncertainties: about 95 %.
 pub const K: f64 = 2.0;
 
-/// Coverage factor of a comparison. All fourteen factors must agree: with 2, every second unchanged rig would fail (1 -
-/// 0.95^14); with 3, one in thirty (1 - 0.9973^14), and fewer because both measurements share error terms.
+/// Coverage factor of a comparison. All fifteen factors must agree: with 2, every second unchanged rig would fail (1 -
+/// 0.95^15); with 3, one in 25 (1 - 0.9973^15), and fewer because both measurements share error terms.
 pub const K_JOINT: f64 = 3.0;
 
 /// A factor measured again, beside the stored one.
@@ -48,13 +49,14 @@ impl fmt::Display for FactorComparison {
     }
 }
 
-/// Pairs the factors of both calibrations, in the order of the table.
+/// Pairs the factors of both calibrations by name; leaves out one that either calibration lacks.
 pub fn compare(found: &Calibration, expected: &Calibration) -> Vec<FactorComparison> {
-    let pairs = found
-        .facts()
-        .factors
-        .into_iter()
-        .zip(expected.facts().factors);
+    let expected = expected.facts().factors;
+    let of_both = |found: Named| {
+        let mut named = expected.iter().filter(|it| it.name == found.name);
+        named.next().map(|expected| (found, *expected))
+    };
+    let pairs = found.facts().factors.into_iter().filter_map(of_both);
     pairs
         .map(|(found, expected)| FactorComparison {
             name: found.name,

@@ -2,7 +2,7 @@
 //!
 //! Both measure the reference parts as a run does before its lot, and no part of a lot after them. A calibration stores
 //! the factors found. A verification stores none: each factor found must lie within the combined expanded uncertainty
-//! of the stored one (k = 3, because fourteen must agree at once), and the history marks the stored calibration with
+//! of the stored one (k = 3, because fifteen must agree at once), and the history marks the stored calibration with
 //! the outcome. A rig whose calibration is overdue or failed takes no lot until a new calibration.
 
 mod compare;

@@ -8,6 +8,7 @@ use bus::Pace;
 use config::Plant;
 use history::UnacknowledgedAlarm;
 use machine::dut::Recipe;
+use machine::dut::device::Rig;
 use machine::guard::{Actuator, Guard, PartSize};
 use machine::handling::mechanism::Mechanism;
 use machine::handling::moves::Strokes;
@@ -36,8 +37,8 @@ pub(super) fn cycle(
     } = prior_state;
     let plant = context.plant;
     let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
-    let wiring = Arc::clone(&plant.wiring);
     let recipe = Arc::clone(context.recipe);
+    let wiring = Arc::new(recipe.wired(&plant.wiring, &plant.accuracy)?);
     let strokes = Strokes {
         length_mm: Actuator::ALL.map(|actuator| guard.stroke_mm(actuator).1),
         axis_mm: wiring
@@ -47,9 +48,13 @@ pub(super) fn cycle(
             .collect::<Vec<(AxisStation, f64)>>(),
     };
     let calibrated = calibration.is_some();
+    let rig = Rig {
+        wiring: &wiring,
+        ..plant.rig()
+    };
     let device = recipe
         .device
-        .on_rig(Arc::clone(&recipe), &plant.rig(), calibration)?;
+        .on_rig(Arc::clone(&recipe), &rig, calibration)?;
     let plan = Plan {
         attended,
         between_lots: context.purpose.rest_state(),

@@ -9,7 +9,7 @@ use machine::handling::wear::Uses;
 
 /// State of the rig that a run takes over.
 pub(super) struct PriorState {
-    /// Calibration that is still valid.
+    /// Calibration that is still valid, made in the supply range of the recipe.
     pub calibration: Option<Calibration>,
     /// Uses of wearing parts.
     pub uses: Uses,
@@ -28,6 +28,11 @@ impl PriorState {
             Purpose::Calibration => None,
             Purpose::Lot | Purpose::BetweenLots(_) => valid_calibration(store, context)?,
         };
+        let (plant, recipe) = (context.plant, context.recipe);
+        let wiring = recipe.wired(&plant.wiring, &plant.accuracy)?;
+        let range = wiring.supply_range.as_ref();
+        let calibration = calibration
+            .filter(|it| range.is_none_or(|range| it.facts().range_factor == range.factor));
         // The contents of an earlier run belong to another simulated rig.
         let left = match simulated && is_new(context) {
             true => Inside::default(),

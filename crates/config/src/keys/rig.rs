@@ -10,7 +10,9 @@ use machine::form::{Form, Key, Points, key, optional};
 use machine::rig::point::{DigitalIn, DigitalOut, Fixture};
 use measuring::{ACCURACY, CALIBRATION};
 use modules::{BUS, LINE, MODULE, SAFETY};
-use points::{ACTUATOR, ACTUATORS, ANALOG_IN, ANALOG_OUT, BIN, CHANNEL, DIGITAL_IN, STATION};
+use points::{
+    ACTUATOR, ACTUATORS, ANALOG_IN, ANALOG_OUT, BIN, CHANNEL, DIGITAL_IN, STATION, SUPPLY_RANGE,
+};
 
 /// Form of points that only kinds of device declare.
 const fn of_kinds(may: fn() -> Vec<&'static str>, entry: &'static Form) -> Form {
@@ -66,6 +68,8 @@ pub const FILE: &[Key] = keys! {
     optional("analog_in", of_kinds(analog_in, &Form::Table(ANALOG_IN)), "rig", "analog inputs by point");
     optional("temperature", of_kinds(temperature, &Form::Table(CHANNEL)), "rig", "thermometers by point");
     optional("analog_out", of_kinds(analog_out, &Form::Table(ANALOG_OUT)), "rig", "analog outputs by point");
+    optional("supply_range", Form::Named(&Form::Table(SUPPLY_RANGE)), "rig",
+        "ranges of the supply by name; a rig without them has one, of factor 1");
     optional("counter", of_kinds(counter, &Form::Table(CHANNEL)), "rig", "gated counters by point");
     key("digital_in", Form::Points(Points { must: DigitalIn::NAMES, may: digital_in, free: true, entry: &Form::Table(DIGITAL_IN) }), "rig",
         "digital inputs by point");

@@ -37,7 +37,13 @@ fn without_the_coil_board() -> Table {
     let modules = bare["module"].as_table_mut().unwrap();
     modules.retain(|_, module| !measures(module));
     bare["line"].as_table_mut().unwrap().remove("measure");
-    for section in ["analog_in", "analog_out", "counter", "temperature"] {
+    for section in [
+        "analog_in",
+        "analog_out",
+        "supply_range",
+        "counter",
+        "temperature",
+    ] {
         bare.remove(section);
     }
     bare
@@ -79,7 +85,7 @@ fn refused(rig: &Table) -> Vec<String> {
 #[test]
 fn a_rig_without_the_coil_board_refuses_each_of_its_recipes() {
     let refused = refused(&without_the_coil_board());
-    assert_eq!(refused.len(), 4);
+    assert_eq!(refused.len(), 9);
     for message in refused {
         let why = "[test]: found no [digital_in].kelvin_coil_a in rig.toml, \
                    expected every point that its test needs";
@@ -107,7 +113,7 @@ fn a_rig_without_references_refuses_relays_and_takes_resistors() {
     ];
     for (rig, lacks) in cases {
         let refused = refused(&rig);
-        assert_eq!(refused.len(), 4);
+        assert_eq!(refused.len(), 9);
         for message in refused {
             let why = format!("kind: found \"em_relay\", expected a rig with {lacks}");
             assert!(message.ends_with(&why), "{message}");

@@ -90,7 +90,7 @@ fn what_loading_or_the_plant_refuses_is_named_by_its_key_and_leaves_every_file_a
     let high = "limits.operate_voltage_v.high";
     let coil = "limits.coil_resistance_ohm.low";
     for (path, value, key) in [
-        (high, json!(20.5), high),
+        (high, json!(1000.5), high),
         (high, json!("9 V"), high),
         (high, json!(true), high),
         (coil, json!(441.0), coil),

@@ -32,6 +32,8 @@ pub struct CalibrationFacts {
     pub is_simulated: bool,
     /// Nominal voltage of the parts that it holds for, V.
     pub nominal_v: f64,
+    /// Factor of the supply range that it was made in.
+    pub range_factor: f64,
     /// True when it has everything that the kind needs, reference parts included.
     pub is_complete: bool,
     /// Every measured factor, with its name and unit.

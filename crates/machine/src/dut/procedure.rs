@@ -8,6 +8,7 @@ use super::{Kind, em_relay, resistor};
 use crate::gauge::Judgement;
 use crate::instrument::act::{Doing, JobDone};
 use crate::rig::image::Image;
+use crate::rig::supply::RangeMismatch;
 use std::ops::{Deref, DerefMut};
 use units::{RigTime, Span};
 
@@ -61,6 +62,10 @@ pub trait TestProcedure {
             Stop::Fail(_) => None,
         }
     }
+
+    /// Returns the selected supply range and the one that was read back, once they differ: trouble of the rig, not of the
+    /// part.
+    fn range_mismatch(&self) -> Option<&RangeMismatch>;
 
     /// Returns the verdict of the part.
     fn verdict(&self) -> Verdict {

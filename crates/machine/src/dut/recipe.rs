@@ -3,6 +3,7 @@
 //! One file of `config/recipes/` each. The text it was read from stays with it, with its SHA-256, so that
 //! a lot can store the very recipe it was judged by.
 
+use super::accuracy::AccuracySettings;
 use super::card::Card;
 use super::characteristic::Characteristic;
 use super::device::Rig;
@@ -13,6 +14,8 @@ use super::{Calibration, Device, Kind};
 use crate::gauge::{Limit, Rule};
 use crate::rig::fault::Fault;
 use crate::rig::point::MissingPoint;
+use crate::rig::supply::SupplyDemand;
+use crate::rig::wiring::Wiring;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::ops::Deref;
@@ -82,6 +85,9 @@ pub trait KindRecipe {
     /// # Errors
     /// Names the first key that asks too much and the module that stands against it, or what `rig.toml` lacks.
     fn feasible(&self, limits: &Limits, rig: &Rig) -> Result<(), Fault>;
+
+    /// Returns what the test asks of the supply.
+    fn demand(&self, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand;
 
     /// Returns the process card.
     fn card(&self) -> Card;
@@ -181,6 +187,15 @@ impl Recipe {
     /// Names the first key that asks too much and the module that stands against it, or what `rig.toml` lacks.
     pub fn feasible(&self, rig: &Rig) -> Result<(), Fault> {
         self.device.feasible(&self.limits, rig)
+    }
+
+    /// Returns the wiring in the smallest range of the supply that serves the recipe, which must be [feasible](Self::feasible).
+    ///
+    /// # Errors
+    /// Names the key that asks more of the supply than any range gives.
+    pub fn wired(&self, wiring: &Wiring, accuracy: &AccuracySettings) -> Result<Wiring, Fault> {
+        let demand = self.device.demand(&self.limits, accuracy);
+        Ok(wiring.in_range(demand.range(wiring)?))
     }
 }
 

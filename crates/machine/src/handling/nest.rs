@@ -201,7 +201,9 @@ fn testing(
         Progress::Doing(Doing::Wait(until)) => turn.rig.wake_at = Some(until),
         Progress::Doing(Doing::Busy | Doing::Done | Doing::Trouble(_)) => {}
         Progress::Judged => {
-            if let Some(again) = repeat_reason(id, turn, test) {
+            if let Some(mismatch) = test.range_mismatch() {
+                turn.report(Trouble::SupplyRange(mismatch.clone()));
+            } else if let Some(again) = repeat_reason(id, turn, test) {
                 turn.report(again);
                 *test = context.terms.begin(test.number() + 1, turn.now);
                 return testing(id, turn, context, test, None);

@@ -3,6 +3,7 @@
 use super::moves::Move;
 use super::place::Place;
 use crate::rig::bin::Bin;
+use crate::rig::supply::RangeMismatch;
 use units::Span;
 
 /// A trouble and what it concerns.
@@ -42,4 +43,6 @@ pub enum Trouble {
     Stuck,
     /// A reference part is tested again: serial number and reason.
     ReferenceRepeated(String, String),
+    /// The supply is in another range than the one selected.
+    SupplyRange(RangeMismatch),
 }

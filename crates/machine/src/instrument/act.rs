@@ -91,6 +91,16 @@ pub enum Act {
         /// Longest wait.
         within: Span,
     },
+    /// Reads a word until inputs have these states; where they have not by the end of the time, the acts after this one
+    /// are left out.
+    Agree {
+        /// The inputs, all of the word, each with its state.
+        expected: Vec<(DigitalInput, bool)>,
+        /// Inputs kept from the last look.
+        word: Arc<Word>,
+        /// Longest wait.
+        within: Span,
+    },
 }
 
 /// A task for the lines.
@@ -241,6 +251,10 @@ impl Runner {
                     let inputs = std::iter::once(*point).chain(word);
                     return self.request(Job::Read(inputs.map(Point::Input).collect()));
                 }
+                Act::Agree { word, .. } => {
+                    let read = Read::Word(Arc::clone(word));
+                    return self.request(read.job());
+                }
                 Act::Mark => {
                     self.mark = self.since;
                     self.marked_from = self.looked.take().unwrap_or(self.since);
@@ -299,6 +313,7 @@ impl Runner {
                 | Act::Level(_)
                 | Act::Ramp(_)
                 | Act::Read(_)
+                | Act::Agree { .. }
                 | Act::Mask(_)
                 | Act::Mark,
             )
@@ -313,9 +328,14 @@ impl Runner {
             self.looked = None;
         }
         match &self.current {
-            Some(Act::Set(_) | Act::Level(_) | Act::Ramp(_) | Act::Read(_) | Act::Mask(_)) => {
-                self.spent.bus += took
-            }
+            Some(
+                Act::Set(_)
+                | Act::Level(_)
+                | Act::Ramp(_)
+                | Act::Read(_)
+                | Act::Agree { .. }
+                | Act::Mask(_),
+            ) => self.spent.bus += took,
             Some(Act::Wait(_) | Act::WaitSinceMark(_) | Act::RampSinceMark(_)) => {
                 self.spent.settling += took
             }
@@ -347,6 +367,24 @@ impl Runner {
                 self.looked.get_or_insert(self.began);
                 self.readings.keep_word(&word, &states);
                 self.readings.seen.push(active);
+            }
+            Some(Act::Agree {
+                expected,
+                word,
+                within,
+            }) => {
+                let stale = || Unread::Stale(word.name);
+                let states = word.states(image, now).ok_or_else(stale)?;
+                self.readings.trace.word(word.name, &states, self.since);
+                let mut each = expected.iter();
+                let agree = each.all(|(it, on)| image.answered_input(*it, now) == Some(*on));
+                if !agree && self.since.since(self.began) < within {
+                    return Ok(());
+                }
+                self.readings.keep_word(&word, &states);
+                if !agree {
+                    self.acts = Vec::new().into_iter();
+                }
             }
             Some(Act::Set(outputs)) => {
                 let wiring = image.wiring();

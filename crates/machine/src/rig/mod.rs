@@ -8,7 +8,8 @@
 //!   fit.
 //! - [`commission`]: checks that the modules on the lines are the modules of the file.
 //! - [`query`], [`sample`], [`image`]: commands that read points, and the values read, with their times.
-//! - [`drive`], [`level`]: output values; a motion only after the guard's clearance.
+//! - [`drive`], [`level`], [`supply`]: output values, and the ranges of their amplifier; a motion only after the guard's
+//!   clearance.
 //!
 //! Pure: times are arguments, commands are values; the caller sends them.
 
@@ -29,6 +30,7 @@ pub mod reaction;
 pub mod resolve;
 pub mod sample;
 pub mod settings;
+pub mod supply;
 pub mod wiring;
 
 #[cfg(test)]

@@ -128,6 +128,8 @@ pub struct Quantity {
     pub step: f64,
     /// True when its channel must be enabled from the start, as no act sets its mask.
     pub enabled: bool,
+    /// True when the rig divides its gain by the factor of the supply range.
+    pub ranged: bool,
 }
 
 /// The points that one kind of device declares. A rig may lack them; loading a recipe that needs a missing one fails.

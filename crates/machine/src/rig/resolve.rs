@@ -3,7 +3,7 @@
 //! Checks what takes more than one key: every point is one of the machine, one that a kind of device declares, or the
 //! beam of a bin; it names an existing module, a channel of it, and terminals of the right kind; no two points share a
 //! terminal and no two modules an address on one line; a module has exactly the settings of its model; the axis has
-//! one point for each place; the emergency stop acts in time.
+//! one point for each place; the ranges of the supply have codes of their own; the emergency stop acts in time.
 
 use super::axis::AxisTable;
 use super::declared::{Declared, InputNames};
@@ -16,6 +16,7 @@ use super::settings::{
     ActuatorSettings, AnalogInSettings, AnalogOutSettings, ChannelSettings, DigitalInSettings,
     RigSettings,
 };
+use super::supply::resolve_ranges;
 use super::wiring::{AnalogTerminal, Line, Module, ModuleId, StrokeLimits, Terminal, Wiring};
 use dcon::Channel;
 use std::collections::BTreeMap;
@@ -41,6 +42,7 @@ impl Wiring {
         let axis = AxisTable::resolve(&settings.axis, &settings.bin, |name| inputs.beam(name))?;
         inputs.check(settings)?;
         let strokes = resolve_strokes(&settings.actuator)?;
+        let supply_ranges = resolve_ranges(settings, &modules)?;
         let declared = Declared { settings, fixtures };
         let quantities = declared.quantities();
         check_units(&settings.analog_in, &quantities)?;
@@ -92,6 +94,8 @@ impl Wiring {
                 &settings.counter,
             )?,
             before_beams: inputs.before_beams,
+            supply_ranges,
+            supply_range: None,
             lines,
             modules,
             bus: settings.bus,

@@ -25,6 +25,9 @@ pub struct RigSettings {
     /// Analog outputs by point name.
     #[serde(default)]
     pub analog_out: BTreeMap<String, AnalogOutSettings>,
+    /// Ranges of the supply by name; none where it has only one.
+    #[serde(default)]
+    pub supply_range: BTreeMap<String, SupplyRangeSettings>,
     /// Gated counters by point name.
     #[serde(default)]
     pub counter: BTreeMap<String, ChannelSettings>,
@@ -123,6 +126,19 @@ pub struct AnalogOutSettings {
     pub module: String,
     /// Volts of the coil supply per volt at the terminal.
     pub gain: f64,
+}
+
+/// One range of the supply.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct SupplyRangeSettings {
+    /// Bits of the two outputs that select it, read back alike.
+    pub code: u8,
+    /// Multiplies the gains of the sources and divides those of the inputs behind the amplifier.
+    pub factor: f64,
+    /// Highest voltage of the supply, V.
+    pub max_v: f64,
+    /// Largest current of the supply, mA.
+    pub max_ma: f64,
 }
 
 /// A point with a module and a channel.

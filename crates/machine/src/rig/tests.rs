@@ -5,6 +5,7 @@ mod commission;
 mod drive;
 mod image;
 mod reaction;
+mod supply;
 
 use super::settings::RigSettings;
 use super::wiring::{LineId, Wiring};

@@ -10,6 +10,7 @@ use super::point::{
     Quantity, Switch, Thermometer,
 };
 use super::settings::{BusSettings, SafetySettings};
+use super::supply::SupplyRange;
 use dcon::{Address, Channel, DataFormat, SlewCode, TypeCode};
 use std::collections::BTreeSet;
 use units::Span;
@@ -133,6 +134,10 @@ pub struct Wiring {
     pub strokes: StrokeLimits,
     /// Points of the sort axis and the bins at them.
     pub axis: AxisTable,
+    /// Ranges of the supply, smallest first; empty without a source.
+    pub supply_ranges: Vec<SupplyRange>,
+    /// Range that the gains hold for; none for those of the file, at factor 1.
+    pub supply_range: Option<SupplyRange>,
     /// Inputs of the machine, then of the fixtures, then beams.
     pub(super) digital_in: Vec<(String, Terminal)>,
     /// Outputs of the machine, then of the fixtures.

@@ -111,6 +111,8 @@ codes! {
     OutputsNotConfirmed = "outputs_not_confirmed", Abort, Operator;
     /// The program cannot write the history file.
     HistoryLost = "history_lost", Abort, Operator;
+    /// The supply is in another range than the one selected.
+    SupplyRange = "supply_range", Abort, Operator;
     /// References or reference parts do not agree with their certificates.
     CalibrationFailed = "calibration_failed", Abort, Operator;
     /// The calibration has expired during the lot.

@@ -4,7 +4,7 @@
 //! `Execute` feeds, clamps, measures and sorts parts; `Completing`, `Stopping` and `Holding` finish them.
 //!
 //! - *Held*: the cause is inside the machine, and a person ends it. *Suspended*: the cause is outside (no parts, a
-//! full bin), and the machine resumes by itself.
+//!   full bin), and the machine resumes by itself.
 //! - A reset starts and acknowledges nothing; an acknowledgement resets nothing.
 //! - Files hold the names, never numbers.
 

@@ -7,6 +7,7 @@ use crate::handling::Move;
 use crate::handling::trouble::Trouble;
 use crate::handling::wear::Wearing;
 use crate::rig::point::DigitalIn;
+use crate::rig::supply::RangeMismatch;
 use texts::{Args, Lang, Message};
 use units::Span;
 
@@ -45,6 +46,7 @@ impl From<Trouble> for Alarm {
             Trouble::Dropped => AlarmCode::PartDropped.into(),
             Trouble::Sticks => Self::part_sticks(),
             Trouble::Stuck => AlarmCode::PartStuck.into(),
+            Trouble::SupplyRange(mismatch) => Self::supply_range(mismatch),
             Trouble::ReferenceRepeated(serial, why) => Self::reference_repeated(&serial, &why),
         }
     }
@@ -175,6 +177,13 @@ impl Alarm {
             .with("failed", failed)
             .with("judged", judged)
             .with("limit_pct", limit_pct)
+    }
+
+    /// The supply is in another range than the one selected.
+    fn supply_range(RangeMismatch { selected, found }: RangeMismatch) -> Self {
+        Self::from(AlarmCode::SupplyRange)
+            .with("selected", selected)
+            .with("found", found)
     }
 
     /// A wearing part has reached its limit of uses.

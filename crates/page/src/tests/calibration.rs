@@ -26,6 +26,8 @@ fn made(at_us: i64, simulated: bool, nominal_v: f64) -> CalibrationRecord {
         },
         ohm_fine: known,
         ohm_wide: known,
+        ohm_high: None,
+        range_factor: 1.0,
         contact_mohm_per_v: known,
         gate_delay_us: [known; 2],
         level: OutputLine::IDEAL,

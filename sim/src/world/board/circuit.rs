@@ -6,13 +6,18 @@ use crate::world::signal::{Out, Quantity};
 use crate::world::specimen::Specimen;
 
 impl Board {
-    /// Returns a quantity in its own unit, before the gain of its terminal.
+    /// Returns a quantity in its own unit, before the gain of its terminal; a coil voltage is divided by the factor of
+    /// the supply range.
     pub fn quantity(&self, quantity: Quantity, part: Option<&Specimen>) -> f64 {
         match quantity {
-            Quantity::CoilVoltage | Quantity::CoilVoltageFine => self.coil_v(part) * self.divider,
-            Quantity::CoilCurrent | Quantity::CoilCurrentFine => self.coil_a(part),
+            Quantity::CoilVoltage | Quantity::CoilVoltageFine => {
+                self.coil_v(part) * self.divider / self.supply.range().factor
+            }
+            Quantity::CoilCurrent | Quantity::CoilCurrentFine | Quantity::CoilCurrentHigh => {
+                self.coil_a(part)
+            }
             Quantity::ContactCurrent => self.contact_a(part),
-            Quantity::SupplyVoltage => self.supply_v(),
+            Quantity::SupplyVoltage => self.supply.volts(),
             Quantity::ReferenceVoltage => self.reference_v,
             Quantity::ContactDrop => self.contact_v(part),
         }
@@ -23,9 +28,9 @@ impl Board {
         volts.clamp(-self.table.input_limit_v, self.table.input_limit_v)
     }
 
-    pub(super) fn supply_v(&self) -> f64 {
-        let sum: f64 = self.volts.iter().zip(self.gain).map(|(v, g)| v * g).sum();
-        sum.clamp(0.0, self.table.supply_max_v)
+    /// Returns the clamp of the zener, V: it scales with the range of the supply.
+    pub(super) fn zener_v(&self) -> f64 {
+        self.table.zener_v * self.supply.range().factor
     }
 
     pub(super) fn senses(&self, contact: Contact, part: Option<&Specimen>) -> bool {
@@ -41,28 +46,24 @@ impl Board {
         })
     }
 
-    pub(super) fn limited_v(&self, ohm: f64) -> f64 {
-        self.supply_v().min(self.table.supply_limit_ma * 1e-3 * ohm)
-    }
-
     /// Returns the supply voltage that reaches the pins of a coil. The film acts on the divider only; the model
     /// ignores its effect on L/R, one percent at 4 ohm.
     pub(super) fn coil_input_v(&self, coil_ohm: f64) -> f64 {
         let share = 1.0 / (1.0 + self.film_ohm / coil_ohm);
-        self.limited_v(coil_ohm + self.film_ohm) * share
+        self.supply.limited_v(coil_ohm + self.film_ohm) * share
     }
 
     pub(super) fn coil_a(&self, part: Option<&Specimen>) -> f64 {
         if self.commands.is_on(Out::ReferenceCoil) {
             let volts = if self.driving {
-                self.limited_v(self.reference_coil_ohm)
+                self.supply.limited_v(self.reference_coil_ohm)
             } else {
                 0.0
             };
             return volts / self.reference_coil_ohm;
         }
-        let meets = |it: &&Specimen| self.touching && it.pins().input();
-        part.filter(meets).map_or(0.0, |it| it.input_a())
+        part.filter(|it| self.meets(it))
+            .map_or(0.0, |it| it.input_a())
     }
 
     pub(super) fn coil_v(&self, part: Option<&Specimen>) -> f64 {
@@ -72,7 +73,7 @@ impl Board {
             (true, false) => self.coil_input_v(part.map_or(f64::INFINITY, |it| it.input_ohm())),
             (false, _) if current <= 0.0 => 0.0,
             (false, _) if self.clamp_diode => -self.table.diode_v,
-            (false, _) => -self.table.zener_v,
+            (false, _) => -self.zener_v(),
         }
     }
 

@@ -253,7 +253,7 @@ impl RelayValues {
             volts: [self.operate_v, self.release_v],
             seconds: [self.operate_ms * 1e-3, self.release_ms * 1e-3],
             nominal_v: self.nominal_v,
-            zener_v: world.board.zener_v,
+            zener_v: world.board.zener_v * self.volt_scale,
             time_origin: self.time_origin,
         }
     }

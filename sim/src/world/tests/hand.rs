@@ -9,18 +9,42 @@ pub(super) struct Hand {
     pub(super) rig: RigFile,
     pub(super) bits: std::collections::BTreeMap<String, u16>,
     pub(super) t_us: u64,
+    /// Factor of the supply range that the test has selected.
+    factor: f64,
 }
 
 impl Hand {
+    /// Builds a rig; one with ranges of the supply is in the range of factor 1.
     pub(super) fn new(options: WorldOptions) -> Self {
-        let rig = read_rig(&config_dir()).unwrap();
+        let rig = read_rig(&options.config_dir).unwrap();
+        let ranged = !rig.supply_ranges.is_empty();
         let world = World::build(&options).unwrap();
-        Self {
+        let mut hand = Self {
             world,
             rig,
             bits: std::collections::BTreeMap::new(),
             t_us: 0,
+            factor: 1.0,
+        };
+        if ranged {
+            hand.range(1);
         }
+        hand
+    }
+
+    /// Commands a range of the supply and gives the relays time to follow.
+    pub(super) fn range(&mut self, code: u8) {
+        self.set("supply_range_0", code & 1 != 0);
+        self.set("supply_range_1", code & 2 != 0);
+        let ranges = self.rig.supply_ranges.iter();
+        let range = ranges.clone().find(|range| range.code == code).unwrap();
+        self.factor = range.factor;
+        self.wait(6.0);
+    }
+
+    /// Returns the code that the range relays report.
+    pub(super) fn range_set(&mut self) -> u8 {
+        u8::from(self.is_on("supply_range_0_set")) | u8::from(self.is_on("supply_range_1_set")) << 1
     }
 
     pub(super) fn set(&mut self, point: &str, on: bool) {
@@ -51,8 +75,10 @@ impl Hand {
         high != terminal.active_low
     }
 
+    /// Sets the level so that the supply gives this voltage in the commanded range.
     pub(super) fn level(&mut self, supply_v: f64) {
-        self.world.analog_out("ao_level", supply_v / 1.5);
+        self.world
+            .analog_out("ao_level", supply_v / 1.5 / self.factor);
     }
 
     pub(super) fn value(&mut self, point: &str) -> f64 {

@@ -4,7 +4,7 @@ use super::hand::{Hand, options};
 use super::*;
 
 /// Creates a configuration folder with one recipe, `dummy`, of this kind.
-fn folder(kind: &str) -> tempfile::TempDir {
+pub(super) fn folder(kind: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for file in ["rig.toml", "sim.toml", "scene.toml", "golden.toml"] {
         std::fs::copy(config_dir().join(file), folder.path().join(file)).unwrap();
@@ -19,7 +19,7 @@ fn folder(kind: &str) -> tempfile::TempDir {
 }
 
 /// Returns options for three dummies and for reference parts, which this kind does not have.
-fn dummies(folder: &tempfile::TempDir) -> WorldOptions {
+pub(super) fn dummies(folder: &tempfile::TempDir) -> WorldOptions {
     WorldOptions {
         config_dir: folder.path().to_path_buf(),
         recipe: "dummy".into(),

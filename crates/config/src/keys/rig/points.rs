@@ -19,6 +19,14 @@ pub(super) const ANALOG_OUT: &[Key] = keys! {
     key("gain", above_zero(100.0, ""), "rig", "volts of the coil supply per volt at the terminal");
 };
 
+pub(super) const SUPPLY_RANGE: &[Key] = keys! {
+    key("code", whole(0, 3, ""), "rig", "bits of supply_range_1 and supply_range_0, read back alike");
+    key("factor", above_zero(100.0, ""), "rig",
+        "multiplies the gains of [analog_out] and divides those of the inputs behind the amplifier");
+    key("max_v", above_zero(1000.0, "V"), "rig", "highest voltage of the supply");
+    key("max_ma", above_zero(10_000.0, "mA"), "rig", "largest current of the supply");
+};
+
 pub(super) const DIGITAL_IN: &[Key] = keys! {
     key("module", Form::Text, "rig", "name of the module");
     key("channel", whole(0, 15, ""), "rig", "channel, from 0");

@@ -35,8 +35,18 @@ pub enum Act {
     Supply(Vec<(AnalogOut, Volt)>),
     /// Reads once.
     Read(Read),
+    /// Selects the range of the supply with this code; the board takes it once the drive is off and all sources are at zero.
+    SelectRange(u8),
+    /// Reads the board until it is in the range with this code; the acts after this one are left out where it is not by
+    /// the end of the wait. A rig with one range reads the board once.
+    ConfirmRange {
+        /// Code of the range.
+        code: u8,
+        /// Longest wait.
+        within: Span,
+    },
     /// Enables these channels of the coil converter and no others; only before a lot.
-    CoilMask(&'static [AnalogIn]),
+    CoilMask(Vec<AnalogIn>),
     /// Marks this instant.
     Mark,
     /// See [`act::Act::WaitSinceMark`].
@@ -69,6 +79,18 @@ impl Points {
                 let wired = |(output, on)| (self.output(output), on);
                 act::Act::Set(outputs.into_iter().map(wired).collect())
             }
+            Act::SelectRange(code) => {
+                let range = self.range.iter();
+                act::Act::Set(range.flat_map(|it| it.select(code)).collect())
+            }
+            Act::ConfirmRange { code, within } => match &self.range {
+                Some(range) => act::Act::Agree {
+                    expected: range.expects(code).to_vec(),
+                    word: self.board.clone(),
+                    within,
+                },
+                None => act::Act::Read(act::Read::Word(self.board.clone())),
+            },
             Act::Supply(outputs) => self.supplied(outputs),
             Act::Read(read) => act::Act::Read(self.wired_read(read, scanned)),
             Act::CoilMask(channels) => {

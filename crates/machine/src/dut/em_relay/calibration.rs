@@ -6,6 +6,7 @@
 //! ([`Calibration::overshoots`] is `None`).
 
 use super::overshoot::OvershootModel;
+use super::recipe::CoilChannels;
 use super::threshold::Direction;
 use crate::dut::calibration::CalibrationFacts;
 use crate::gauge::Factor;
@@ -110,7 +111,12 @@ impl Overshoot {
 
 /// Returns the model for a stored calibration that has none.
 fn assumed_model() -> OvershootModel {
-    OvershootModel::guess(0.0)
+    OvershootModel::guess(0.0, 1.0)
+}
+
+/// Factor of a calibration that was stored by a program without ranges.
+fn only_range() -> f64 {
+    1.0
 }
 
 /// Overshoot of both directions.
@@ -139,6 +145,12 @@ pub struct Calibration {
     pub ohm_fine: Factor,
     /// [`Calibration::ohm_fine`] on the wide current channel, for coils beyond the range of the fine one.
     pub ohm_wide: Factor,
+    /// [`Calibration::ohm_fine`] on the high current channel; none on a rig without one.
+    #[serde(default)]
+    pub ohm_high: Option<Factor>,
+    /// Factor of the supply range; outputs and coil voltage hold for no other.
+    #[serde(default = "only_range")]
+    pub range_factor: f64,
     /// Milliohms per volt of contact drop at the terminal, half the difference of both polarities.
     pub contact_mohm_per_v: Factor,
     /// Delay of the gates of counters 0 and 1, microseconds; each gate counts longer by it.
@@ -164,7 +176,7 @@ pub struct Calibration {
 
 impl Calibration {
     /// Returns ideal factors of infinite uncertainty, for the measurement of the references.
-    pub fn unknown(nominal_v: f64) -> Self {
+    pub fn unknown(nominal_v: f64, range_factor: f64) -> Self {
         let unknown = Factor::new(1.0, f64::INFINITY);
         Self {
             made_at_us: 0,
@@ -177,6 +189,8 @@ impl Calibration {
             },
             ohm_fine: unknown,
             ohm_wide: unknown,
+            ohm_high: None,
+            range_factor,
             contact_mohm_per_v: unknown,
             gate_delay_us: [Factor::new(0.0, f64::INFINITY); 2],
             level: OutputLine::IDEAL,
@@ -196,12 +210,22 @@ impl Calibration {
             due_at_us: self.due_at_us,
             is_simulated: self.simulated,
             nominal_v: self.nominal_v,
+            range_factor: self.range_factor,
             is_complete: self.overshoots.is_some(),
             factors: self.factors(),
         }
     }
 
-    /// Returns every measured factor; the slope of the coarse ramp is the maker's and not among them.
+    /// Returns ohms per unit of (voltage reading / current reading) with these channels.
+    pub fn ohm(&self, channels: CoilChannels) -> Factor {
+        match channels {
+            CoilChannels::Fine => self.ohm_fine,
+            CoilChannels::CoarseCurrent => self.ohm_wide,
+            CoilChannels::HighCurrent => self.ohm_high.unwrap_or(Factor::new(1.0, f64::INFINITY)),
+        }
+    }
+
+    /// Returns every measured factor; the slope of the coarse ramp is the maker's and therefore absent.
     fn factors(&self) -> Vec<Named> {
         let named = |name, unit, factor| Named { name, unit, factor };
         let mut all = vec![
@@ -218,6 +242,7 @@ impl Calibration {
             named("fine_gain", Unit::One, self.fine.gain),
             named("fine_slope", Unit::VoltPerSecond, self.fine_v_per_s),
         ];
+        all.extend(self.ohm_high.map(|it| named("coil_high", Unit::Ohm, it)));
         if let Some(overshoots) = &self.overshoots {
             all.push(named("operate_lag", Unit::Volt, overshoots.operate.fine_v));
             all.push(named("release_lag", Unit::Volt, overshoots.release.fine_v));
@@ -246,7 +271,7 @@ mod tests {
             fine_v: Factor::new(0.028, 0.0),
             at_v: 7.88,
             at_coarse_v: 0.84,
-            coarse: OvershootModel::guess(0.84),
+            coarse: OvershootModel::guess(0.84, 1.0),
             judges: false,
         };
         let rising = |coarse_v| overshoot.own_v(coarse_v, Direction::Rising);

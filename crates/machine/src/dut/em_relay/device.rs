@@ -5,10 +5,9 @@
 
 use super::calibration::{Calibration, Overshoots};
 use super::feasible::nominal_v_per_s;
-use super::measure::context::{ASSUMED_FINE_V, assumed_models};
 use super::measure::{Context, Observed, Test};
 use super::overshoot::OvershootModel;
-use super::points::{AnalogIn, AnalogOut, Points};
+use super::points::{AnalogOut, Points};
 use super::probe_contact::Trend;
 use super::recipe::RelayRecipe;
 use super::reference;
@@ -18,6 +17,7 @@ use super::threshold::Direction;
 use crate::dut::device::{CalibrationFault, DeviceUnderTest, Made, Rig, TestOrder};
 use crate::dut::record::{Own, TestRecord};
 use crate::dut::{self, Procedure, Recipe};
+use crate::gauge::budget::COVERAGE_FACTOR;
 use crate::instrument::act::Act;
 use crate::instrument::readings::Readings;
 use crate::rig::point::MissingPoint;
@@ -28,8 +28,6 @@ use units::{Ohm, RigTime};
 #[derive(Debug, Clone)]
 pub struct Device {
     context: Context,
-    /// Volts at the terminal per volt of the coil, fine channel.
-    voltage_gain: f64,
     certificates: Vec<ReferencePart>,
     reference_parts: ReferenceRun,
     /// Models of the coarse overshoot, operate and release, learned from reference parts and from every part that passes.
@@ -56,9 +54,10 @@ impl Device {
             name: "coil_ohm",
         })?;
         let nominal_v = relay.part.nominal_v;
-        let calibration = stored.unwrap_or_else(|| Calibration::unknown(nominal_v));
-        let voltage = points.analog(AnalogIn::CoilVoltageFine);
-        let voltage_gain = rig.wiring.analog_in(voltage).gain;
+        let range = rig.wiring.supply_range.clone();
+        assert!(range.is_some(), "a relay on a supply without a range");
+        let factor = range.as_ref().map_or(1.0, |range| range.factor);
+        let calibration = stored.unwrap_or_else(|| Calibration::unknown(nominal_v, factor));
         let context = Context {
             recipe,
             relay: Arc::new(relay.clone()),
@@ -68,32 +67,28 @@ impl Device {
             nominal_v_per_s: [AnalogOut::SupplyCoarse, AnalogOut::SupplyFine]
                 .map(|output| nominal_v_per_s(rig.wiring, points.source(output))),
             points,
+            range,
             probe_contact: None,
             thorough: false,
             teaching: None,
         };
         let certificates = rig.reference_parts.of_nominal(nominal_v).cloned();
-        Ok(Self::of(context, voltage_gain, certificates.collect()))
+        Ok(Self::of(context, certificates.collect()))
     }
 
-    pub(super) fn of(
-        context: Context,
-        voltage_gain: f64,
-        certificates: Vec<ReferencePart>,
-    ) -> Self {
+    pub(super) fn of(context: Context, certificates: Vec<ReferencePart>) -> Self {
         let coarse = context
             .calibration
             .overshoots
-            .map_or(assumed_models(), |overshoots| {
+            .map_or(context.assumed_models(), |overshoots| {
                 (overshoots.operate.coarse, overshoots.release.coarse)
             });
         Self {
+            of_lot: context.assumed_models(),
             context,
-            voltage_gain,
             certificates,
             reference_parts: ReferenceRun::default(),
             coarse,
-            of_lot: assumed_models(),
             probe_contact: Trend::default(),
         }
     }
@@ -183,13 +178,7 @@ impl DeviceUnderTest for Device {
         readings: &Readings,
         made: Made,
     ) -> Result<(), CalibrationFault> {
-        let calibration = reference::conclude(
-            &self.context,
-            readings,
-            made.at_us,
-            made.valid_us,
-            self.voltage_gain,
-        )?;
+        let calibration = reference::conclude(&self.context, readings, made.at_us, made.valid_us)?;
         self.context.calibration = Arc::new(Calibration {
             simulated: made.simulated,
             ..calibration
@@ -217,7 +206,8 @@ impl DeviceUnderTest for Device {
         if last {
             return self.conclude_reference_parts().map(Some);
         }
-        let fine_v = self.reference_parts.fine_v().unwrap_or(ASSUMED_FINE_V);
+        let assumed = self.context.assumed_fine_v();
+        let fine_v = self.reference_parts.fine_v().unwrap_or(assumed.into());
         self.teach(Overshoots {
             operate: reference_part::interim(self.coarse.0, fine_v.0),
             release: reference_part::interim(self.coarse.1, fine_v.1),
@@ -259,8 +249,13 @@ impl DeviceUnderTest for Device {
         self.probe_contact.mean()
     }
 
+    /// Less what the calibration of the supply level leaves in doubt (k = 2): an ohm cannot be told from the error of the
+    /// level where the coil has thousands.
     fn settled_probe_contact(&self) -> Option<Ohm> {
-        self.probe_contact.settled()
+        let Ohm(mean) = self.probe_contact.settled()?;
+        let level = self.context.calibration.level.gain;
+        let doubt = COVERAGE_FACTOR * self.context.relay.part.nominal_coil_ohm * level.u;
+        Some(Ohm((mean - doubt).max(0.0)))
     }
 }
 

@@ -3,10 +3,13 @@
 //!
 //! A strategy needs outputs that step or slew, a counter in counting mode and enabled channels.
 
+mod supply;
+
 use super::bins;
 use super::coil::relative_per_kelvin;
 use super::parameter::Expected;
 use super::recipe::RelayRecipe;
+use super::settings::ReferenceSet;
 use super::{Parameter, Strategy};
 use crate::dut::accuracy::AccuracySettings;
 use crate::dut::device::Rig;
@@ -16,10 +19,13 @@ use crate::gauge::budget::COVERAGE_FACTOR;
 use crate::rig::fault::Fault;
 use crate::rig::point::AnalogOutput;
 use crate::rig::wiring::Wiring;
+pub use supply::demand;
 use units::Celsius;
 
 /// Longest refresh interval of an output that ramps: 2 ms make steps of 0.19 V of a ramp of 96 V/s.
 pub const SLOWEST_REFRESH_MS: f64 = 2.0;
+/// Fewest reference parts that a calibration takes.
+const FEWEST_PARTS: usize = 3;
 /// Conversions per second of an I-7017F outside its fast mode.
 const SLOW_CONVERSIONS_PER_S: f64 = 10.0;
 /// Type code of an I-7080 in counting mode; 51 is frequency mode.
@@ -44,9 +50,25 @@ pub fn check(
         let expected = "every point that its test needs";
         Fault::new("test", missing, expected)
     })?;
+    let range = demand(recipe, limits, accuracy).range(wiring)?;
+    let wiring = &wiring.in_range(range);
+    supply::check(recipe, limits, wiring, &points)?;
+    check_strategies(recipe, wiring, &points, accuracy)?;
+    supply::check_ramp(recipe, wiring, &points, accuracy)?;
+    check_early_stop(recipe, limits)?;
+    check_guard_bands(recipe, limits, accuracy)
+}
+
+/// Checks that the modules can perform the strategy of each threshold.
+fn check_strategies(
+    recipe: &RelayRecipe,
+    wiring: &Wiring,
+    points: &Points,
+    accuracy: &AccuracySettings,
+) -> Result<(), Fault> {
     for (key, strategy) in recipe.test.strategy.each() {
         let key = format!("test.strategy.{key}");
-        if let Some(why) = hindrance(strategy, wiring, &points, accuracy) {
+        if let Some(why) = hindrance(strategy, wiring, points, accuracy) {
             return Err(Fault::new(
                 key,
                 strategy.name(),
@@ -54,6 +76,11 @@ pub fn check(
             ));
         }
     }
+    Ok(())
+}
+
+/// Checks that closures which stop early have limits to be clear of.
+fn check_early_stop(recipe: &RelayRecipe, limits: &Limits) -> Result<(), Fault> {
     if recipe.test.strategy.contact.stops_early {
         for parameter in [
             Parameter::ContactResistanceNo,
@@ -69,6 +96,15 @@ pub fn check(
             }
         }
     }
+    Ok(())
+}
+
+/// Checks that the guard bands leave something between the limits.
+fn check_guard_bands(
+    recipe: &RelayRecipe,
+    limits: &Limits,
+    accuracy: &AccuracySettings,
+) -> Result<(), Fault> {
     for parameter in Parameter::ALL {
         let limit = limits.of(parameter);
         let (Some(low), Some(high)) = (limit.low, limit.high) else {
@@ -86,18 +122,33 @@ pub fn check(
     Ok(())
 }
 
-/// Refuses a rig without references on its board, or without any reference part.
+/// Refuses a rig without references on its board, or without enough reference parts of this nominal voltage.
 ///
 /// # Errors
-/// Names what `rig.toml` lacks.
-pub fn check_references(rig: &Rig) -> Result<(), Fault> {
+/// Names what `rig.toml` lacks, or the coil voltages of the reference parts.
+pub fn check_references(nominal_v: f64, rig: &Rig) -> Result<(), Fault> {
     let lacks = match (rig.reference, rig.reference_parts.parts.is_empty()) {
-        (Some(_), false) => return Ok(()),
+        (Some(_), false) => return check_reference_parts(nominal_v, rig.reference_parts),
         (None, true | false) => "references: rig.toml has no [reference]",
         (Some(_), true) => "golden parts: rig.toml names no file of them in [calibration].golden",
     };
     let expected = format!("a rig with {lacks}");
     Err(Fault::new("kind", "\"em_relay\"", expected))
+}
+
+fn check_reference_parts(nominal_v: f64, parts: &ReferenceSet) -> Result<(), Fault> {
+    if parts.of_nominal(nominal_v).count() >= FEWEST_PARTS {
+        return Ok(());
+    }
+    let mut others: Vec<f64> = parts.parts.iter().map(|part| part.nominal_v).collect();
+    others.sort_by(f64::total_cmp);
+    others.dedup();
+    let others: Vec<String> = others.iter().map(|volts| format!("{volts} V")).collect();
+    let expected = format!(
+        "a coil voltage with at least {FEWEST_PARTS} golden parts; there are some of {}",
+        others.join(", ")
+    );
+    Err(Fault::new("part.nominal_v", nominal_v, expected))
 }
 
 /// Returns the reason why the modules cannot perform a strategy; `None` when they can.

@@ -48,6 +48,8 @@ pub enum Finding {
     PinsOpen,
     /// The hard-wired chain of the raised probes is open.
     ProbeChainOpen,
+    /// The board is in another supply range than the one selected; detail: both.
+    OtherSupplyRange,
     /// No reading of the interface board.
     BoardNotRead,
     /// A scan lacks voltage or current.
@@ -80,7 +82,7 @@ pub enum Finding {
 
 impl Finding {
     /// Every finding, in the order of the enum.
-    pub const ALL: [Self; 35] = [
+    pub const ALL: [Self; 36] = [
         Self::CoilOpen,
         Self::CoilCurrentOverRange,
         Self::NoClosedAtRest,
@@ -98,6 +100,7 @@ impl Finding {
         Self::PinOpen,
         Self::PinsOpen,
         Self::ProbeChainOpen,
+        Self::OtherSupplyRange,
         Self::BoardNotRead,
         Self::CoilNotRead,
         Self::CoilVoltageNotReadable,
@@ -144,6 +147,7 @@ impl Finding {
             Self::PinOpen => Entry::void("pin_open"),
             Self::PinsOpen => Entry::void("pins_open"),
             Self::ProbeChainOpen => Entry::void("probe_chain_open"),
+            Self::OtherSupplyRange => Entry::void("other_supply_range"),
             Self::BoardNotRead => Entry::void("board_not_read"),
             Self::CoilNotRead => Entry::void("coil_not_read"),
             Self::CoilVoltageNotReadable => Entry::void("coil_voltage_not_readable"),

@@ -16,6 +16,7 @@
 //! | how the factors are found: board references, reference parts | [`reference`], [`reference_part`] |
 //! | coil resistance | [`coil`] |
 //! | operate and release voltage | [`threshold`], [`overshoot`], [`supply`] |
+//! | voltages of any coil in any supply range | [`scale`] |
 //! | times and bounce | [`timing`] |
 //! | contact resistance | [`contact`] |
 //! | contact of the probes at the coil | [`probe_contact`] |
@@ -45,6 +46,7 @@ pub mod recipe;
 pub mod reference;
 pub mod reference_part;
 pub mod sampling;
+pub mod scale;
 pub mod settings;
 pub mod strategy;
 pub mod supply;

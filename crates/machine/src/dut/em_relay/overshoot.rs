@@ -16,11 +16,11 @@
 use serde::{Deserialize, Serialize};
 use units::Volt;
 
-/// Prior scatter about the line, volts (1 sd): two operations, and the residual of reference parts that lie far apart.
+/// Prior scatter about the line, volts of a 12 V coil (1 sd): two operations, and the residual of reference parts that lie far apart.
 const SCATTER_V: f64 = 0.004;
 /// Weight of the prior, in parts.
 const PRIOR_WEIGHT: f64 = 4.0;
-/// Standard uncertainty of the assumed overshoot of the first part, volts.
+/// Standard uncertainty of the assumed overshoot of the first part, volts of a 12 V coil.
 const GUESS_SD_V: f64 = 0.05;
 /// Prior elasticities of the overshoot, percent per percent of a result (mean and 1 sd), in the order of [`CoarseResults`]. A
 /// late armature is heavy: its flight is most of the delay of a rising ramp and half of an operate time. A high
@@ -94,6 +94,9 @@ pub struct Predicted {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OvershootModel {
     guess_v: f64,
+    /// Nominal coil voltage relative to 12 V, which the prior is stated for.
+    #[serde(default = "of_12_v")]
+    coil: f64,
     parts: u32,
     first: [f64; RESULTS],
     /// Sums over prior and parts: products of the terms, and of the terms with the overshoot minus the guess.
@@ -104,18 +107,20 @@ pub struct OvershootModel {
 }
 
 impl OvershootModel {
-    /// Returns the model before the first part, from a guess of the overshoot in volts.
-    pub fn guess(guess_v: f64) -> Self {
+    /// Returns the model before the first part, from a guess of the overshoot in volts; `coil`: nominal coil voltage relative
+    /// to 12 V.
+    pub fn guess(guess_v: f64, coil: f64) -> Self {
         let mut law = Self {
             guess_v,
+            coil,
             parts: 0,
             first: [0.0; RESULTS],
             products: [[0.0; TERMS]; TERMS],
             with_overshoot: [0.0; TERMS],
-            squares: PRIOR_WEIGHT * SCATTER_V.powi(2),
+            squares: PRIOR_WEIGHT * (SCATTER_V * coil).powi(2),
         };
         for term in 0..TERMS {
-            let (mean_v, weight) = prior(guess_v, term);
+            let (mean_v, weight) = law.prior(term);
             law.products[term][term] = weight;
             law.with_overshoot[term] = weight * mean_v;
             law.squares += weight * mean_v.powi(2);
@@ -176,7 +181,7 @@ impl OvershootModel {
         let of_term = |term: usize| {
             let mut alone = [0.0; TERMS];
             alone[term] = 1.0;
-            1.0 - prior(self.guess_v, term).1 * solved(self.products, alone)[term]
+            1.0 - self.prior(term).1 * solved(self.products, alone)[term]
         };
         (0..TERMS).map(of_term).sum()
     }
@@ -186,6 +191,21 @@ impl OvershootModel {
         let parts = f64::from(self.parts);
         let more = parts - RESULTS as f64;
         (more > 0.0).then(|| (parts * spread - 1.0) / (MAX_DISTANCE2 * (1.0 + WIDER / more)))
+    }
+
+    /// Returns the prior mean of a term, volts, and its weight. The overshoot of a rising ramp is positive, that of a
+    /// falling one negative.
+    fn prior(&self, term: usize) -> (f64, f64) {
+        let (guess_v, guess_sd_v) = (self.guess_v, GUESS_SD_V * self.coil);
+        let elasticities = if guess_v > 0.0 { RISING } else { FALLING };
+        let (mean_v, sd_v) = match term.checked_sub(1) {
+            None => (0.0, guess_sd_v),
+            Some(result) => (
+                elasticities[result] * guess_v,
+                ELASTICITY_SD * guess_v.abs().max(guess_sd_v),
+            ),
+        };
+        (mean_v, (SCATTER_V * self.coil / sd_v).powi(2))
     }
 
     fn terms(&self, logarithms: [f64; RESULTS]) -> [f64; TERMS] {
@@ -200,18 +220,9 @@ impl OvershootModel {
     }
 }
 
-/// Returns the prior mean of a term, volts, and its weight: positive overshoot for a rising ramp, negative for a
-/// falling one.
-fn prior(guess_v: f64, term: usize) -> (f64, f64) {
-    let elasticities = if guess_v > 0.0 { RISING } else { FALLING };
-    let (mean_v, sd_v) = match term.checked_sub(1) {
-        None => (0.0, GUESS_SD_V),
-        Some(result) => (
-            elasticities[result] * guess_v,
-            ELASTICITY_SD * guess_v.abs().max(GUESS_SD_V),
-        ),
-    };
-    (mean_v, (SCATTER_V / sd_v).powi(2))
+/// Coil of a model that was stored without one.
+fn of_12_v() -> f64 {
+    1.0
 }
 
 fn dot(a: [f64; TERMS], b: [f64; TERMS]) -> f64 {

@@ -78,7 +78,8 @@ pub struct Facts {
     pub stage: Stage,
     /// Expected distribution over a lot.
     pub expected: Expected,
-    /// Greatest acceptable rms error over a lot: ohm in percent, V in mV, else in the unit of the key.
+    /// Greatest acceptable rms error over a lot: ohm in percent, V in percent of the nominal coil voltage,
+    /// else in the unit of the key.
     pub allowed_rms: f64,
 }
 
@@ -163,8 +164,8 @@ const NC: (&[CardStep], Stage) = (
 #[rustfmt::skip]
 static TABLE: [Facts; Parameter::ALL.len()] = [
     Facts::of("coil_resistance_ohm", COIL, (&[CardStep::Coil], Stage::Coil), Expected::Coil, 0.12),
-    Facts::of("operate_voltage_v", VOLTAGE, RISING, Expected::Threshold(Direction::Rising), 9.0),
-    Facts::of("release_voltage_v", VOLTAGE, FALLING, Expected::Threshold(Direction::Falling), 4.0),
+    Facts::of("operate_voltage_v", VOLTAGE, RISING, Expected::Threshold(Direction::Rising), 0.075),
+    Facts::of("release_voltage_v", VOLTAGE, FALLING, Expected::Threshold(Direction::Falling), 0.035),
     Facts::of("operate_time_ms", TIME, OPERATE, Expected::usual(4.7, 0.25, 0.008), 0.02),
     Facts::of("release_time_ms", TIME, RELEASE, Expected::usual(2.9, 0.15, 0.008), 0.02),
     Facts::of("operate_bounce_ms", TIME, OPERATE, Expected::lognormal(0.4, 0.4, 0.012), 0.05),

@@ -8,6 +8,7 @@ use crate::rig::point::{
     AnalogInput, AnalogOutput, DigitalInput, DigitalOutput, Fixture, GatedCounter, MissingPoint,
     Quantity, Switch, Thermometer, points,
 };
+use crate::rig::supply::{READ_BACK, RangeSelector, SELECT};
 use crate::rig::wiring::Wiring;
 use std::sync::Arc;
 
@@ -46,13 +47,29 @@ points! {
 }
 
 points! {
-    /// Analog inputs that a test reads.
+    /// Analog inputs that a test or its calibration reads.
     AnalogIn {
         CoilCurrent = "coil_current",
         CoilVoltageFine = "coil_voltage_fine",
         CoilCurrentFine = "coil_current_fine",
         ReferenceVoltage = "reference_voltage",
         ContactDrop = "contact_drop",
+        SupplyVoltage = "supply_voltage",
+        CoilCurrentHigh = "coil_current_high",
+    }
+}
+
+impl AnalogIn {
+    /// Returns true for an input that every rig for relays has.
+    pub const fn is_needed(self) -> bool {
+        match self {
+            Self::CoilCurrent
+            | Self::CoilVoltageFine
+            | Self::CoilCurrentFine
+            | Self::ReferenceVoltage
+            | Self::ContactDrop => true,
+            Self::SupplyVoltage | Self::CoilCurrentHigh => false,
+        }
     }
 }
 
@@ -74,13 +91,13 @@ points! {
 }
 
 /// Meaning of the bits of the signal [`BOARD`], highest first.
-pub const BOARD_BITS: &str =
-    "Kelvin NC NO COM coil B A, probes up, no compliance, NC closed, NO closed";
+pub const BOARD_BITS: &str = "supply range 1 0 where the rig has ranges, \
+     Kelvin NC NO COM coil B A, probes up, no compliance, NC closed, NO closed";
 
 /// Thermometer of the magazine track, taken as that of the part.
 const TRACK: &str = "track_temperature";
 
-/// Inputs of the board that one reading samples together, from bit 0 on.
+/// Inputs of the board that one reading samples together, from bit 0 on; those that read the range back follow.
 const BOARD_INPUTS: [DigitalIn; 9] = [
     DigitalIn::NoClosed,
     DigitalIn::NcClosed,
@@ -95,9 +112,20 @@ const BOARD_INPUTS: [DigitalIn; 9] = [
 /// Signal name of [`BOARD_INPUTS`].
 pub const BOARD: &str = "board";
 
+const INPUTS: [&str; DigitalIn::COUNT + READ_BACK.len()] = {
+    let mut all = [READ_BACK[0]; DigitalIn::COUNT + READ_BACK.len()];
+    let mut at = 0;
+    while at < DigitalIn::COUNT {
+        all[at] = DigitalIn::NAMES[at];
+        at += 1;
+    }
+    all[at + 1] = READ_BACK[1];
+    all
+};
+
 /// Every point of this kind that `config/rig.toml` may have; a test needs only those declared above.
 pub const FIXTURE: Fixture = Fixture {
-    digital_in: DigitalIn::NAMES,
+    digital_in: &INPUTS,
     digital_out: &SWITCHES,
     analog_in: &QUANTITIES,
     analog_out: AnalogOut::NAMES,
@@ -105,13 +133,17 @@ pub const FIXTURE: Fixture = Fixture {
     counter: Counter::NAMES,
 };
 
-const QUANTITIES: [Quantity; 8] = [
-    quantity("coil_voltage", "V", 1e-5),
+const QUANTITIES: [Quantity; 9] = [
+    Quantity {
+        ranged: true,
+        ..quantity("coil_voltage", "V", 1e-5)
+    },
     quantity("coil_current", "A", 1e-8),
     quantity("contact_current", "A", 1e-5),
     quantity("supply_voltage", "V", 1e-5),
     COIL_VOLTAGE,
     quantity("coil_current_fine", "A", 1e-8),
+    quantity("coil_current_high", "A", 1e-7),
     quantity("reference_voltage", "V", 1e-5),
     // Every test reads it, and no act sets its channel mask.
     Quantity {
@@ -121,7 +153,10 @@ const QUANTITIES: [Quantity; 8] = [
 ];
 
 /// Signal of the coil voltage.
-pub const COIL_VOLTAGE: Quantity = quantity("coil_voltage_fine", "V", 1e-5);
+pub const COIL_VOLTAGE: Quantity = Quantity {
+    ranged: true,
+    ..quantity("coil_voltage_fine", "V", 1e-5)
+};
 
 const fn quantity(name: &'static str, unit: &'static str, step: f64) -> Quantity {
     Quantity {
@@ -129,21 +164,23 @@ const fn quantity(name: &'static str, unit: &'static str, step: f64) -> Quantity
         unit,
         step,
         enabled: false,
+        ranged: false,
     }
 }
 
-const SWITCHES: [Switch; DigitalOut::COUNT] = {
+const SWITCHES: [Switch; DigitalOut::COUNT + SELECT.len()] = {
     let mut all = [Switch {
-        name: "",
+        name: SELECT[0],
         traced: false,
-    }; DigitalOut::COUNT];
+    }; DigitalOut::COUNT + SELECT.len()];
     let mut at = 0;
-    while at < all.len() {
+    while at < DigitalOut::COUNT {
         let output = DigitalOut::ALL[at];
         all[at].name = output.name();
         all[at].traced = matches!(output, DigitalOut::CoilDrive);
         at += 1;
     }
+    all[at + 1].name = SELECT[1];
     all
 };
 
@@ -152,13 +189,16 @@ const SWITCHES: [Switch; DigitalOut::COUNT] = {
 pub struct Points {
     inputs: [DigitalInput; DigitalIn::COUNT],
     outputs: [DigitalOutput; DigitalOut::COUNT],
-    analog: [AnalogInput; AnalogIn::COUNT],
+    /// Each with its gain, volts at the terminal per unit.
+    analog: [Option<(AnalogInput, f64)>; AnalogIn::COUNT],
     sources: [AnalogOutput; AnalogOut::COUNT],
     counters: [GatedCounter; Counter::COUNT],
     /// Temperature of the part.
     pub track: Thermometer,
     /// Inputs of the board that one reading samples together.
     pub board: Arc<Word>,
+    /// Points that select the range of the supply; none on a rig with one range.
+    pub range: Option<RangeSelector>,
 }
 
 impl Points {
@@ -173,20 +213,32 @@ impl Points {
         let outputs = all("digital_out", DigitalOut::NAMES, |it| {
             wiring.digital_output(it)
         })?;
-        let analog = all("analog_in", AnalogIn::NAMES, |it| wiring.analog_input(it))?;
+        let gained = |input| (input, wiring.analog_in(input).gain);
+        let analog = AnalogIn::NAMES.iter().map(|it| wiring.analog_input(it));
+        let analog: Vec<Option<(AnalogInput, f64)>> = analog.map(|it| it.map(gained)).collect();
+        let mut lacks = AnalogIn::ALL.iter().zip(&analog);
+        if let Some((point, _)) = lacks.find(|(it, at)| it.is_needed() && at.is_none()) {
+            return Err(MissingPoint {
+                section: "analog_in",
+                name: point.name(),
+            });
+        }
         let sources = all("analog_out", AnalogOut::NAMES, |it| {
             wiring.analog_output(it)
         })?;
         let counters = all("counter", Counter::NAMES, |it| wiring.gated_counter(it))?;
         let [track] = all("temperature", &[TRACK], |it| wiring.thermometer(it))?;
+        let range = wiring.range_selector();
+        let board = BOARD_INPUTS.map(|it| inputs[it.index()]).into_iter();
         let board = Arc::new(Word {
             name: BOARD,
-            inputs: BOARD_INPUTS.map(|it| inputs[it.index()]).to_vec(),
+            inputs: board.chain(range.iter().flat_map(|it| it.inputs)).collect(),
         });
         Ok(Self {
             inputs,
             outputs,
-            analog,
+            analog: std::array::from_fn(|at| analog[at]),
+            range,
             sources,
             counters,
             track,
@@ -204,9 +256,22 @@ impl Points {
         self.outputs[point.index()]
     }
 
-    /// Returns an analog input.
+    /// Returns an analog input; panics for one that the rig lacks.
     pub fn analog(&self, point: AnalogIn) -> AnalogInput {
-        self.analog[point.index()]
+        let Some(input) = self.wired_analog(point) else {
+            panic!("a rig without {point} is read");
+        };
+        input
+    }
+
+    /// Returns an analog input; none where the rig lacks it.
+    pub fn wired_analog(&self, point: AnalogIn) -> Option<AnalogInput> {
+        self.analog[point.index()].map(|(input, _)| input)
+    }
+
+    /// Returns the gain of an analog input, volts at the terminal per unit; none where the rig lacks it.
+    pub fn gain(&self, point: AnalogIn) -> Option<f64> {
+        self.analog[point.index()].map(|(_, gain)| gain)
     }
 
     /// Returns one of the three outputs of the supply.

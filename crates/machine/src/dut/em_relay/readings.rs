@@ -3,6 +3,7 @@
 use super::points::{AnalogIn, Counter, DigitalIn, Points};
 use crate::instrument::readings::Readings as ByPoint;
 use crate::rig::sample::{CountSample, Sample};
+use crate::rig::supply::code_of;
 
 /// Inputs of the interface board at one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,19 +18,25 @@ pub struct BoardInputs {
     pub compliance: bool,
     /// Probes are up, by the hard-wired chain.
     pub probe_chain: bool,
+    /// Code of the supply range; none on a rig with one range.
+    pub range: Option<u8>,
 }
 
-/// One scan of the coil converter; `None` for a channel outside the scan.
+/// One scan of the coil converter, currents at the gains of the shipped rig; `None` for a channel outside the scan.
 #[derive(Debug, Clone)]
 pub struct CoilScan {
-    /// Coil voltage, up to 6 V.
+    /// Coil voltage.
     pub voltage_fine: Option<Sample>,
     /// Coil current, up to 16 mA.
     pub current_fine: Option<Sample>,
     /// Coil current, up to 50 mA.
     pub current_wide: Option<Sample>,
+    /// Coil current, up to 166 mA.
+    pub current_high: Option<Sample>,
     /// The 5 V reference.
     pub reference: Option<Sample>,
+    /// The supply in front of the drive.
+    pub supply: Option<Sample>,
 }
 
 /// All readings of a stage by kind, each in order.
@@ -54,11 +61,13 @@ pub struct Readings {
 impl Readings {
     /// Sorts the readings of a stage; `before` holds the last counts of the previous stage.
     pub fn of(read: &ByPoint, points: &Points, before: Option<[CountSample; 2]>) -> Self {
-        let analog = |input| read.analog(points.analog(input)).cloned();
+        let analog = |input| analog(read, points, input);
         let count = |counter| read.counts(points.counter(counter)).cloned();
         let gates = count(Counter::Gate0).zip(count(Counter::Gate1));
         let gates = gates.map(|(first, second)| [first, second]);
-        let currents = analog(AnalogIn::CoilCurrentFine).chain(analog(AnalogIn::CoilCurrent));
+        let currents = analog(AnalogIn::CoilCurrentFine)
+            .chain(analog(AnalogIn::CoilCurrent))
+            .chain(analog(AnalogIn::CoilCurrentHigh));
         Self {
             boards: boards(read, points),
             coil: scans(read, points),
@@ -71,6 +80,16 @@ impl Readings {
     }
 }
 
+/// Yields the samples of an analog input; none where the rig lacks it.
+fn analog<'a>(
+    read: &'a ByPoint,
+    points: &Points,
+    input: AnalogIn,
+) -> impl Iterator<Item = Sample> + use<'a> {
+    let input = points.wired_analog(input).into_iter();
+    input.flat_map(|input| read.analog(input)).cloned()
+}
+
 fn boards(read: &ByPoint, points: &Points) -> Vec<BoardInputs> {
     let states = |point| read.states(points.input(point));
     let mut kelvin = [
@@ -81,6 +100,10 @@ fn boards(read: &ByPoint, points: &Points) -> Vec<BoardInputs> {
         DigitalIn::KelvinNc,
     ]
     .map(states);
+    let mut range = points
+        .range
+        .as_ref()
+        .map(|it| it.inputs.map(|bit| read.states(bit)));
     let contacts = states(DigitalIn::NoClosed).zip(states(DigitalIn::NcClosed));
     let board = states(DigitalIn::SourceCompliance).zip(states(DigitalIn::ProbeChain));
     let board = contacts.zip(board);
@@ -93,22 +116,29 @@ fn boards(read: &ByPoint, points: &Points) -> Vec<BoardInputs> {
                 nc_closed,
                 compliance,
                 probe_chain,
+                range: range
+                    .as_mut()
+                    .map(|bits| code_of(bits.each_mut().map(|bit| bit.next() == Some(true)))),
             },
         )
         .collect()
 }
 
 fn scans(read: &ByPoint, points: &Points) -> Vec<CoilScan> {
-    let channel = |input| read.analog(points.analog(input)).cloned();
+    let channel = |input| analog(read, points, input);
     let mut fine = channel(AnalogIn::CoilCurrentFine);
     let mut wide = channel(AnalogIn::CoilCurrent);
+    let mut high = channel(AnalogIn::CoilCurrentHigh);
     let mut reference = channel(AnalogIn::ReferenceVoltage);
+    let mut supply = channel(AnalogIn::SupplyVoltage);
     channel(AnalogIn::CoilVoltageFine)
         .map(|voltage| CoilScan {
             voltage_fine: Some(voltage),
             current_fine: fine.next(),
             current_wide: wide.next(),
+            current_high: high.next(),
             reference: reference.next(),
+            supply: supply.next(),
         })
         .collect()
 }

@@ -1,10 +1,12 @@
 //! Relay part of a recipe: the device, and how to measure it.
 
 use super::parameter::Parameter;
+use super::points::AnalogIn;
 use super::sampling::{CoilSampling, ContactSampling};
 use super::strategy::Strategy;
 use super::threshold::Direction;
 use super::{card, feasible, made_up};
+use crate::dut::accuracy::AccuracySettings;
 use crate::dut::card::Card;
 use crate::dut::device::Rig;
 use crate::dut::made_up::MadeUp;
@@ -12,6 +14,7 @@ use crate::dut::recipe::{KindRecipe, Limits, PartFacts};
 use crate::dut::{Calibration, Device, Kind, Recipe};
 use crate::rig::fault::Fault;
 use crate::rig::point::MissingPoint;
+use crate::rig::supply::SupplyDemand;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use units::Celsius;
@@ -51,8 +54,12 @@ impl KindRecipe for RelayRecipe {
     }
 
     fn feasible(&self, limits: &Limits, rig: &Rig) -> Result<(), Fault> {
-        feasible::check_references(rig)?;
+        feasible::check_references(self.part.nominal_v, rig)?;
         feasible::check(self, limits, rig.wiring, rig.accuracy)
+    }
+
+    fn demand(&self, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand {
+        feasible::demand(self, limits, accuracy)
     }
 
     fn card(&self) -> Card {
@@ -122,6 +129,27 @@ pub enum CoilChannels {
     Fine,
     /// `coil_voltage_fine` and `coil_current`: a coil of low resistance exceeds the range of the fine current.
     CoarseCurrent,
+    /// `coil_voltage_fine` and `coil_current_high`: a coil that draws too much for `coil_current` as well.
+    HighCurrent,
+}
+
+impl CoilChannels {
+    /// Names in recipes.
+    pub const NAMES: [&'static str; 3] = ["fine", "coarse_current", "high_current"];
+
+    /// Returns the name in recipes.
+    pub const fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+
+    /// Returns the channel of the coil current.
+    pub const fn current(self) -> AnalogIn {
+        match self {
+            Self::Fine => AnalogIn::CoilCurrentFine,
+            Self::CoarseCurrent => AnalogIn::CoilCurrent,
+            Self::HighCurrent => AnalogIn::CoilCurrentHigh,
+        }
+    }
 }
 
 /// Coil suppression: the path of the coil current after switch-off.

@@ -1,13 +1,23 @@
 //! Calibration against the references on the interface board: 5.000 V, 400 ohm, 50 mOhm, 1.000 ms.
 //!
 //! Runs with an empty nest and the probes up (drive and source need the probe-up chain). It gives the coil converter's
-//! line, ohms per ratio on both current channels, milliohms per volt of drop, gate delays, gain and offset of the
+//! line, ohms per ratio on each current channel, milliohms per volt of drop, gate delays, gain and offset of the
 //! three supply outputs, and the slope of the fine ramp against the host's clock. The slope of the coarse ramp stays
 //! nominal: it only places the fine ramp.
 
+mod check;
 mod fault;
+mod levels;
+mod ohms;
+mod slope;
+mod taken;
 
+use check::{check_gain, check_range, check_supply};
 pub use fault::ReferenceFault;
+use levels::Levels;
+use ohms::Ohms;
+use slope::slope;
+use taken::{Level, Taken, current, level};
 
 use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::calibration::{Calibration, InputLine, OutputLine};
@@ -18,6 +28,7 @@ use crate::dut::em_relay::points::DigitalOut::{
 };
 use crate::dut::em_relay::points::{AnalogIn, Points};
 use crate::dut::em_relay::readings::{CoilScan, Readings};
+use crate::dut::em_relay::recipe::CoilChannels;
 use crate::dut::em_relay::timing::counts;
 use crate::gauge::Factor;
 use crate::gauge::budget::rectangular;
@@ -28,22 +39,24 @@ use crate::rig::sample::{Quality, Sample};
 use crate::rig::wiring::Wiring;
 use units::{Span, Volt};
 
-/// Channels of the coil converter.
-pub const SCANNED: [AnalogIn; CHANNELS] = [
+/// Channels of the coil converter, of which a rig may lack the last two.
+const SCANNED: [AnalogIn; 6] = [
     AnalogIn::CoilVoltageFine,
     AnalogIn::CoilCurrentFine,
     AnalogIn::CoilCurrent,
     AnalogIn::ReferenceVoltage,
+    AnalogIn::SupplyVoltage,
+    AnalogIn::CoilCurrentHigh,
 ];
-const CHANNELS: usize = 4;
 /// Scans per level: they average the 2.8 mV of one reading to 0.8 mV.
 const SCANS: usize = 12;
-const RAMP_SCANS: usize = 44;
-/// Levels at the coil, volts: both within the range of the fine channels at 400 ohm.
-const LOW_V: f64 = 1.5;
-const HIGH_V: f64 = 5.7;
-/// Distance from both ends of the fine ramp within which readings are excluded from the slope, volts.
-const SLOPE_MARGIN_V: f64 = 0.3;
+/// Scans along the fine ramp, and the share of a round of conversions between two of them: what is read is up to a round
+/// old, and at this share the ages spread evenly over the ramp and do not tilt it.
+const RAMP_SCANS: usize = 56;
+const RAMP_ROUND: f64 = 0.6;
+/// Longest time until the sources have fallen to zero and the relays of the range have switched.
+const SWITCHES: Span = Span::ms(4000);
+/// Drops read per polarity.
 const DROPS: usize = 8;
 /// Number of gate pulses: their sum errs by one count, their mean by 1/25.
 const PULSES: u32 = 25;
@@ -51,45 +64,25 @@ const PULSES: u32 = 25;
 /// Returns the inputs that [`acts`] scans; none on a rig that lacks a point of the kind.
 pub fn inputs(wiring: &Wiring) -> Vec<AnalogInput> {
     let points = Points::resolve(wiring).ok();
-    let inputs = points.map(|points| SCANNED.map(|it| points.analog(it)).to_vec());
+    let inputs = points.map(|points| {
+        let inputs = SCANNED.iter().filter_map(|it| points.wired_analog(*it));
+        inputs.collect()
+    });
     inputs.unwrap_or_default()
+}
+
+/// Returns the channels that this rig scans.
+fn scanned(points: &Points) -> Vec<AnalogIn> {
+    let wired = |it: &AnalogIn| points.wired_analog(*it).is_some();
+    SCANNED.into_iter().filter(wired).collect()
 }
 
 /// Returns the acts, in the order that [`conclude`] expects.
 pub fn acts(context: &Context) -> Vec<act::Act> {
-    let mut acts = vec![
-        Act::CoilMask(&SCANNED),
-        all_off(),
-        Act::Supply(vec![
-            (SupplyLevel, Volt(0.0)),
-            (SupplyCoarse, Volt(0.0)),
-            (SupplyFine, Volt(0.0)),
-        ]),
-        Act::Wait(Span::ms(200) + context.fresh(CHANNELS)),
-    ];
-    scans(context, SCANS, &mut acts);
+    let scanned = scanned(&context.points);
+    let mut acts = at_zero(context, &scanned);
     acts.push(Act::Board(vec![(ReferenceCoil, true), (CoilDrive, true)]));
-    let span = Volt(HIGH_V - LOW_V);
-    for step in [
-        vec![(SupplyLevel, Volt(LOW_V))],
-        vec![(SupplyLevel, Volt(HIGH_V))],
-        vec![(SupplyLevel, Volt(LOW_V)), (SupplyCoarse, span)],
-    ] {
-        acts.extend([
-            Act::Supply(step),
-            Act::Wait(Span::ms(60) + context.fresh(CHANNELS)),
-        ]);
-        scans(context, SCANS, &mut acts);
-    }
-    acts.extend([
-        Act::Supply(vec![(SupplyCoarse, Volt(0.0))]),
-        Act::Wait(Span::ms(100)),
-        Act::Supply(vec![(SupplyFine, span)]),
-        Act::Wait(Span::ms(100) + context.fresh(CHANNELS)),
-    ]);
-    scans(context, RAMP_SCANS, &mut acts);
-    acts.push(Act::Wait(Span::ms(1500)));
-    scans(context, SCANS, &mut acts);
+    acts.extend(levels(context, &scanned));
     acts.extend([
         Act::Supply(vec![(SupplyFine, Volt(0.0))]),
         all_off(),
@@ -99,11 +92,63 @@ pub fn acts(context: &Context) -> Vec<act::Act> {
     pulses(&mut acts);
     acts.extend([
         all_off(),
-        Act::CoilMask(context.coil_channels()),
+        Act::CoilMask(context.coil_channels().to_vec()),
         Act::Supply(vec![(SupplyLevel, Volt(context.relay.test.prebias_v))]),
         Act::Wait(Span::ms(2000)),
     ]);
-    context.points.wired(acts, &SCANNED)
+    context.points.wired(acts, &scanned)
+}
+
+/// Takes all sources to zero, selects the range, and scans without drive.
+fn at_zero(context: &Context, scanned: &[AnalogIn]) -> Vec<Act> {
+    let mut acts = vec![
+        Act::CoilMask(scanned.to_vec()),
+        all_off(),
+        Act::Supply(vec![
+            (SupplyLevel, Volt(0.0)),
+            (SupplyCoarse, Volt(0.0)),
+            (SupplyFine, Volt(0.0)),
+        ]),
+    ];
+    acts.extend(context.range_code().into_iter().flat_map(|code| {
+        let within = SWITCHES;
+        [Act::SelectRange(code), Act::ConfirmRange { code, within }]
+    }));
+    acts.push(Act::Wait(Span::ms(200) + context.fresh(scanned.len())));
+    scans(context, (scanned, SCANS), &mut acts);
+    acts
+}
+
+/// Scans the reference coil at each level, then along the fine ramp and at its end.
+fn levels(context: &Context, scanned: &[AnalogIn]) -> Vec<Act> {
+    let levels = Levels::of(context);
+    let mut acts = Vec::new();
+    let steps = levels
+        .steps()
+        .map(|(level, n)| (vec![(SupplyLevel, level)], n));
+    let coarse = vec![(SupplyLevel, levels.low), (SupplyCoarse, levels.span())];
+    for (step, n) in steps.chain([(coarse, SCANS)]) {
+        acts.extend([
+            Act::Supply(step),
+            Act::Wait(Span::ms(60) + context.fresh(scanned.len())),
+        ]);
+        scans(context, (scanned, n), &mut acts);
+    }
+    acts.extend([
+        Act::Supply(vec![(SupplyCoarse, Volt(0.0))]),
+        Act::Wait(Span::ms(100)),
+        Act::Supply(vec![(SupplyFine, levels.span())]),
+        Act::Wait(Span::ms(100) + context.fresh(scanned.len())),
+    ]);
+    let wait = Act::Wait(Span::seconds(
+        RAMP_ROUND * context.round(scanned.len()).as_seconds(),
+    ));
+    for _ in 0..RAMP_SCANS {
+        acts.extend([Act::Read(Read::Coil), wait.clone()]);
+    }
+    acts.push(Act::Wait(Span::ms(1500)));
+    scans(context, (scanned, SCANS), &mut acts);
+    acts
 }
 
 fn all_off() -> Act {
@@ -120,9 +165,10 @@ fn all_off() -> Act {
     Act::Board(off.map(|output| (output, false)).to_vec())
 }
 
-fn scans(context: &Context, n: usize, acts: &mut Vec<Act>) {
+fn scans(context: &Context, (scanned, n): (&[AnalogIn], usize), acts: &mut Vec<Act>) {
+    let round = context.round(scanned.len());
     for _ in 0..n {
-        acts.extend([Act::Read(Read::Coil), Act::Wait(context.round(CHANNELS))]);
+        acts.extend([Act::Read(Read::Coil), Act::Wait(round)]);
     }
 }
 
@@ -160,212 +206,108 @@ fn pulses(acts: &mut Vec<Act>) {
     acts.push(Act::Read(Read::Gates));
 }
 
-/// Returns the mean of one channel over scans; fails when a scan lacks it.
-fn mean(
-    scans: &[CoilScan],
-    channel: fn(&CoilScan) -> &Option<Sample>,
-    name: &'static str,
-) -> Result<f64, ReferenceFault> {
-    let mut sum = 0.0;
-    for scan in scans {
-        match channel(scan) {
-            Some(sample)
-                if sample.quality == Quality::Good && sample.terminal_volts.is_finite() =>
-            {
-                sum += sample.terminal_volts;
-            }
-            Some(sample) => {
-                return Err(ReferenceFault::reads(name, sample));
-            }
-            None => return Err(ReferenceFault::NotEnabled { name }),
-        }
-    }
-    if scans.is_empty() {
-        Err(ReferenceFault::NotRead { name })
-    } else {
-        Ok(sum / scans.len() as f64)
-    }
-}
-
-/// Terminal volts at one level: voltage, fine current, wide current and reference.
-struct Level {
-    voltage_v: f64,
-    fine_v: f64,
-    wide_v: f64,
-    reference_v: f64,
-}
-
-fn level(scans: &[CoilScan]) -> Result<Level, ReferenceFault> {
-    Ok(Level {
-        voltage_v: mean(scans, |scan| &scan.voltage_fine, "coil voltage")?,
-        fine_v: mean(scans, |scan| &scan.current_fine, "coil current (fine)")?,
-        wide_v: mean(scans, |scan| &scan.current_wide, "coil current (wide)")?,
-        reference_v: mean(scans, |scan| &scan.reference, "reference voltage")?,
-    })
-}
-
 /// Computes the factors from the readings of [`acts`]. `made_at_us`: microseconds since 1970 UTC.
+///
+/// # Errors
+/// Names the range, the channel or the reference that does not read as it must.
 pub fn conclude(
     context: &Context,
     readings: &ByPoint,
     made_at_us: i64,
     valid_us: i64,
-    voltage_gain: f64,
 ) -> Result<Calibration, ReferenceFault> {
     let readings = &Readings::of(readings, &context.points, None);
-    let expected = 4 * SCANS + RAMP_SCANS + SCANS;
-    if readings.coil.len() != expected
-        || readings.drops.len() != 2 * DROPS
-        || readings.gates.len() != 2
-    {
-        return Err(ReferenceFault::Scans {
-            found: readings.coil.len(),
-            expected,
-        });
-    }
-    let part = |from: usize, n: usize| &readings.coil[from..from + n];
-    let zero = level(part(0, SCANS))?;
-    let low = level(part(SCANS, SCANS))?;
-    let high = level(part(2 * SCANS, SCANS))?;
-    let coarse = level(part(3 * SCANS, SCANS))?;
-    let fine = level(part(4 * SCANS + RAMP_SCANS, SCANS))?;
+    check_range(context, readings)?;
+    let levels = Levels::of(context);
+    let taken = Taken::of(levels, readings)?;
+    let (low, high) = (level(taken.steps[0].1)?, level(taken.steps[1].1)?);
+    let (coarse, fine) = (level(taken.coarse)?, level(taken.fine)?);
+    let input = coil_input(
+        context,
+        level(taken.zero)?,
+        [&low, &high, &coarse, &fine],
+        taken.zero,
+    )?;
+    check_gain(context, &input)?;
+    let voltage_gain = context.points.gain(AnalogIn::CoilVoltageFine);
+    let voltage_gain = voltage_gain.unwrap_or(f64::NAN);
+    let volts = |level: &Level| input.correct(Volt(level.voltage_v)) / voltage_gain;
+    check_supply(context, taken.steps[1].1, (&input, volts(&high)))?;
     let u_read = context.reading_u_v() / (SCANS as f64).sqrt();
-
-    let offset = (zero.voltage_v + zero.fine_v + zero.wide_v) / 3.0;
-    let reference = [&zero, &low, &high, &coarse, &fine]
-        .iter()
-        .map(|l| l.reference_v)
-        .sum::<f64>()
-        / 5.0;
-    let known = &context.reference;
-    let coil_input = InputLine {
-        gain: Factor::new(
-            (reference - offset) / known.voltage_v,
-            (rectangular(known.voltage_tolerance_pct / 100.0)).hypot(u_read / known.voltage_v),
-        ),
-        offset_v: Factor::new(offset, u_read / 3f64.sqrt()),
-    };
-    check_gain(context, &coil_input)?;
-
-    let volts = |terminal: f64| coil_input.correct(Volt(terminal)).0 / voltage_gain;
-    let ohm = |current: fn(&Level) -> f64| {
-        let ratio = (current(&high) - offset) / (high.voltage_v - offset);
-        let u = (u_read / (high.voltage_v - offset)).hypot(u_read / (current(&high) - offset));
-        let value = known.coil_ohm * ratio;
-        Factor::new(
-            value,
-            value * u.hypot(rectangular(known.coil_tolerance_pct / 100.0)),
-        )
-    };
-    let span = HIGH_V - LOW_V;
+    let span = levels.span().0;
     let gain = |to: &Level| {
         let u = 2f64.sqrt() * u_read / voltage_gain / span;
-        Factor::new(
-            (volts(to.voltage_v) - volts(low.voltage_v)) / span,
-            u.hypot(coil_input.gain.u),
-        )
+        Factor::new((volts(to) - volts(&low)).0 / span, u.hypot(input.gain.u))
+    };
+    let output = |to: &Level, offset_v| OutputLine {
+        gain: gain(to),
+        offset_v,
     };
     let level_gain = gain(&high);
-    let output = |gain: Factor| OutputLine {
-        gain,
-        offset_v: Factor::new(0.0, 0.0),
+    let level_offset_v = Factor::new(
+        volts(&low).0 - level_gain.value * levels.low.0,
+        u_read / voltage_gain,
+    );
+    let level = output(&high, level_offset_v);
+    let ohms = Ohms {
+        context,
+        taken: &taken,
+        input: &input,
+        level: &level,
+        voltage_gain,
     };
     Ok(Calibration {
         made_at_us,
         due_at_us: made_at_us + valid_us,
         simulated: false,
         nominal_v: context.relay.part.nominal_v,
-        level: OutputLine {
-            gain: level_gain,
-            offset_v: Factor::new(
-                volts(low.voltage_v) - level_gain.value * LOW_V,
-                u_read / voltage_gain,
-            ),
-        },
-        coarse: output(gain(&coarse)),
-        fine: output(gain(&fine)),
+        range_factor: context.scale().range(),
+        coarse: output(&coarse, Factor::new(0.0, 0.0)),
+        fine: output(&fine, Factor::new(0.0, 0.0)),
         coarse_v_per_s: Factor::new(
             context.nominal_v_per_s[0],
             context.nominal_v_per_s[0] * rectangular(context.accuracy.ao_slope_pct / 100.0),
         ),
-        fine_v_per_s: slope(
-            context,
-            part(4 * SCANS, RAMP_SCANS),
-            &coil_input,
-            voltage_gain,
-        )?,
-        ohm_fine: ohm(|level| level.fine_v),
-        ohm_wide: ohm(|level| level.wide_v),
+        fine_v_per_s: slope(context, (levels, taken.ramp), &input, voltage_gain)?,
+        ohm_fine: ohms.factor(CoilChannels::Fine)?,
+        ohm_wide: ohms.factor(CoilChannels::CoarseCurrent)?,
+        ohm_high: match context.points.gain(AnalogIn::CoilCurrentHigh) {
+            Some(_) => Some(ohms.factor(CoilChannels::HighCurrent)?),
+            None => None,
+        },
         contact_mohm_per_v: contact_factor(context, &readings.drops)?,
         gate_delay_us: [
             gate_delay(context, readings, 0)?,
             gate_delay(context, readings, 1)?,
         ],
-        coil_input,
+        level,
+        coil_input: input,
         overshoots: None,
         probe_contact_ohm: 0.0,
     })
 }
 
-/// Fails when the gain error exceeds 1.5 times the accuracy of the maker: calibration does not correct a defect.
-fn check_gain(context: &Context, line: &InputLine) -> Result<(), ReferenceFault> {
-    let promised = context.accuracy.ai_gain_pct / 100.0;
-    let found = line.gain.value - 1.0;
-    if found.abs() > 1.5 * promised + 2.0 * line.gain.u {
-        return Err(ReferenceFault::Gain {
-            off_pct: found * 100.0,
-            promised_pct: promised * 100.0,
-        });
-    }
-    Ok(())
-}
-
-/// Returns the slope of the fine ramp by least squares against the arrival of the replies; their constant delay after
-/// the conversion does not tilt the line.
-fn slope(
+/// Computes the line of the coil converter from the reference voltage and the scans without drive.
+fn coil_input(
     context: &Context,
+    zero: Level,
+    driven: [&Level; 4],
     scans: &[CoilScan],
-    line: &InputLine,
-    voltage_gain: f64,
-) -> Result<Factor, ReferenceFault> {
-    let points: Vec<(f64, f64)> = scans
-        .iter()
-        .filter_map(|scan| scan.voltage_fine.as_ref())
-        .filter(|sample| sample.quality == Quality::Good)
-        .map(|sample| {
-            (
-                sample.origin.at.0 as f64 / 1e6,
-                line.correct(Volt(sample.terminal_volts)).0 / voltage_gain,
-            )
-        })
-        .filter(|(_, volts)| (LOW_V + SLOPE_MARGIN_V..HIGH_V - SLOPE_MARGIN_V).contains(volts))
-        .collect();
-    if points.len() < 10 {
-        let readings = points.len();
-        return Err(ReferenceFault::FewOnRamp { readings });
-    }
-    let n = points.len() as f64;
-    let (mt, mv) = (
-        points.iter().map(|p| p.0).sum::<f64>() / n,
-        points.iter().map(|p| p.1).sum::<f64>() / n,
-    );
-    let stt = points.iter().map(|p| (p.0 - mt).powi(2)).sum::<f64>();
-    let stv = points.iter().map(|p| (p.0 - mt) * (p.1 - mv)).sum::<f64>();
-    let value = stv / stt;
-    let rest = points
-        .iter()
-        .map(|p| (p.1 - mv - value * (p.0 - mt)).powi(2))
-        .sum::<f64>()
-        / (n - 2.0);
-    let u = (rest / stt).sqrt().hypot(value * line.gain.u);
-    let nominal = context.nominal_v_per_s[1];
-    if !value.is_finite() || (value / nominal - 1.0).abs() > 0.02 {
-        return Err(ReferenceFault::Slope {
-            v_per_s: value,
-            nominal_v_per_s: nominal,
-        });
-    }
-    Ok(Factor::new(value, u))
+) -> Result<InputLine, ReferenceFault> {
+    let u_read = context.reading_u_v() / (SCANS as f64).sqrt();
+    let fine_v = current(scans, CoilChannels::Fine)?;
+    let wide_v = current(scans, CoilChannels::CoarseCurrent)?;
+    let offset = (zero.voltage_v + fine_v + wide_v) / 3.0;
+    let driven_v: f64 = driven.iter().map(|it| it.reference_v).sum();
+    let reference = (zero.reference_v + driven_v) / 5.0;
+    let known = &context.reference;
+    Ok(InputLine {
+        gain: Factor::new(
+            (reference - offset) / known.voltage_v,
+            rectangular(known.voltage_tolerance_pct / 100.0).hypot(u_read / known.voltage_v),
+        ),
+        offset_v: Factor::new(offset, u_read / 3f64.sqrt()),
+    })
 }
 
 fn contact_factor(context: &Context, drops: &[Sample]) -> Result<Factor, ReferenceFault> {
@@ -415,3 +357,6 @@ fn gate_delay(
     let count_us = 1e6 / context.reference.counter_clock_hz / 6f64.sqrt();
     Ok(Factor::new(delay, count_us / f64::from(PULSES).sqrt()))
 }
+
+#[cfg(test)]
+mod tests;

@@ -11,15 +11,16 @@ use crate::dut::em_relay::calibration::{Overshoot, Overshoots};
 use crate::dut::em_relay::coil::{relative_per_kelvin, to_reference};
 use crate::dut::em_relay::overshoot::OvershootModel;
 use crate::dut::em_relay::probe_contact::Trend;
+use crate::dut::em_relay::scale::Scale;
 use crate::dut::em_relay::settings::{Certified, ReferencePart};
 use crate::gauge::Factor;
 use crate::gauge::Reading;
 use texts::{Lang, Message};
 use thiserror::Error;
-use units::{Celsius, Ohm, Unit};
+use units::{Celsius, Ohm, Unit, Volt};
 
-/// Greatest distance of a reference part's overshoot from the mean, volts; a part further away is an outlier.
-const BAND_V: f64 = 0.060;
+/// Greatest distance of a reference part's overshoot from the mean, of a 12 V coil; a part further away is an outlier.
+const BAND: Volt = Volt(0.060);
 
 /// Reason why a reference part does not calibrate the rig, or disagrees with its certificate.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -253,10 +254,12 @@ impl ReferenceRun {
             });
         }
         let mean = self.shifts.iter().map(shift).sum::<f64>() / n;
+        let nominal_v = parts.first().map_or(f64::NAN, |part| part.nominal_v);
+        let band = Scale::new(nominal_v, 1.0).of_coil(BAND);
         if let Some(odd) = self
             .shifts
             .iter()
-            .find(|one| (shift(one) - mean).abs() > BAND_V)
+            .find(|one| (shift(one) - mean).abs() > band.0)
         {
             return Err(Misfit::Outlier {
                 serial: odd.serial.clone(),

@@ -42,6 +42,7 @@ pub fn context() -> Context {
         reference: instruments.reference,
         accuracy: instruments.accuracy,
         nominal_v_per_s: [96.0, 1.5],
+        range: None,
         probe_contact: None,
         thorough: false,
         teaching: None,
@@ -55,7 +56,7 @@ pub fn device() -> dut::Device {
 
 /// A device of this context.
 pub fn device_of(context: Context) -> dut::Device {
-    dut::Device::EmRelay(Box::new(Device::of(context, 1.6, reference_parts())))
+    dut::Device::EmRelay(Box::new(Device::of(context, reference_parts())))
 }
 
 /// The reference parts of 12 V.
@@ -71,7 +72,7 @@ fn calibration() -> Calibration {
         fine_v: exact(0.0),
         at_v: 0.0,
         at_coarse_v: coarse_v,
-        coarse: OvershootModel::guess(coarse_v),
+        coarse: OvershootModel::guess(coarse_v, 1.0),
         judges: false,
     };
     Calibration {
@@ -85,6 +86,8 @@ fn calibration() -> Calibration {
         },
         ohm_fine: exact(375.0),
         ohm_wide: exact(125.0),
+        ohm_high: None,
+        range_factor: 1.0,
         contact_mohm_per_v: exact(20.0),
         gate_delay_us: [exact(0.0); 2],
         level: OutputLine::IDEAL,

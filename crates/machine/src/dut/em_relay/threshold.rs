@@ -1,7 +1,7 @@
 //! Operate and release voltage from a ramp and a gated counter.
 //!
-//! The window opens when the supply has moved [`WINDOW_V`] from its level at ARM, and the latch closes it at the
-//! contact event, so the indicated voltage is `start +- (WINDOW_V + slope x gate)`. A ramp overshoots the quasi-static
+//! The window opens when the supply has moved [`WINDOW`] from its level at ARM, and the latch closes it at the
+//! contact event, so the indicated voltage is `start +- (WINDOW + slope x gate)`. A ramp overshoots the quasi-static
 //! threshold. Reference parts give the overshoot of the fine ramp; it also contains the tolerance of the 50 mV, the
 //! error of the level, the contact of the probes and the mean heating of the coil. The operate current does not depend
 //! on temperature, so the voltage scales like the coil (IEC 61810-7).
@@ -13,7 +13,7 @@ use crate::gauge::budget::{Budget, Reading, resolution};
 use units::{Celsius, Second, Unit, Volt};
 
 /// Movement of the supply that opens the window of a ramp.
-pub const WINDOW_V: Volt = Volt(0.050);
+pub const WINDOW: Volt = Volt(0.050);
 
 /// Direction of the supply on a ramp.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -35,8 +35,13 @@ impl Direction {
 }
 
 /// Returns the supply voltage at the contact event of a ramp that began at `start`.
-pub fn indicated(start: Volt, slope_v_per_s: f64, gate: Second, direction: Direction) -> Volt {
-    start + (WINDOW_V + Volt(slope_v_per_s * gate.0)) * direction.sign()
+pub fn indicated(
+    (start, window): (Volt, Volt),
+    slope_v_per_s: f64,
+    gate: Second,
+    direction: Direction,
+) -> Volt {
+    start + (window + Volt(slope_v_per_s * gate.0)) * direction.sign()
 }
 
 /// Uncertainty terms of a threshold besides the shift of the reference parts.
@@ -110,9 +115,9 @@ mod tests {
 
     #[test]
     fn a_ramp_indicates_start_plus_window_plus_slope() {
-        let seen = indicated(Volt(7.8), 1.5, Second(0.04), Direction::Rising);
+        let seen = indicated((Volt(7.8), WINDOW), 1.5, Second(0.04), Direction::Rising);
         assert!((seen.0 - 7.91).abs() < 1e-12);
-        let seen = indicated(Volt(2.5), 1.5, Second(0.04), Direction::Falling);
+        let seen = indicated((Volt(2.5), WINDOW), 1.5, Second(0.04), Direction::Falling);
         assert!((seen.0 - 2.39).abs() < 1e-12);
     }
 
@@ -122,7 +127,7 @@ mod tests {
             fine_v: Factor::new(0.0, 0.0),
             at_v: 7.88,
             at_coarse_v: 0.85,
-            coarse: OvershootModel::guess(0.85),
+            coarse: OvershootModel::guess(0.85, 1.0),
             judges: false,
         };
         let uncertainty = RampUncertainty {

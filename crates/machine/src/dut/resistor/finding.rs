@@ -1,6 +1,7 @@
 //! Findings of a resistor test in addition to its result.
 
 use super::parameter::{BIN, Parameter};
+use crate::dut::Reason;
 use crate::dut::finding::Entry;
 use crate::gauge::Side;
 
@@ -13,11 +14,18 @@ pub enum Finding {
     Short,
     /// The channel has no usable reading.
     CurrentNotReadable,
+    /// The supply is in another range than the one selected; detail: both.
+    OtherSupplyRange,
 }
 
 impl Finding {
     /// Every finding.
-    pub const ALL: [Self; 3] = [Self::Open, Self::Short, Self::CurrentNotReadable];
+    pub const ALL: [Self; 4] = [
+        Self::Open,
+        Self::Short,
+        Self::CurrentNotReadable,
+        Self::OtherSupplyRange,
+    ];
 
     /// Returns code and consequence.
     pub fn entry(self) -> Entry {
@@ -29,6 +37,15 @@ impl Finding {
                 Entry::fail("resistor_short", BIN).proves(Parameter::Resistance, Side::Low)
             }
             Self::CurrentNotReadable => Entry::void("resistor_current_not_readable"),
+            Self::OtherSupplyRange => Entry::void("resistor_other_supply_range"),
+        }
+    }
+
+    /// Returns the reason with the names that its text holds.
+    pub fn with(self, detail: impl Into<String>) -> Reason {
+        Reason {
+            detail: detail.into(),
+            ..self.into()
         }
     }
 }

@@ -22,7 +22,7 @@ const LIMITS: &[Key] = table! {
 };
 
 const TEST: &[Key] = table! {
-    key("level_v", above_zero(20.0, "V"), "station", "voltage across the resistor");
+    key("level_v", above_zero(1000.0, "V"), "station", "voltage across the resistor");
     key("settles_ms", whole(1, 1000, "ms"), "station", "from the drive to the first conversion that counts");
     key("readings", whole(1, 100, ""), "station", "readings that are averaged");
 };

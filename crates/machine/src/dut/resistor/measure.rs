@@ -13,16 +13,21 @@ use crate::dut::procedure::{Progress, TestProcedure};
 use crate::dut::record::{Stop, TestRecord};
 use crate::dut::{Characteristic, Kind, Procedure, Recipe};
 use crate::gauge::{Judgement, Reading};
-use crate::instrument::act::{Act, Doing, JobDone, Read, Runner};
+use crate::instrument::act::{Act, Doing, JobDone, Read, Runner, Word};
 use crate::instrument::readings::Readings;
 use crate::rig::image::Image;
 use crate::rig::point::{MissingPoint, Point};
 use crate::rig::sample::{Quality, Sample};
+use crate::rig::supply::{RangeMismatch, RangeSelector, SupplyRange, code_of};
 use std::sync::Arc;
 use units::{RigTime, Span, Unit, Volt};
 
 /// Settling time of current and amplifier after the drive is off.
 const OFF: Span = Span::ms(5);
+/// Longest time until the relays of a range have switched.
+const SWITCHES: Span = Span::ms(500);
+/// Signal name of the inputs that read the range back.
+const RANGE: &str = "supply_range";
 
 /// A resistor recipe on a rig.
 #[derive(Debug, Clone)]
@@ -33,6 +38,8 @@ pub struct Device {
     channel: ChannelAccuracy,
     /// Number of enabled channels of the converter that reads the current.
     channels: u32,
+    /// Range of the supply and the points that select it; none on a rig with one range.
+    range: Option<(RangeSelector, SupplyRange)>,
 }
 
 impl Device {
@@ -46,6 +53,8 @@ impl Device {
         rig: &Rig,
     ) -> Result<Self, MissingPoint> {
         let points = Points::resolve(rig.wiring)?;
+        let range = rig.wiring.supply_range.clone();
+        assert!(range.is_some(), "a resistor on a supply without a range");
         let terminal = rig.wiring.analog_in(points.current);
         let mask = rig.wiring.module(terminal.module).mask.unwrap_or(u8::MAX);
         Ok(Self {
@@ -57,7 +66,36 @@ impl Device {
                 volt_per_ampere: terminal.gain,
             },
             channels: mask.count_ones(),
+            range: rig.wiring.range_selector().zip(range),
         })
+    }
+
+    /// Selects the range while all sources are at zero, and goes no further without it.
+    fn range_acts(&self) -> Vec<Act> {
+        let range = self.range.iter();
+        let acts = range.flat_map(|(selector, range)| {
+            let inputs = selector.inputs.to_vec();
+            let word = Word {
+                name: RANGE,
+                inputs,
+            };
+            [
+                Act::Set(selector.select(range.code).to_vec()),
+                Act::Agree {
+                    expected: selector.expects(range.code).to_vec(),
+                    word: Arc::new(word),
+                    within: SWITCHES,
+                },
+            ]
+        });
+        acts.collect()
+    }
+
+    /// Returns how the range that was read back differs from the selected one.
+    fn mismatch(&self, readings: &Readings) -> Option<RangeMismatch> {
+        let (selector, range) = self.range.as_ref()?;
+        let [low, high] = selector.inputs.map(|it| readings.states(it).last());
+        selector.mismatch(range, code_of([low?, high?]))
     }
 
     fn acts(&self) -> Vec<Act> {
@@ -119,8 +157,9 @@ impl Device {
 impl DeviceUnderTest for Device {
     fn begin(&self, order: &TestOrder, now: RigTime) -> Procedure {
         Procedure::Resistor(Box::new(Test {
-            runner: Runner::new(self.acts(), now),
+            runner: Runner::new([self.range_acts(), self.acts()].concat(), now),
             device: self.clone(),
+            range_mismatch: None,
             stage: Stage::Measure,
             thorough: order.thorough,
             number: order.number,
@@ -164,6 +203,7 @@ pub struct Test {
     repeats_left: u32,
     began: RigTime,
     record: TestRecord,
+    range_mismatch: Option<RangeMismatch>,
 }
 
 impl Test {
@@ -186,6 +226,11 @@ impl Test {
             .analog(self.device.points.current)
             .cloned()
             .collect();
+        if let Some(mismatch) = self.device.mismatch(readings) {
+            let finding = Finding::OtherSupplyRange.with(mismatch.to_string());
+            self.record.stop(finding);
+            self.range_mismatch = Some(mismatch);
+        }
         if !self.record.stopped() {
             match self.device.resistance(&samples) {
                 Ok(reading) => self.record.found(Parameter::Resistance, reading, &samples),
@@ -237,6 +282,10 @@ impl TestProcedure for Test {
 
     fn kind(&self) -> Kind {
         Kind::Resistor
+    }
+
+    fn range_mismatch(&self) -> Option<&RangeMismatch> {
+        self.range_mismatch.as_ref()
     }
 
     fn number(&self) -> u8 {

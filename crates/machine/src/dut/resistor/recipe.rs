@@ -4,6 +4,7 @@ use super::accuracy::ChannelAccuracy;
 use super::parameter::{BIN, Parameter};
 use super::points::Points;
 use super::{card, made_up};
+use crate::dut::accuracy::AccuracySettings;
 use crate::dut::card::Card;
 use crate::dut::device::Rig;
 use crate::dut::made_up::MadeUp;
@@ -12,10 +13,11 @@ use crate::dut::{Calibration, Device, Kind, Recipe};
 use crate::gauge::Limit;
 use crate::rig::fault::Fault;
 use crate::rig::point::MissingPoint;
+use crate::rig::supply::SupplyDemand;
 use crate::rig::wiring::Wiring;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use units::{Celsius, Volt};
+use units::{Ampere, Celsius, Volt};
 
 /// The sections `[part]` and `[test]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -89,6 +91,7 @@ impl KindRecipe for ResistorRecipe {
             let expected = "a rig with every point that its test needs";
             Fault::new("test", missing, expected)
         })?;
+        let wiring = &wiring.in_range(self.demand(limits, rig.accuracy).range(wiring)?);
         let channel = ChannelAccuracy {
             accuracy: *rig.accuracy,
             volt_per_ampere: wiring.analog_in(points.current).gain,
@@ -98,6 +101,17 @@ impl KindRecipe for ResistorRecipe {
         wiring
             .reaches(points.level, Volt(self.test.level_v))
             .map_err(|cannot| Fault::new("test.level_v", self.test.level_v, cannot.to_string()))
+    }
+
+    fn demand(&self, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand {
+        let level_v = self.test.level_v;
+        let low_ohm = limits.of(Parameter::Resistance).low;
+        SupplyDemand {
+            volts: Volt(level_v * (1.0 + accuracy.ao_gain_pct / 100.0)),
+            volts_key: "test.level_v",
+            current: Ampere(low_ohm.map_or(0.0, |ohm| level_v / ohm)),
+            current_key: "limits.resistance_ohm.low",
+        }
     }
 
     fn card(&self) -> Card {

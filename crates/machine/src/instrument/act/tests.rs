@@ -359,3 +359,45 @@ fn the_four_times_add_up_to_the_elapsed_time() {
     assert_eq!((bus, ramp), (Span::ms(16), Span::ms(16)));
     assert!(settling > Span(0) && conversion > Span(0));
 }
+
+/// Waits for the probe chain, then arms.
+fn agree_and_arm(mock: &MockRig) -> Vec<Act> {
+    vec![
+        Act::Agree {
+            expected: vec![(mock.points.input(DigitalIn::ProbeChain), true)],
+            word: mock.points.board.clone(),
+            within: Span::ms(12),
+        },
+        armed(mock),
+    ]
+}
+
+#[test]
+fn acts_go_on_once_the_inputs_agree() {
+    let mut mock = read_once();
+    let mut runner = Runner::new(agree_and_arm(&mock), mock.now);
+    runner.step(mock.now, None, &mock.image);
+    mock.after(5);
+    let again = runner.step(mock.now, Some(&done(mock.now)), &mock.image);
+    assert!(matches!(again, Doing::Job(Job::Read(_))), "{again:?}");
+    mock.set_board(DigitalIn::ProbeChain, true);
+    mock.after(5);
+    let next = runner.step(mock.now, Some(&done(mock.now)), &mock.image);
+    assert!(matches!(next, Doing::Job(Job::Set(_))), "{next:?}");
+}
+
+#[test]
+fn acts_end_where_the_inputs_never_agree() {
+    let mut mock = read_once();
+    let mut runner = Runner::new(agree_and_arm(&mock), mock.now);
+    let mut doing = runner.step(mock.now, None, &mock.image);
+    for _ in 0..3 {
+        assert!(matches!(doing, Doing::Job(Job::Read(_))), "{doing:?}");
+        mock.after(5);
+        doing = runner.step(mock.now, Some(&done(mock.now)), &mock.image);
+    }
+    assert_eq!(doing, Doing::Done);
+    let chain = mock.points.input(DigitalIn::ProbeChain);
+    let seen: Vec<bool> = runner.readings.states(chain).collect();
+    assert_eq!(seen, [false]);
+}

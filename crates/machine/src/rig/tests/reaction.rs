@@ -30,7 +30,7 @@ fn slow_lines_and_analog_modules_lengthen_the_reaction() {
     assert_eq!(bound, Span(11 * (28_125 + 30_000) + 2 * (12_500 + 30_000)));
     let mut shared = settings();
     let contact = shared.digital_in.get_mut("emergency_stop_ok").unwrap();
-    (contact.module, contact.channel) = ("board_di".to_owned(), 11);
+    (contact.module, contact.channel) = ("board_di".to_owned(), 13);
     let fault = Wiring::resolve(&shared, crate::dut::FIXTURES).unwrap_err();
     assert_eq!(fault.key, "safety.estop_reaction_ms");
 }

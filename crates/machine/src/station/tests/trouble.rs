@@ -10,6 +10,7 @@ use crate::handling::wear::Wearing;
 use crate::rig::axis::AxisStation;
 use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
+use crate::rig::supply::RangeMismatch;
 use crate::station::catalogue::{AlarmCode, Reaction};
 use crate::station::trouble::Alarm;
 use std::collections::BTreeSet;
@@ -70,6 +71,11 @@ fn every_alarm() -> Vec<Alarm> {
         Alarm::watchdog_tripped("mech_do_a"),
         Alarm::calibration(&Message::new("fault", "line").with("detail", "odd")),
         Alarm::calibration_invalid("odd"),
+        Trouble::SupplyRange(RangeMismatch {
+            selected: "x3".into(),
+            found: "x6".into(),
+        })
+        .into(),
         Alarm::reference_check_due("G-12-1"),
         Alarm::reference_check_failed(&few),
         Alarm::reference_repeated("G-12-1", "odd"),

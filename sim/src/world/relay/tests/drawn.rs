@@ -162,3 +162,25 @@ fn a_seed_draws_the_recorded_relays() {
     let pinless = drawn(7, 188, 12.0, 400.0);
     assert_eq!(pinless.pins.present, [true, true, false, true, true]);
 }
+
+#[test]
+fn a_24_v_lot_has_twice_the_thresholds() {
+    let world = read_world(&config_dir(), None).unwrap();
+    let of_lot = |nominal_v, nominal_coil_ohm, index| {
+        let scale = Scale {
+            nominal_v,
+            nominal_coil_ohm,
+        };
+        RelayValues::of_lot(&world, scale, 7, index)
+    };
+    for index in 0..300 {
+        let (part, scaled) = (of_lot(12.0, 400.0, index), of_lot(24.0, 1600.0, index));
+        let twice = [part.operate_v * 2.0, part.release_v * 2.0];
+        for (found, twice) in [scaled.operate_v, scaled.release_v].into_iter().zip(twice) {
+            assert!((found / twice - 1.0).abs() < 1e-12, "{found}, not {twice}");
+        }
+        assert_eq!(scaled.coil_ohm, part.coil_ohm * 4.0);
+        assert_eq!(scaled.defect, part.defect);
+        assert_eq!(scaled.operate_ms, part.operate_ms);
+    }
+}

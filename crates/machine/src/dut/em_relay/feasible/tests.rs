@@ -3,10 +3,13 @@
 
 use super::super::bins;
 use super::super::{Parameter, Strategy};
-use super::{check, hindrance, nominal_v_per_s};
+use super::{check, check_references, hindrance, nominal_v_per_s};
 use crate::dut::Recipe;
 use crate::dut::accuracy::AccuracySettings;
+use crate::dut::device::Rig;
 use crate::dut::em_relay::points::{AnalogOut, Points};
+use crate::dut::em_relay::recipe::{CoilChannels, RelayRecipe};
+use crate::dut::em_relay::settings::{ReferenceSet, ReferenceSettings};
 use crate::dut::recipe::DeviceRecipe;
 use crate::rig::fault::Fault;
 use crate::rig::settings::RigSettings;
@@ -233,5 +236,112 @@ fn limits_narrower_than_the_guard_bands_are_refused() {
         fault.expected.contains("leave nothing between"),
         "{}",
         fault.expected
+    );
+}
+
+/// Fault of the default recipe after a change of its sections, on the default plant.
+fn refused_recipe(change: impl Fn(&mut RelayRecipe)) -> String {
+    let (wiring, accuracy) = plant();
+    let recipe = recipe(Strategy::CoarseFine);
+    let DeviceRecipe::EmRelay(mut relay) = recipe.device.clone() else {
+        panic!("a relay");
+    };
+    change(&mut relay);
+    let fault = check(&relay, &recipe.limits, &wiring, &accuracy).unwrap_err();
+    fault.to_string()
+}
+
+#[test]
+fn a_voltage_beyond_every_range_is_refused() {
+    assert_eq!(
+        refused_recipe(|relay| relay.part.nominal_v = 110.0),
+        "part.nominal_v: found 110.05 V at the supply, expected at most 60 V: \
+         rig.toml supply_range.x6.max_v"
+    );
+    let high = refused_recipe(|relay| relay.test.coarse_span_v = 60.0);
+    assert!(
+        high.starts_with("test.coarse_span_v: found 65.13 V"),
+        "{high}"
+    );
+}
+
+#[test]
+fn a_coil_current_beyond_its_range_is_refused() {
+    // 36 V need the range of 60 V, which gives 40 mA.
+    assert_eq!(
+        refused_recipe(|relay| relay.part.nominal_v = 36.0),
+        "limits.coil_resistance_ohm.low: found 100.0 mA at 36.02 V, expected at most 40.0 mA: \
+         rig.toml supply_range.x6.max_ma"
+    );
+}
+
+#[test]
+fn a_pre_bias_beyond_the_voltage_channel_is_refused() {
+    let refused = refused_recipe(|relay| relay.test.prebias_v = 6.2);
+    assert_eq!(
+        refused,
+        "test.prebias_v: found 6.2, expected at most 6.12 V: \
+         coil_voltage_fine reads no more in this supply range"
+    );
+}
+
+#[test]
+fn a_current_channel_must_suit_the_coil() {
+    let high = refused_recipe(|relay| relay.test.prebias_v = 6.0);
+    assert!(high.contains("fine, 16.7 mA at the pre-bias"), "{high}");
+    assert!(high.contains("coil_current_fine reads at most 16.3 mA"));
+    let low = refused_recipe(|relay| {
+        relay.test.coil_channels = CoilChannels::HighCurrent;
+        relay.test.prebias_v = 2.0;
+    });
+    assert!(low.contains("coil_current_high from 5.00 mA on"), "{low}");
+}
+
+#[test]
+fn a_channel_that_the_rig_lacks_is_refused() {
+    let mut settings: RigSettings = toml::from_str(RIG).unwrap();
+    settings.analog_in.remove("coil_current_high");
+    let wiring = Wiring::resolve(&settings, crate::dut::FIXTURES).unwrap();
+    let mut recipe = recipe(Strategy::CoarseFine);
+    let DeviceRecipe::EmRelay(relay) = &mut recipe.device else {
+        panic!("a relay");
+    };
+    relay.test.coil_channels = CoilChannels::HighCurrent;
+    let fault = feasible(&recipe, &wiring, &plant().1).unwrap_err();
+    assert_eq!(fault.key, "test.coil_channels");
+    assert!(fault.expected.ends_with("no [analog_in].coil_current_high"));
+}
+
+#[test]
+fn a_coarse_ramp_too_quick_for_the_lot_is_refused() {
+    assert_eq!(
+        refused_recipe(|relay| relay.test.expected_operate_sd_v = 0.09),
+        "test.expected_operate_sd_v: found 0.09, expected at least 0.096 V: \
+         the coarse ramp of 96 V/s rises so far between two refreshes"
+    );
+}
+
+#[test]
+fn a_voltage_without_reference_parts_is_refused() {
+    #[derive(Deserialize)]
+    struct Board {
+        reference: ReferenceSettings,
+    }
+    let golden = include_str!("../../../../../../config/golden.toml");
+    let parts: ReferenceSet = toml::from_str(golden).unwrap();
+    let board: Board = toml::from_str(RIG).unwrap();
+    let (wiring, accuracy) = plant();
+    let rig = Rig {
+        wiring: &wiring,
+        reference: Some(&board.reference),
+        accuracy: &accuracy,
+        reference_parts: &parts,
+    };
+    check_references(12.0, &rig).unwrap();
+    let fault = check_references(36.0, &rig).unwrap_err().to_string();
+    assert_eq!(
+        fault,
+        "part.nominal_v: found 36, expected a coil voltage with at least 3 golden parts; \
+         there are some of 3 V, 5 V, 6 V, 9 V, 12 V, 18 V, 24 V, 48 V"
     );
 }

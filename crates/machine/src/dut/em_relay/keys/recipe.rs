@@ -1,6 +1,7 @@
 //! Keys of a relay in `config/recipes/NAME.toml`.
 
 use crate::dut::em_relay::Strategy;
+use crate::dut::em_relay::recipe::CoilChannels;
 use crate::dut::em_relay::sampling::Polarities;
 use crate::dut::keys::{BODY, PIN_LENGTH, REFERENCE_TEMPERATURE, Sections, limit, table};
 use crate::form::{Form, Key, above_zero, key, optional, whole};
@@ -13,7 +14,7 @@ pub const SECTIONS: Sections = Sections {
 };
 
 const PART: &[Key] = table! {
-    key("nominal_v", above_zero(20.0, "V"), "gauge, station", "nominal coil voltage");
+    key("nominal_v", above_zero(1000.0, "V"), "gauge, station", "nominal coil voltage");
     key("nominal_coil_ohm", above_zero(100_000.0, "ohm"), "gauge", "nominal coil resistance at the reference temperature");
     BODY;
     PIN_LENGTH;
@@ -21,7 +22,7 @@ const PART: &[Key] = table! {
 };
 
 const LIMIT_OHM: Form = limit!("ohm", 100_000.0);
-const LIMIT_V: Form = limit!("V", 20.0);
+const LIMIT_V: Form = limit!("V", 1000.0);
 const LIMIT_MS: Form = limit!("ms", 1000.0);
 const LIMIT_MOHM: Form = limit!("mOhm", 100_000.0);
 
@@ -58,13 +59,13 @@ const STRATEGY: &[Key] = table! {
 
 const TEST: &[Key] = table! {
     key("conditioning_operations", whole(0, 1000, ""), "station", "operations before the first measurement");
-    key("prebias_v", above_zero(20.0, "V"), "station", "coil resistance is measured and the operate ramp starts here");
-    key("coarse_span_v", above_zero(20.0, "V"), "station", "height of the coarse ramp");
-    key("coil_channels", Form::Choice(&["fine", "coarse_current"]), "station, gauge", "channels that measure the coil");
-    key("expected_operate_v", above_zero(20.0, "V"), "station", "operate threshold expected of the lot");
-    key("expected_operate_sd_v", above_zero(5.0, "V"), "station", "its standard deviation");
-    key("expected_release_v", above_zero(20.0, "V"), "station", "release threshold expected of the lot");
-    key("expected_release_sd_v", above_zero(5.0, "V"), "station", "its standard deviation");
+    key("prebias_v", above_zero(1000.0, "V"), "station", "coil resistance is measured and the operate ramp starts here");
+    key("coarse_span_v", above_zero(1000.0, "V"), "station", "height of the coarse ramp");
+    key("coil_channels", Form::Choice(&CoilChannels::NAMES), "station, gauge", "channels that measure the coil");
+    key("expected_operate_v", above_zero(1000.0, "V"), "station", "operate threshold expected of the lot");
+    key("expected_operate_sd_v", above_zero(100.0, "V"), "station", "its standard deviation");
+    key("expected_release_v", above_zero(1000.0, "V"), "station", "release threshold expected of the lot");
+    key("expected_release_sd_v", above_zero(100.0, "V"), "station", "its standard deviation");
     key("clamp", Form::Choice(&["zener", "diode"]), "station", "coil suppression during the timed release");
     optional("strategy", Form::Table(STRATEGY), "station", "per threshold; coarse_fine where none is named");
 };

@@ -8,7 +8,6 @@ use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::coil::{resistance, to_reference};
-use crate::dut::em_relay::points::AnalogIn;
 use crate::dut::em_relay::points::DigitalOut::{
     self, Arm, CoilDrive, EventNoBreak, KelvinTest, RampMode, SelectNo, SourceOn, SourceReverse,
 };
@@ -110,7 +109,7 @@ pub(super) fn acts_off(
     }
     acts.extend([
         Act::ConvertSinceMark(freed + context.fresh(CHANNELS)),
-        Act::Read(Read::Current(current_channel(context))),
+        Act::Read(Read::Current(context.relay.test.coil_channels.current())),
     ]);
     board.armature = Armature::Rested;
     (acts, board)
@@ -129,13 +128,7 @@ fn current_of(context: &Context, scan: &CoilScan) -> Option<Sample> {
     match context.relay.test.coil_channels {
         CoilChannels::Fine => scan.current_fine.clone(),
         CoilChannels::CoarseCurrent => scan.current_wide.clone(),
-    }
-}
-
-fn current_channel(context: &Context) -> AnalogIn {
-    match context.relay.test.coil_channels {
-        CoilChannels::Fine => AnalogIn::CoilCurrentFine,
-        CoilChannels::CoarseCurrent => AnalogIn::CoilCurrent,
+        CoilChannels::HighCurrent => scan.current_high.clone(),
     }
 }
 
@@ -173,10 +166,7 @@ pub(super) fn conclude(
         ));
         samples.extend([voltage, current]);
     }
-    let ohm = match context.relay.test.coil_channels {
-        CoilChannels::Fine => calibration.ohm_fine,
-        CoilChannels::CoarseCurrent => calibration.ohm_wide,
-    };
+    let ohm = calibration.ohm(context.relay.test.coil_channels);
     if scans.iter().all(|(_, current)| current.abs() < NO_CURRENT) {
         record.stop(Finding::CoilOpen);
         return None;

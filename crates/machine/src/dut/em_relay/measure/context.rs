@@ -9,23 +9,26 @@ use crate::dut::em_relay::overshoot::OvershootModel;
 use crate::dut::em_relay::points::{AnalogIn, Points};
 use crate::dut::em_relay::recipe::{CoilChannels, RelayRecipe};
 use crate::dut::em_relay::reference_part::interim;
+use crate::dut::em_relay::scale::Scale;
 use crate::dut::em_relay::settings::{ReferencePart, ReferenceSettings};
 use crate::dut::em_relay::threshold::Direction;
 use crate::dut::em_relay::timing::Clock;
 use crate::dut::em_relay::{Parameter, Strategy};
 use crate::instrument::act;
+use crate::rig::supply::{RangeMismatch, SupplyRange};
 use std::sync::Arc;
-use units::{Celsius, Ohm, Span};
+use units::{Celsius, Ohm, Span, Volt};
 
 /// Resolution of a +-10 V input of 12 bits, volts per step.
 const LSB_V: f64 = 20.0 / 4096.0;
 
-/// Assumed overshoot of a 96 V/s ramp before the first reference part, volts; it only places the first fine ramp.
-const ASSUMED_OPERATE_V: f64 = 0.85;
-const ASSUMED_RELEASE_V: f64 = -1.05;
+/// Assumed overshoot of a 96 V/s ramp before the first reference part; it only places the first fine ramp. A ramp of
+/// another range overshoots for as long, and so by as many volts as its rate is higher.
+const ASSUMED_OPERATE: Volt = Volt(0.85);
+const ASSUMED_RELEASE: Volt = Volt(-1.05);
 
-/// Assumed overshoot of a 1.5 V/s ramp, operate and release, volts.
-pub const ASSUMED_FINE_V: (f64, f64) = (0.03, -0.02);
+/// Assumed overshoot of a 1.5 V/s ramp, operate and release.
+const ASSUMED_FINE: [Volt; 2] = [Volt(0.03), Volt(-0.02)];
 
 /// Recipe, calibration and instrument data of a test.
 #[derive(Debug, Clone)]
@@ -44,6 +47,8 @@ pub struct Context {
     pub accuracy: AccuracySettings,
     /// Nominal rates of the coarse and the fine ramp at the coil, volts per second.
     pub nominal_v_per_s: [f64; 2],
+    /// Range of the supply; none at factor 1 on a rig whose range nobody has chosen.
+    pub range: Option<SupplyRange>,
     /// Resistance of the coil's two force contacts, mean over the last parts; `None` before the first part.
     pub probe_contact: Option<Ohm>,
     /// True for a reference check or a first article: every result gets confirmation measurements.
@@ -69,6 +74,7 @@ impl Context {
         match self.relay.test.coil_channels {
             CoilChannels::Fine => &[AnalogIn::CoilVoltageFine, AnalogIn::CoilCurrentFine],
             CoilChannels::CoarseCurrent => &[AnalogIn::CoilVoltageFine, AnalogIn::CoilCurrent],
+            CoilChannels::HighCurrent => &[AnalogIn::CoilVoltageFine, AnalogIn::CoilCurrentHigh],
         }
     }
 
@@ -135,20 +141,44 @@ impl Context {
 
     /// Returns the overshoot of a direction; before any reference part an assumed one with a wide scatter.
     pub fn overshoot(&self, direction: Direction) -> Overshoot {
-        let (operate, release) = assumed_models();
+        let ((operate, release), [rising, falling]) =
+            (self.assumed_models(), self.assumed_fine_v());
         match (direction, self.calibration.overshoots) {
             (Direction::Rising, Some(overshoots)) => overshoots.operate,
             (Direction::Falling, Some(overshoots)) => overshoots.release,
-            (Direction::Rising, None) => interim(operate, ASSUMED_FINE_V.0),
-            (Direction::Falling, None) => interim(release, ASSUMED_FINE_V.1),
+            (Direction::Rising, None) => interim(operate, rising),
+            (Direction::Falling, None) => interim(release, falling),
         }
     }
-}
 
-/// Returns the models of both coarse ramps before the first part, operate and release.
-pub fn assumed_models() -> (OvershootModel, OvershootModel) {
-    (
-        OvershootModel::guess(ASSUMED_OPERATE_V),
-        OvershootModel::guess(ASSUMED_RELEASE_V),
-    )
+    /// Returns the models of both coarse ramps before the first part, operate and release.
+    pub fn assumed_models(&self) -> (OvershootModel, OvershootModel) {
+        let scale = self.scale();
+        let model = |guess| OvershootModel::guess(scale.of_range(guess).0, scale.coil());
+        (model(ASSUMED_OPERATE), model(ASSUMED_RELEASE))
+    }
+
+    /// Returns the assumed overshoot of both fine ramps before the first part, operate and release, volts.
+    pub fn assumed_fine_v(&self) -> [f64; 2] {
+        ASSUMED_FINE.map(|volts| self.scale().of_range(volts).0)
+    }
+
+    /// Returns the scale of the constants of this kind for the coil and its range.
+    pub fn scale(&self) -> Scale {
+        let factor = self.range.as_ref().map_or(1.0, |range| range.factor);
+        Scale::new(self.relay.part.nominal_v, factor)
+    }
+
+    /// Returns the code of the range to select; none on a rig with one range.
+    pub fn range_code(&self) -> Option<u8> {
+        let range = self.range.as_ref();
+        range.filter(|it| it.is_selected).map(|it| it.code)
+    }
+
+    /// Returns how the range that was read back differs from the selected one; none where it does not, or where no range
+    /// was read.
+    pub fn range_mismatch(&self, read_back: Option<u8>) -> Option<RangeMismatch> {
+        let (range, selector) = (self.range.as_ref()?, self.points.range.as_ref()?);
+        selector.mismatch(range, read_back?)
+    }
 }

@@ -9,7 +9,7 @@ use super::state::TestState;
 use super::{Context, Ramp, Stage};
 use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::readings::Readings;
-use crate::dut::em_relay::threshold::{Direction, indicated};
+use crate::dut::em_relay::threshold::{Direction, WINDOW, indicated};
 use units::{Second, Span, Volt};
 
 /// Fine ramps that may miss the threshold before the test is void.
@@ -65,13 +65,21 @@ fn evaluate(
         plan,
         record,
     } = state;
-    let (sent, searched) = (board.sent(), plan.interval(record, direction));
+    let (sent, searched) = (
+        board.sent(),
+        plan.interval(record, direction, context.scale()),
+    );
     let (Some(gate), Some(_)) = (gate0(context, readings), record.own.track) else {
         record.stop(Finding::GatesNotRead);
         return None;
     };
-    let v_per_s = context.calibration.fine_v_per_s.value;
-    let seen = indicated(sent.start, v_per_s, gate, direction);
+    let (v_per_s, scale) = (context.calibration.fine_v_per_s.value, context.scale());
+    let seen = indicated(
+        (sent.start, scale.of_range(WINDOW)),
+        v_per_s,
+        gate,
+        direction,
+    );
     let met = readings.seen.first() == Some(&true);
     let stopped = stopped_at(sent.start, sent.span, seen);
     let left = sent.takes.0.saturating_sub(Span::seconds(gate.0).0);
@@ -79,9 +87,9 @@ fn evaluate(
     // An event before the interval comes from the approach, not from the ramp.
     let settled = match direction {
         Direction::Rising => Pace::of(record).run_up(v_per_s),
-        Direction::Falling => SETTLED_DOWN,
+        Direction::Falling => scale.of_range(SETTLED_DOWN),
     };
-    let premature = met && (seen - sent.start).abs() < JUMP + settled;
+    let premature = met && (seen - sent.start).abs() < scale.of_range(JUMP) + settled;
     if met && stopped.is_none() && !premature {
         return Some(Outcome::Found(seen, gate));
     }
@@ -108,7 +116,7 @@ fn repeat(
     (direction, attempt): (Direction, u8),
 ) -> Stage {
     let expected = state.plan.expected(direction);
-    let wide = expected.is_some_and(|interval| interval.is_wide());
+    let wide = expected.is_some_and(|interval| interval.is_wide(context.scale()));
     if attempt + 1 == AFTER_SEARCH || attempt + 1 < AFTER_SEARCH && wide {
         let search = Search::placing(context, &state.record, direction);
         state.plan.search = Some(search);

@@ -7,7 +7,7 @@
 //! | five good, NC open or NO closed | a contact out of its rest position: fail, contact |
 
 use super::state::TestState;
-use super::{Stage, set};
+use super::{Context, Stage, set};
 use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::points::DigitalOut::KelvinTest;
@@ -16,13 +16,21 @@ use units::Span;
 
 const PINS: [&str; 5] = ["coil A", "coil B", "COM", "NO", "NC"];
 const COM: usize = 2;
+/// Longest time until the relays of a range have switched.
+const SWITCHES: Span = Span::ms(500);
 
-pub(super) fn acts() -> Vec<Act> {
-    vec![
-        set(&[(KelvinTest, true)]),
-        Act::Wait(Span::ms(1)),
-        Act::Read(Read::Board),
-    ]
+/// Selects the range of the supply too: safe outputs have deselected it, with all sources at zero.
+pub(super) fn acts(context: &Context) -> Vec<Act> {
+    let kelvin = [set(&[(KelvinTest, true)]), Act::Wait(Span::ms(1))];
+    let within = SWITCHES;
+    match context.range_code() {
+        Some(code) => [Act::SelectRange(code)]
+            .into_iter()
+            .chain(kelvin)
+            .chain([Act::ConfirmRange { code, within }])
+            .collect(),
+        None => kelvin.into_iter().chain([Act::Read(Read::Board)]).collect(),
+    }
 }
 
 pub(super) fn conclude(readings: &Readings, state: &mut TestState) -> Option<Stage> {

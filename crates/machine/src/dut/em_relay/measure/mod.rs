@@ -46,10 +46,10 @@ mod state;
 mod timing;
 mod verdict;
 
-use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::points::DigitalOut;
 use crate::dut::em_relay::readings::Readings;
+use crate::dut::em_relay::{Finding, Parameter};
 use crate::dut::procedure::{MEASURING, Progress, TestProcedure};
 use crate::dut::record::{Own, Stop};
 use crate::dut::{self, Characteristic, Kind};
@@ -57,6 +57,7 @@ use crate::gauge::Judgement;
 use crate::instrument::act::{Doing, JobDone, Runner};
 use crate::rig::image::Image;
 use crate::rig::sample::CountSample;
+use crate::rig::supply::RangeMismatch;
 use board::Armature;
 pub use context::Context;
 pub use record::{Observed, Ramp, TestRecord};
@@ -97,6 +98,8 @@ pub struct Test {
     began: RigTime,
     /// Tests of this part so far, including this one.
     number: u8,
+    /// Selected supply range and the one that was read back, once they differ.
+    range_mismatch: Option<RangeMismatch>,
 }
 
 impl Test {
@@ -111,6 +114,7 @@ impl Test {
             state,
             began: now,
             number: 1,
+            range_mismatch: None,
             stage: Stage::Kelvin,
             runner,
             slow_done: false,
@@ -148,6 +152,13 @@ impl Test {
         record.trace.append(std::mem::take(&mut read.trace));
         let readings = Readings::of(&read, &self.context.points, self.gates.take());
         self.gates = readings.gates.last().cloned();
+        let mut boards = readings.boards.iter();
+        let mismatch = boards.find_map(|board| self.context.range_mismatch(board.range));
+        if let Some(mismatch) = mismatch {
+            let finding = Finding::OtherSupplyRange.with(mismatch.to_string());
+            self.state.record.stop(finding);
+            self.range_mismatch.get_or_insert(mismatch);
+        }
         let again = self.state.conclude(self.stage, &self.context, &readings);
         if self.state.record.stopped() && self.stage != Stage::Off {
             self.stages = VecDeque::from([Stage::Off]);
@@ -237,6 +248,10 @@ impl TestProcedure for Test {
 
     fn kind(&self) -> Kind {
         Kind::EmRelay
+    }
+
+    fn range_mismatch(&self) -> Option<&RangeMismatch> {
+        self.range_mismatch.as_ref()
     }
 
     fn number(&self) -> u8 {

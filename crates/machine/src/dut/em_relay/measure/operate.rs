@@ -11,11 +11,11 @@ use crate::dut::em_relay::points::DigitalIn;
 use crate::dut::em_relay::points::DigitalOut::{Arm, CoilDrive, EventNoBreak, RampMode, SelectNo};
 use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::supply::RAMP_MARGIN;
-use crate::dut::em_relay::threshold::{Direction, indicated};
+use crate::dut::em_relay::threshold::{Direction, WINDOW, indicated};
 use units::{Span, Volt};
 
 /// Start of the coarse release ramp above the highest threshold of the lot, volts.
-const RELEASE_HEADROOM_V: f64 = 0.8;
+const RELEASE_HEADROOM: Volt = Volt(0.8);
 /// Time for flux and armature to reach equilibrium at the start level.
 pub(super) const SETTLES: Span = Span::ms(25);
 /// Longest time to poll the latch and write the ramp's reversal.
@@ -26,7 +26,8 @@ pub(super) const LATE: Span = Span::ms(25);
 /// Returns the height of the coarse output at which the release ramp begins.
 pub(super) fn release_start(context: &Context) -> Volt {
     let test = &context.relay.test;
-    let above = test.expected_release_v + 4.0 * test.expected_release_sd_v + RELEASE_HEADROOM_V;
+    let headroom = context.scale().of_range(RELEASE_HEADROOM);
+    let above = test.expected_release_v + 4.0 * test.expected_release_sd_v + headroom.0;
     Volt(above.min(test.coarse_span_v))
 }
 
@@ -105,7 +106,8 @@ pub(super) fn conclude_coarse(
     };
     let SentRamp { start, span, .. } = board.sent();
     let v_per_s = context.calibration.coarse_v_per_s.value;
-    let seen = indicated(start, v_per_s, gate, Direction::Rising);
+    let window = context.scale().of_range(WINDOW);
+    let seen = indicated((start, window), v_per_s, gate, Direction::Rising);
     let coarse = stopped_at(start, span, seen).unwrap_or(seen);
     board.armature = Armature::Operated;
     board.still_ramping = turning(context, coarse - start);

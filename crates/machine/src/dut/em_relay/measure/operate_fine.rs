@@ -18,6 +18,11 @@ use units::{Span, Volt};
 
 /// First step of the approach, as a fraction of the start of the fine ramp.
 pub(super) const APPROACH: f64 = 0.93;
+/// A fine output up to here stays.
+const LEFT: Volt = Volt(0.02);
+/// Voltage that the level keeps of an approach, and how much less it may be for the coarse output to stay.
+const ROOM: Volt = Volt(0.3);
+const CLOSE: Volt = Volt(0.05);
 
 pub(super) fn acts(
     context: &Context,
@@ -25,7 +30,11 @@ pub(super) fn acts(
     searched: Expected,
     pace: Pace,
 ) -> (Vec<Act>, BoardState) {
-    let placed = searched.rising(pace.run_up(context.calibration.fine_v_per_s.value));
+    let (scale, run_up) = (
+        context.scale(),
+        pace.run_up(context.calibration.fine_v_per_s.value),
+    );
+    let (placed, jump) = (searched.rising(run_up, scale), scale.of_range(JUMP));
     let (mut supply, falls) = (board.supply, falling(board));
     let mut acts = drive_off(board.armature);
     acts.extend(make_room(context, &mut supply, falls, placed.start));
@@ -48,11 +57,11 @@ pub(super) fn acts(
     ]);
     let start = supply.total();
     acts.extend([
-        supply.step_to(placed.start + JUMP),
+        supply.step_to(placed.start + jump),
         Act::Read(Read::Gates),
         Act::WaitSinceMark(pace.settles()),
     ]);
-    let (ramp, takes) = supply.ramp_fine(supply.fine() + placed.span - JUMP);
+    let (ramp, takes) = supply.ramp_fine(supply.fine() + placed.span - jump);
     acts.extend([
         ramp,
         Act::Until {
@@ -86,15 +95,16 @@ fn falling(board: BoardState) -> Span {
 /// Lowers the coarse output to what the approach leaves room for, and the fine output to 0. The previous ramp has been
 /// falling for `falls` already.
 fn make_room(context: &Context, supply: &mut Supply, falls: Span, start: Volt) -> Vec<Act> {
-    let mut acts = Vec::new();
+    let (mut acts, scale) = (Vec::new(), context.scale());
     let mut wait = Span(0);
-    if supply.fine() > Volt(0.02) {
+    if supply.fine() > scale.of_range(LEFT) {
         let (fine, takes) = supply.ramp_fine(Volt(0.0));
         acts.push(fine);
         wait = falls + takes;
     }
-    let room = (start.0 * APPROACH - 0.3).clamp(0.0, context.relay.test.coarse_span_v);
-    if supply.coarse().0 > room + 0.05 {
+    let room =
+        (start.0 * APPROACH - scale.of_range(ROOM).0).clamp(0.0, context.relay.test.coarse_span_v);
+    if supply.coarse() > Volt(room) + scale.of_range(CLOSE) {
         let (coarse, takes) = supply.ramp_coarse(Volt(room));
         acts.push(coarse);
         wait = wait.max(takes);

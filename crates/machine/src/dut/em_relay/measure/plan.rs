@@ -4,11 +4,12 @@ use super::TestRecord;
 use super::ramp::Expected;
 use super::search::Search;
 use crate::dut::em_relay::Finding;
+use crate::dut::em_relay::scale::Scale;
 use crate::dut::em_relay::threshold::Direction;
 use units::Volt;
 
 /// Scatter of repeated fine ramps around the first, volts (1 sd).
-const REPEAT_SD_V: f64 = 0.008;
+const REPEAT_SD: Volt = Volt(0.008);
 
 /// Data of earlier stages for later ones.
 #[derive(Debug, Clone, Default)]
@@ -44,11 +45,11 @@ impl Plan {
 
     /// Returns the interval of the next fine ramp: around the first indication for a repeat. Panics without an
     /// expectation.
-    pub fn interval(&self, record: &TestRecord, direction: Direction) -> Expected {
+    pub fn interval(&self, record: &TestRecord, direction: Direction, scale: Scale) -> Expected {
         let repeated = record
             .ramp(direction)
             .and_then(|ramp| ramp.fine)
-            .map(|fine| Expected::new(fine, REPEAT_SD_V));
+            .map(|fine| Expected::new(fine, scale.of_coil(REPEAT_SD).0));
         let Some(interval) = repeated.or(self.expected(direction)) else {
             panic!("a fine ramp without an expectation, {direction:?}");
         };

@@ -9,10 +9,13 @@ use crate::dut::em_relay::calibration::Overshoot;
 use crate::dut::em_relay::coil::to_reference;
 use crate::dut::em_relay::overshoot::CoarseResults;
 use crate::dut::em_relay::readings::Readings;
+use crate::dut::em_relay::scale::Scale;
 use crate::dut::em_relay::threshold::Direction;
 use units::{Celsius, Volt};
 
-/// Step of the level between ARM and ramp: the window opens after [`WINDOW_V`], which the fine ramp alone reaches in
+// Voltages are those of a 12 V coil in the range of factor 1; see `scale`.
+
+/// Step of the level between ARM and ramp: the window opens after [`WINDOW`], which the fine ramp alone reaches in
 /// 33 ms. The difference covers the comparator's tolerance. Flux and armature settle after the step.
 pub(super) const JUMP: Volt = Volt(0.045);
 /// Distance of a falling ramp before the interval that it searches: the flux of a sealed armature follows at 6 to 9 ms
@@ -27,13 +30,13 @@ const FAR_MARGIN: Volt = Volt(0.015);
 const COVERAGE: f64 = 3.0;
 /// Largest standard deviation that widens an interval: each further 10 mV costs every such part 7 ms, and a miss (one
 /// part in some dozens) costs 0.3 s.
-const WIDEST_SD_V: f64 = 0.02;
+const WIDEST_SD: Volt = Volt(0.02);
 /// Widest half width that a ramp searches; a search by halves is quicker beyond it.
 const WIDEST: Volt = Volt(0.2);
 /// Standard uncertainty of the assumed overshoot of a fine ramp, volts.
-const FINE_GUESS_SD_V: f64 = 0.020;
+const FINE_GUESS_SD: Volt = Volt(0.020);
 /// Scatter of two operations, volts, and of 0.25 K between reference parts, as a share of the threshold (1 sd).
-const TWO_OPERATIONS_V: f64 = 0.004;
+const TWO_OPERATIONS: Volt = Volt(0.004);
 const TWO_TEMPERATURES: f64 = 0.001;
 /// Width of the next interval relative to the missed one.
 const WIDER: f64 = 3.0;
@@ -66,15 +69,15 @@ impl Expected {
     }
 
     /// Returns the interval that a coarse ramp and the overshoot model predict.
-    pub fn after(coarse: &CoarseResults, overshoot: &Overshoot) -> Self {
+    pub fn after(coarse: &CoarseResults, overshoot: &Overshoot, scale: Scale) -> Self {
         let predicted = overshoot.coarse.of(coarse);
-        let sd_v = predicted.u_v.min(WIDEST_SD_V);
+        let sd_v = predicted.u_v.min(scale.of_range(WIDEST_SD).0);
         Self::new(coarse.indicated - Volt(predicted.volts), sd_v)
     }
 
     /// Returns the interval from the certificate of a reference part under calibration; `None` for any other part.
     pub fn certified(context: &Context, track: Celsius, direction: Direction) -> Option<Self> {
-        let part = context.teaching.as_ref()?;
+        let (part, scale) = (context.teaching.as_ref()?, context.scale());
         let overshoot = context.overshoot(direction);
         let certified = match direction {
             Direction::Rising => part.operate_voltage_v,
@@ -82,28 +85,29 @@ impl Expected {
         };
         let at_part = certified.value / to_reference(track, context.reference_temperature());
         let sd_v = if overshoot.coarse.parts() == 0 {
-            FINE_GUESS_SD_V
+            scale.of_coil(FINE_GUESS_SD).0
         } else {
-            TWO_OPERATIONS_V.hypot(TWO_TEMPERATURES * at_part)
+            let operations = scale.of_coil(TWO_OPERATIONS);
+            operations.0.hypot(TWO_TEMPERATURES * at_part)
         };
         Some(Self::new(Volt(at_part + overshoot.fine_v.value), sd_v))
     }
 
     /// Returns the rising ramp over this interval after a run-up.
-    pub fn rising(&self, run_up: Volt) -> Placed {
-        self.placed(Direction::Rising, run_up)
+    pub fn rising(&self, run_up: Volt, scale: Scale) -> Placed {
+        self.placed(Direction::Rising, run_up, scale)
     }
 
     /// Returns the falling ramp over this interval.
-    pub fn falling(&self) -> Placed {
-        self.placed(Direction::Falling, RUN_DOWN)
+    pub fn falling(&self, scale: Scale) -> Placed {
+        self.placed(Direction::Falling, scale.of_range(RUN_DOWN), scale)
     }
 
-    fn placed(&self, direction: Direction, run: Volt) -> Placed {
-        let lead = JUMP + run;
+    fn placed(&self, direction: Direction, run: Volt, scale: Scale) -> Placed {
+        let lead = scale.of_range(JUMP) + run;
         Placed {
             start: self.centre - (self.half_width + lead) * direction.sign(),
-            span: lead + self.half_width * 2.0 + FAR_MARGIN,
+            span: lead + self.half_width * 2.0 + scale.of_range(FAR_MARGIN),
         }
     }
 
@@ -131,8 +135,8 @@ impl Expected {
     }
 
     /// Returns true when a search by halves is quicker than a ramp.
-    pub fn is_wide(&self) -> bool {
-        self.half_width > WIDEST
+    pub fn is_wide(&self, scale: Scale) -> bool {
+        self.half_width > scale.of_range(WIDEST)
     }
 }
 
@@ -154,7 +158,7 @@ pub(super) fn after_coarse(
     };
     let (overshoot, parameter) = (context.overshoot(direction), parameter(direction));
     let certified = Expected::certified(context, part, direction);
-    let expected = certified.unwrap_or_else(|| Expected::after(&seen, &overshoot));
+    let expected = certified.unwrap_or_else(|| Expected::after(&seen, &overshoot, context.scale()));
     state.plan.expect(direction, expected);
     let strategy = context.strategy(parameter);
     match coarse_reading(context, (seen, overshoot), part, direction) {
@@ -170,16 +174,16 @@ pub(super) fn after_coarse(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dut::em_relay::threshold::WINDOW_V;
+    use crate::dut::em_relay::threshold::WINDOW;
 
     #[test]
     fn the_window_is_open_before_the_earliest_expected_event() {
         let expected = Expected::new(Volt(7.9), 0.01);
-        let ramp = expected.rising(Volt(0.060));
-        assert!(ramp.start.0 + WINDOW_V.0 < 7.9 - 0.025);
+        let ramp = expected.rising(Volt(0.060), Scale::new(12.0, 1.0));
+        assert!(ramp.start.0 + WINDOW.0 < 7.9 - 0.025);
         assert!(ramp.start.0 + ramp.span.0 > 7.9 + 0.025);
-        let falling = expected.falling();
-        assert!(falling.start.0 - WINDOW_V.0 > 7.9 + 0.025);
+        let falling = expected.falling(Scale::new(12.0, 1.0));
+        assert!(falling.start.0 - WINDOW.0 > 7.9 + 0.025);
     }
 
     #[test]

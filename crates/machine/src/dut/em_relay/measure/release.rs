@@ -16,7 +16,7 @@ use crate::dut::em_relay::points::DigitalOut::{
     Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
 };
 use crate::dut::em_relay::readings::Readings;
-use crate::dut::em_relay::threshold::{Direction, indicated};
+use crate::dut::em_relay::threshold::{Direction, WINDOW, indicated};
 use units::{Span, Volt};
 
 /// Fraction of nominal at which the armature is sealed.
@@ -138,7 +138,8 @@ pub(super) fn conclude_coarse(
         plan.search = Some(Search::placing(context, record, Direction::Falling));
         return Some(Stage::Search(Direction::Falling));
     };
-    let coarse = indicated(start, coarse_v_per_s, gate, Direction::Falling);
+    let window = context.scale().of_range(WINDOW);
+    let coarse = indicated((start, window), coarse_v_per_s, gate, Direction::Falling);
     let shown = record.coarse_results(coarse, Direction::Falling);
     record.own.release = Some(Ramp::coarse_only(shown));
     after_coarse(context, readings, state, (shown, Direction::Falling))
@@ -150,8 +151,11 @@ pub(super) fn acts_fine(
     mut board: BoardState,
     searched: Expected,
 ) -> (Vec<Act>, BoardState) {
-    let placed = searched.falling();
-    let way = placed.span - JUMP;
+    let (placed, jump) = (
+        searched.falling(context.scale()),
+        context.scale().of_range(JUMP),
+    );
+    let way = placed.span - jump;
     let mut acts = Vec::new();
     if board.supply.fine() < way {
         let (fine, takes) = board.supply.ramp_fine(way);
@@ -163,12 +167,12 @@ pub(super) fn acts_fine(
         board.still_ramping = rises + takes;
         acts.push(fine);
     }
-    let least = board.supply.coarse() + board.supply.fine() + JUMP;
+    let least = board.supply.coarse() + board.supply.fine() + jump;
     let top = Volt(placed.start.0.max(least.0));
     let (sealing, mut board) = seal(context, board, top);
     let (start, span) = (board.supply.total(), placed.span);
     acts.extend(sealing);
-    acts.push(board.supply.step_to(top - JUMP));
+    acts.push(board.supply.step_to(top - jump));
     acts.extend(settled(FINE_SETTLES));
     let (ramp, takes) = board.supply.ramp_fine(board.supply.fine() - way);
     acts.push(ramp);

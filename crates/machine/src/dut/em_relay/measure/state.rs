@@ -45,9 +45,9 @@ impl TestState {
 
     fn acts(&self, stage: Stage, context: &Context) -> (Vec<Act>, BoardState) {
         let (board, record) = (self.board, &self.record);
-        let interval = |direction| self.plan.interval(record, direction);
+        let interval = |direction| self.plan.interval(record, direction, context.scale());
         match stage {
-            Stage::Kelvin => (kelvin::acts(), board),
+            Stage::Kelvin => (kelvin::acts(context), board),
             Stage::Conditioning => conditioning::acts(context, board),
             Stage::NcContact => contact::acts_nc(context, board),
             Stage::Coil => {

@@ -59,7 +59,9 @@ fn scan(volts: f64, ampere: f64) -> CoilScan {
         voltage_fine: Some(good(volts, 1.6)),
         current_fine: Some(good(ampere, 600.0)),
         current_wide: None,
+        current_high: None,
         reference: None,
+        supply: None,
     }
 }
 
@@ -82,6 +84,7 @@ const RESTING: BoardInputs = BoardInputs {
     nc_closed: true,
     compliance: false,
     probe_chain: true,
+    range: None,
 };
 
 /// NO made, NC open.

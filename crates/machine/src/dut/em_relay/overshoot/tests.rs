@@ -20,7 +20,7 @@ fn part(at: u32) -> (CoarseResults, Volt) {
 
 /// The model after `parts` parts, whose indications err by `noise_v` alternately upwards and downwards.
 fn taught(parts: u32, noise_v: f64) -> OvershootModel {
-    let mut law = OvershootModel::guess(0.80);
+    let mut law = OvershootModel::guess(0.80, 1.0);
     for at in 0..parts {
         let (shown, fine) = part(at);
         let off = if at % 2 == 0 { noise_v } else { -noise_v };
@@ -36,7 +36,7 @@ fn error_v(law: &OvershootModel, at: u32) -> f64 {
 
 #[test]
 fn before_any_part_the_guess_is_the_prediction() {
-    let predicted = OvershootModel::guess(0.85).of(&part(0).0);
+    let predicted = OvershootModel::guess(0.85, 1.0).of(&part(0).0);
     assert_eq!((predicted.volts, predicted.alike), (0.85, false));
     assert!(predicted.u_v > GUESS_SD_V, "{predicted:?}");
 }
@@ -189,7 +189,7 @@ fn the_prior_expects_a_late_armature_to_overshoot() {
         ..one
     };
     let further = |guess_v: f64| {
-        let mut law = OvershootModel::guess(guess_v);
+        let mut law = OvershootModel::guess(guess_v, 1.0);
         law.learn(&one, one.indicated - Volt(guess_v));
         law.of(&late).volts - law.of(&one).volts
     };

@@ -1,6 +1,7 @@
 //! Faults of the calibration against the references on the interface board.
 
 use crate::rig::sample::Sample;
+use crate::rig::supply::RangeMismatch;
 use texts::{Lang, Message};
 use thiserror::Error;
 
@@ -38,6 +39,15 @@ pub enum ReferenceFault {
         off_pct: f64,
         /// Accuracy of the maker, half width, %.
         promised_pct: f64,
+    },
+    /// The board is in another supply range than the one selected.
+    Range(RangeMismatch),
+    /// The supply and the coil channel disagree: the range relays and their read-back do.
+    Supply {
+        /// Supply in front of the drive, V.
+        supply_v: f64,
+        /// Coil voltage of the reference, V.
+        coil_v: f64,
     },
     /// Too few readings between the ends of the fine ramp.
     FewOnRamp {
@@ -93,6 +103,12 @@ impl ReferenceFault {
             } => of("gain")
                 .with("off_pct", format!("{off_pct:.3}"))
                 .with("promised_pct", format!("{promised_pct:.3}")),
+            Self::Range(RangeMismatch { selected, found }) => of("supply_range")
+                .with("selected", selected)
+                .with("found", found),
+            Self::Supply { supply_v, coil_v } => of("supply_voltage")
+                .with("supply_v", format!("{supply_v:.2}"))
+                .with("coil_v", format!("{coil_v:.2}")),
             Self::FewOnRamp { readings } => of("few_on_ramp").with("readings", readings),
             Self::Slope {
                 v_per_s,

@@ -2,7 +2,6 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::dut::em_relay::Parameter;
-use crate::dut::em_relay::measure::context::assumed_models;
 use crate::dut::em_relay::measure::{Ramp, TestRecord};
 use crate::dut::em_relay::overshoot::CoarseResults;
 use crate::dut::em_relay::reference_part::{ReferenceRun, interim};
@@ -45,7 +44,11 @@ fn run_of(operate_mv: &[f64], release_mv: f64) -> ReferenceRun {
 fn the_fine_overshoot_is_the_mean_shift() {
     let run = run_of(&[12.0, 15.0, 13.0, 14.0, 16.0], -9.0);
     let overshoots = run
-        .overshoots(&reference_parts(), &context().accuracy, assumed_models())
+        .overshoots(
+            &reference_parts(),
+            &context().accuracy,
+            context().assumed_models(),
+        )
         .unwrap();
     assert!((overshoots.operate.fine_v.value - 0.014).abs() < 1e-9);
     assert!((overshoots.release.fine_v.value + 0.009).abs() < 1e-9);
@@ -73,7 +76,7 @@ fn certificates_are_compared_at_the_parts_temperature() {
         run.learn(part, REFERENCE, &record, &record.own).unwrap();
     }
     let overshoots = run
-        .overshoots(&parts, &context().accuracy, assumed_models())
+        .overshoots(&parts, &context().accuracy, context().assumed_models())
         .unwrap();
     assert!((overshoots.operate.fine_v.value - 0.012).abs() < 1e-9);
     assert!((overshoots.release.fine_v.value + 0.012).abs() < 1e-9);
@@ -83,7 +86,11 @@ fn certificates_are_compared_at_the_parts_temperature() {
 fn an_outlier_is_named() {
     let run = run_of(&[12.0, 15.0, 130.0, 14.0, 16.0], -9.0);
     let why = run
-        .overshoots(&reference_parts(), &context().accuracy, assumed_models())
+        .overshoots(
+            &reference_parts(),
+            &context().accuracy,
+            context().assumed_models(),
+        )
         .unwrap_err();
     let why = why.to_string();
     assert!(why.contains("G-12-3"), "{why}");
@@ -93,7 +100,11 @@ fn an_outlier_is_named() {
 fn fewer_than_three_reference_parts_teach_no_overshoot() {
     for (n, usable) in [(0, false), (1, false), (2, false), (3, true), (5, true)] {
         let run = run_of(&vec![14.0; n], -9.0);
-        let overshoots = run.overshoots(&reference_parts(), &context().accuracy, assumed_models());
+        let overshoots = run.overshoots(
+            &reference_parts(),
+            &context().accuracy,
+            context().assumed_models(),
+        );
         assert_eq!(overshoots.is_ok(), usable, "{n} parts");
     }
 }
@@ -102,7 +113,11 @@ fn fewer_than_three_reference_parts_teach_no_overshoot() {
 fn more_reference_parts_reduce_the_overshoot_uncertainty() {
     let u = |n: usize| {
         let run = run_of(&vec![14.0; n], -9.0);
-        let overshoots = run.overshoots(&reference_parts(), &context().accuracy, assumed_models());
+        let overshoots = run.overshoots(
+            &reference_parts(),
+            &context().accuracy,
+            context().assumed_models(),
+        );
         overshoots.unwrap().operate.fine_v.u
     };
     assert!((u(3) / u(5) - (5f64 / 3.0).sqrt()).abs() < 1e-9);
@@ -140,7 +155,7 @@ fn an_incomplete_reference_part_is_refused_by_name() {
 
 #[test]
 fn an_interim_overshoot_proves_nothing() {
-    let overshoot = interim(assumed_models().0, 0.0);
+    let overshoot = interim(context().assumed_models().0, 0.0);
     assert_eq!(
         (overshoot.fine_v.value, overshoot.fine_v.u),
         (0.0, f64::INFINITY)

@@ -36,6 +36,7 @@ fn device(limits: &str) -> Device {
         resistor: Arc::new(resistor),
         points,
         channels: 2,
+        range: None,
     }
 }
 

@@ -49,6 +49,8 @@ pub struct Search {
     pub at: Volt,
     /// Trials so far.
     pub trials: u32,
+    /// Height of a step of a staircase.
+    pub step: Volt,
     /// True where a trial has confirmed the end of the interval: `[untouched, changed]`.
     pub seen: [bool; 2],
 }
@@ -96,6 +98,7 @@ impl Search {
             untouched: Volt(centre) - half,
             changed: Volt(centre) + half,
             at: Volt(centre) - half,
+            step: context.scale().of_coil(staircase::STEP),
             trials: 0,
             seen: [false; 2],
         };
@@ -121,6 +124,7 @@ impl Search {
             untouched: near,
             changed: end,
             at: (near + end) / 2.0,
+            step: context.scale().of_coil(staircase::STEP),
             trials: 0,
             seen: [false; 2],
         }

@@ -14,6 +14,9 @@ use crate::gauge::budget::{Budget, Reading, resolution};
 use crate::rig::sample::CountSample;
 use units::{Unit, Volt};
 
+/// Least standard deviation of a threshold that levels have placed, of a 12 V coil.
+const LEAST_SD: Volt = Volt(0.010);
+
 pub(in crate::dut::em_relay::measure) fn conclude(
     context: &Context,
     readings: &Readings,
@@ -79,7 +82,7 @@ fn placed(
 fn near(context: &Context, direction: Direction, volts: Volt, step: Volt) -> Expected {
     Expected::new(
         volts + Volt(context.overshoot(direction).fine_v.value),
-        step.0.abs().max(0.010),
+        step.abs().0.max(context.scale().of_coil(LEAST_SD).0),
     )
 }
 

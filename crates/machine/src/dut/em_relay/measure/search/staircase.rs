@@ -3,7 +3,8 @@
 use super::{Next, Search};
 use units::{Span, Volt};
 
-const STEP: Volt = Volt(0.020);
+/// Height of a step on a 12 V coil.
+pub(super) const STEP: Volt = Volt(0.020);
 /// Dwell at each level after its write is acknowledged.
 pub(super) const DWELL: Span = Span::ms(20);
 
@@ -17,12 +18,12 @@ pub(super) fn next(search: &Search, changed: bool) -> Next {
     let sign = search.direction.sign();
     if changed {
         return match search.seen {
-            [true, true] => Next::Found(search.at - STEP * (0.5 * sign), STEP),
+            [true, true] => Next::Found(search.at - search.step * (0.5 * sign), search.step),
             [_, _] => Next::Ramp,
         };
     }
     if (search.at - search.changed).0 * sign >= 0.0 {
         return Next::Ramp;
     }
-    Next::Try(search.at + STEP * sign)
+    Next::Try(search.at + search.step * sign)
 }

@@ -31,6 +31,8 @@ fn until_armed(acts: &[Act]) -> Span {
             | Act::Supply(_)
             | Act::Read(_)
             | Act::CoilMask(_)
+            | Act::SelectRange(_)
+            | Act::ConfirmRange { .. }
             | Act::ConvertSinceMark(_)
             | Act::Until { .. } => {}
         }
@@ -49,7 +51,11 @@ fn an_operate_ramp_waits_for_the_release_ramp() {
         state
             .plan
             .expect(Direction::Rising, Expected::new(Volt(6.7), 0.03));
-        let way = state.plan.expected(Direction::Falling).unwrap().falling();
+        let way = state
+            .plan
+            .expected(Direction::Falling)
+            .unwrap()
+            .falling(context.scale());
         state.enter(Stage::ReleaseFine(0), &context);
         let event = watched(true, RESTING, gate_ms);
         fine::conclude(&context, &event, &mut state, (Direction::Falling, 0));
@@ -135,7 +141,7 @@ fn certificates_place_the_ramps_of_reference_parts() {
         assert!((found.centre.0 - 7.43).abs() < 1e-9, "{found:?}");
         found.half_width.0
     };
-    let first = half_width(OvershootModel::guess(0.85));
+    let first = half_width(OvershootModel::guess(0.85, 1.0));
     let mut taught = learned.coarse;
     taught.learn(&shown(), Volt(7.9));
     let second = half_width(taught);

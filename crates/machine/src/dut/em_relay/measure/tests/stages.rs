@@ -189,7 +189,7 @@ fn a_coarse_release_without_break_starts_a_bisection() {
     assert!((coarse.0 - (4.0 - 0.05 - 2.4)).abs() < 1e-9);
     let expected = state.plan.expected(Direction::Falling).unwrap();
     assert!((expected.centre.0 - (coarse.0 + 1.05)).abs() < 1e-9);
-    let start = expected.falling().start;
+    let start = expected.falling(context().scale()).start;
     assert!(start > expected.centre);
 }
 
@@ -281,7 +281,7 @@ fn a_closure_in_compliance_fails_by_contact() {
 /// The default context on the strategy `ramp`, with a model in which each millisecond of operate time adds 96 mV of
 /// overshoot.
 fn on_the_ramp() -> Context {
-    let mut law = OvershootModel::guess(0.85);
+    let mut law = OvershootModel::guess(0.85, 1.0);
     for at in 0..40 {
         let turn = |by: f64| (f64::from(at) * by).fract() - 0.5;
         let late_ms = 0.8 * turn(0.618);

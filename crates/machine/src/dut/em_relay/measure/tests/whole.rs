@@ -6,7 +6,7 @@ use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::card::STEPS;
 use crate::dut::em_relay::measure::ramp::Expected;
-use crate::dut::em_relay::points::{AnalogOut, DigitalOut};
+use crate::dut::em_relay::points::{AnalogIn, AnalogOut, DigitalOut};
 use crate::dut::em_relay::threshold::Direction;
 use crate::dut::em_relay::{Parameter, parameter};
 use crate::dut::procedure::TestProcedure;
@@ -145,7 +145,12 @@ fn waits_after(acts: &[Act]) -> Span {
             | Act::WaitSinceMark(span)
             | Act::RampSinceMark(span)
             | Act::ConvertSinceMark(span) => waited += *span,
-            Act::Mark | Act::Board(_) | Act::Supply(_) | Act::CoilMask(_) => {}
+            Act::Mark
+            | Act::Board(_)
+            | Act::Supply(_)
+            | Act::CoilMask(_)
+            | Act::SelectRange(_)
+            | Act::ConfirmRange { .. } => {}
             Act::Read(Read::Drop | Read::Coil) | Act::Until { .. } => break,
             Act::Read(_) => {}
         }
@@ -386,4 +391,40 @@ fn only_results_inside_the_guard_band_repeat_once() {
     assert_eq!(slow(8.9), []);
     assert_eq!(slow(9.1), []);
     assert_eq!(slow(8.995), [Stage::OperateFine(0); 3]);
+}
+
+#[test]
+fn nothing_is_driven_in_another_supply_range() {
+    let mut context = context();
+    let wiring = crate::handling::tests::wiring();
+    let mut ranges = wiring.supply_ranges.iter();
+    context.range = ranges.find(|range| range.code == 1).cloned();
+    let drive = context.points.output(DigitalOut::CoilDrive);
+    let mut mock = MockRig::at_rest();
+    mock.track(23.0);
+    let mut test = Test::begin(context, mock.now);
+    let mut done = None;
+    loop {
+        match test.step(mock.now, done.take().as_ref(), &mock.image) {
+            Progress::Doing(Doing::Job(requested)) => {
+                let drives = |outputs: &[_]| outputs.contains(&(drive, true));
+                assert!(!matches!(&requested, Job::Set(outputs) if drives(outputs)));
+                mock.after(4);
+                done = Some(JobDone {
+                    at: mock.now,
+                    trouble: None,
+                });
+            }
+            Progress::Doing(Doing::Wait(until)) => {
+                mock.now = until;
+                mock.scan();
+            }
+            Progress::Doing(other) => panic!("{other:?}"),
+            Progress::Judged => break,
+        }
+        mock.volts(AnalogIn::CoilCurrentFine, 0.0);
+    }
+    let mismatch = test.range_mismatch().unwrap();
+    assert_eq!(mismatch.to_string(), "x0_75, not x1_5");
+    assert_eq!(test.verdict().bin(), Bin::RETEST);
 }

@@ -1,0 +1,153 @@
+//! What a test asks of the supply, and whether the range that gives it suits the recipe.
+
+use super::nominal_v_per_s;
+use crate::dut::accuracy::AccuracySettings;
+use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Points};
+use crate::dut::em_relay::recipe::RelayRecipe;
+use crate::dut::recipe::Limits;
+use crate::rig::fault::Fault;
+use crate::rig::supply::SupplyDemand;
+use crate::rig::wiring::Wiring;
+use units::{Ampere, Volt};
+
+/// Highest voltage at a terminal of the coil converter that still counts: 98 % of its +-10 V.
+const READABLE_V: f64 = 9.8;
+/// Lowest voltage at a terminal that tells a current from none.
+const LEAST_CURRENT_V: f64 = 0.3;
+/// Share by which a good coil may differ from its nominal resistance where the recipe sets no limit.
+const USUAL_SPREAD: f64 = 0.1;
+
+/// Returns what a test asks of the supply: the nominal voltage or the top of the coarse ramp, with the tolerance of the
+/// sources, and the current of the lowest accepted coil at nominal voltage.
+pub fn demand(recipe: &RelayRecipe, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand {
+    let (part, test) = (&recipe.part, &recipe.test);
+    let tolerance = 1.0 + accuracy.ao_gain_pct / 100.0;
+    let top_v = test.prebias_v + test.coarse_span_v;
+    let (volts, volts_key) = match top_v > part.nominal_v {
+        true => (top_v, "test.coarse_span_v"),
+        false => (part.nominal_v, "part.nominal_v"),
+    };
+    let (low_ohm, _) = accepted_ohm(recipe, limits);
+    let current_key = match limits.of(Parameter::CoilResistance).low {
+        Some(_) => "limits.coil_resistance_ohm.low",
+        None => "part.nominal_coil_ohm",
+    };
+    SupplyDemand {
+        volts: Volt(volts * tolerance),
+        volts_key,
+        current: Ampere(part.nominal_v / low_ohm),
+        current_key,
+    }
+}
+
+/// Returns the lowest and the highest coil resistance of a good part, ohm.
+fn accepted_ohm(recipe: &RelayRecipe, limits: &Limits) -> (f64, f64) {
+    let (nominal, limit) = (
+        recipe.part.nominal_coil_ohm,
+        limits.of(Parameter::CoilResistance),
+    );
+    (
+        limit.low.unwrap_or(nominal * (1.0 - USUAL_SPREAD)),
+        limit.high.unwrap_or(nominal * (1.0 + USUAL_SPREAD)),
+    )
+}
+
+/// Checks that the outputs and the channels of this range suit the recipe. `wiring`: in the range of the recipe.
+pub(super) fn check(
+    recipe: &RelayRecipe,
+    limits: &Limits,
+    wiring: &Wiring,
+    points: &Points,
+) -> Result<(), Fault> {
+    check_outputs(recipe, wiring, points)?;
+    check_voltage(recipe, wiring, points)?;
+    check_current(recipe, limits, wiring, points)
+}
+
+/// Checks that level and coarse output reach the pre-bias and the height of the coarse ramp.
+fn check_outputs(recipe: &RelayRecipe, wiring: &Wiring, points: &Points) -> Result<(), Fault> {
+    let test = &recipe.test;
+    for (key, output, volts) in [
+        ("test.prebias_v", AnalogOut::SupplyLevel, test.prebias_v),
+        (
+            "test.coarse_span_v",
+            AnalogOut::SupplyCoarse,
+            test.coarse_span_v,
+        ),
+    ] {
+        wiring
+            .reaches(points.source(output), Volt(volts))
+            .map_err(|cannot| Fault::new(key, volts, cannot.to_string()))?;
+    }
+    Ok(())
+}
+
+/// Checks that the channel of the coil voltage reads the pre-bias.
+fn check_voltage(recipe: &RelayRecipe, wiring: &Wiring, points: &Points) -> Result<(), Fault> {
+    let channel = AnalogIn::CoilVoltageFine;
+    let gain = wiring.analog_in(points.analog(channel)).gain;
+    let (prebias_v, most_v) = (recipe.test.prebias_v, READABLE_V / gain);
+    if prebias_v <= most_v {
+        return Ok(());
+    }
+    let expected = format!("at most {most_v:.2} V: {channel} reads no more in this supply range");
+    Err(Fault::new("test.prebias_v", prebias_v, expected))
+}
+
+/// Checks that the current channel of the recipe reads the coil at the pre-bias.
+fn check_current(
+    recipe: &RelayRecipe,
+    limits: &Limits,
+    wiring: &Wiring,
+    points: &Points,
+) -> Result<(), Fault> {
+    let (test, (low_ohm, high_ohm)) = (&recipe.test, accepted_ohm(recipe, limits));
+    let (channels, point) = (test.coil_channels, test.coil_channels.current());
+    let refused = |found: String, expected: String| {
+        let found = format!("{}{found}", channels.name());
+        Err(Fault::new("test.coil_channels", found, expected))
+    };
+    let Some(input) = points.wired_analog(point) else {
+        let expected = format!("channels of this rig: rig.toml has no [analog_in].{point}");
+        return refused(String::new(), expected);
+    };
+    let gain = wiring.analog_in(input).gain;
+    let current_ma = |ohm: f64| test.prebias_v / ohm * 1e3;
+    let (least_ma, most_ma) = (LEAST_CURRENT_V / gain * 1e3, READABLE_V / gain * 1e3);
+    if current_ma(low_ohm) > most_ma {
+        let found = format!(", {:.1} mA at the pre-bias", current_ma(low_ohm));
+        let expected = format!("channels that read it: {point} reads at most {most_ma:.1} mA");
+        return refused(found, expected);
+    }
+    if current_ma(high_ohm) < least_ma {
+        let found = format!(", {:.2} mA at the pre-bias", current_ma(high_ohm));
+        let expected = format!("channels that tell it from none: {point} from {least_ma:.2} mA on");
+        return refused(found, expected);
+    }
+    Ok(())
+}
+
+/// Checks that the coarse ramp is slow enough: between two refreshes of its output it may rise by no more than the
+/// thresholds of the lot scatter, or it tells nothing about the part.
+pub(super) fn check_ramp(
+    recipe: &RelayRecipe,
+    wiring: &Wiring,
+    points: &Points,
+    accuracy: &AccuracySettings,
+) -> Result<(), Fault> {
+    let test = &recipe.test;
+    if !test.strategy.each().iter().any(|(_, it)| it.ramps()) {
+        return Ok(());
+    }
+    let v_per_s = nominal_v_per_s(wiring, points.source(AnalogOut::SupplyCoarse));
+    let step_v = v_per_s * accuracy.ao_refresh_ms * 1e-3;
+    let (sd_v, key) = (test.expected_operate_sd_v, "test.expected_operate_sd_v");
+    if step_v <= sd_v {
+        return Ok(());
+    }
+    let expected = format!(
+        "at least {step_v:.3} V: the coarse ramp of {v_per_s} V/s rises so far between two refreshes"
+    );
+    Err(Fault::new(key, sd_v, expected))
+}

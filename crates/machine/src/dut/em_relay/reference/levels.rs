@@ -1,0 +1,72 @@
+//! Levels of the reference coil, within the limits of the supply range.
+
+use super::SCANS;
+use crate::dut::em_relay::measure::Context;
+use std::ops::Range;
+use units::Volt;
+
+/// The higher level at the coil in the range of factor 1: within the range of the fine channels at 400 ohm.
+const HIGH: Volt = Volt(5.7);
+/// The lower level as a share of the higher one.
+const LOW: f64 = 1.5 / 5.7;
+/// Distance from both ends of the fine ramp within which readings are excluded from the slope, as a share of the higher level.
+const SLOPE_MARGIN: f64 = 0.3 / 5.7;
+/// Share of the limits of a supply range that a level uses.
+const USED: f64 = 0.9;
+/// Scans where voltage or current is a small part of the range of its channel.
+const CURRENT_SCANS: usize = 4 * SCANS;
+/// Full scale of the coil converter.
+const FULL: Volt = Volt(10.0);
+/// Relative difference of two levels that are as good as one.
+const ALIKE: f64 = 0.1;
+
+/// Levels of the reference coil.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Levels {
+    pub(super) low: Volt,
+    pub(super) high: Volt,
+    /// Where the current channel of the recipe reads the reference coil best; none where that is `high`.
+    pub(super) current: Option<Volt>,
+}
+
+impl Levels {
+    pub(super) fn of(context: &Context) -> Self {
+        let (scale, ohm) = (context.scale(), context.reference.coil_ohm);
+        let range = context.range.as_ref();
+        let limit = range.and_then(|range| range.max_current);
+        let most_v = limit.map_or(f64::INFINITY, |it| USED * it.0 * ohm);
+        let high = Volt(scale.of_range(HIGH).0.min(most_v));
+        let channel = context.relay.test.coil_channels.current();
+        let read_v = context
+            .points
+            .gain(channel)
+            .map(|it| USED * FULL.0 / it * ohm);
+        let current = range.zip(read_v).map(|(range, read_v)| {
+            let within_v = most_v.min(USED * range.max.0);
+            Volt(read_v.min(within_v))
+        });
+        Self {
+            low: high * LOW,
+            high,
+            current: current.filter(|it| (it.0 / high.0 - 1.0).abs() > ALIKE),
+        }
+    }
+
+    pub(super) fn span(self) -> Volt {
+        self.high - self.low
+    }
+
+    /// Returns the voltages of the fine ramp whose readings count for its slope.
+    pub(super) fn counted(self) -> Range<f64> {
+        let margin = self.high * SLOPE_MARGIN;
+        (self.low + margin).0..(self.high - margin).0
+    }
+
+    /// Returns the levels of the level output in order, each with the number of its scans.
+    pub(super) fn steps(self) -> impl Iterator<Item = (Volt, usize)> {
+        let current = self.current.map(|level| (level, CURRENT_SCANS));
+        [Some((self.low, SCANS)), Some((self.high, SCANS)), current]
+            .into_iter()
+            .flatten()
+    }
+}

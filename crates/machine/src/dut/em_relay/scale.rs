@@ -1,0 +1,59 @@
+//! Voltages of the procedure for any coil in any range of the supply.
+//!
+//! The constants of this kind are those of a 12 V coil in the range of factor 1. What belongs to the relay (thresholds,
+//! their scatter) goes with the nominal voltage. What belongs to the supply (the window of the board, the way of a ramp in
+//! a given time) goes with the factor of the range.
+
+use units::Volt;
+
+/// Nominal voltage of the coil that the constants are stated for.
+const STATED_FOR_V: f64 = 12.0;
+
+/// Factors of a coil and of a supply range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    coil: f64,
+    range: f64,
+}
+
+impl Scale {
+    /// Of a coil of this nominal voltage in a range of this factor.
+    pub fn new(nominal_v: f64, factor: f64) -> Self {
+        Self {
+            coil: nominal_v / STATED_FOR_V,
+            range: factor,
+        }
+    }
+
+    /// Returns a voltage of the relay.
+    pub fn of_coil(self, of_12_v: Volt) -> Volt {
+        of_12_v * self.coil
+    }
+
+    /// Returns a voltage of the supply.
+    pub fn of_range(self, at_factor_1: Volt) -> Volt {
+        at_factor_1 * self.range
+    }
+
+    /// Returns the factor of the range.
+    pub fn range(self) -> f64 {
+        self.range
+    }
+
+    /// Returns the nominal voltage relative to that of a 12 V coil.
+    pub fn coil(self) -> f64 {
+        self.coil
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_coil_and_its_range_scale_apart() {
+        let scale = Scale::new(3.0, 0.5);
+        assert_eq!(scale.of_coil(Volt(0.060)), Volt(0.015));
+        assert_eq!(scale.of_range(Volt(0.050)), Volt(0.025));
+    }
+}
