@@ -63,9 +63,9 @@ pub struct Yield {
 /// Parts that passed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Passed {
-    /// Passed after any number of attempts.
+    /// Parts that passed after any number of attempts.
     pub finally: u64,
-    /// Passed in a first test without a second attempt at any measurement.
+    /// Parts that passed in their first test without a second attempt at any measurement.
     pub at_first: u64,
 }
 

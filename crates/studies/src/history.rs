@@ -20,9 +20,9 @@ use std::process::Stdio;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// Parts of the greater exported sheet.
+/// Parts of the larger exported sheet.
 const SHEET: u64 = 100_000;
-/// Parts of the lesser exported sheet; its memory is the comparison.
+/// Parts of the smaller exported sheet, whose memory the larger one must not exceed much.
 const LESSER: u64 = 10_000;
 /// Parts written in a transaction each.
 const SINGLE: u64 = 500;

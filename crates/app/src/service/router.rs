@@ -28,7 +28,7 @@ use tokio::sync::{mpsc, oneshot};
 pub enum AfterRun {
     /// Another lot.
     Lot(Box<AdmittedLot>),
-    /// A hold of the lot.
+    /// The lot is put on hold, by this person.
     Hold(Box<(Order, By)>),
 }
 

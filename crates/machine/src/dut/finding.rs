@@ -34,7 +34,7 @@ impl Entry {
         }
     }
 
-    /// The same, and the value lies beyond its limit on this side.
+    /// The part is bad, and its value lies beyond its limit on this side.
     pub fn proves(self, characteristic: impl Into<Characteristic>, side: Side) -> Self {
         Self {
             proves: Some((characteristic.into(), side)),
