@@ -843,6 +843,7 @@ field-test-strategy-contact-closure_scatter_pct = Least scatter of closures
 choice-em_relay = electromagnetic relay
 choice-fine = fine current
 choice-coarse_current = wide current
+choice-high_current = high current
 choice-zener = 60 V zener
 choice-diode = diode
 choice-pulse = one step at the limit

@@ -828,6 +828,7 @@ field-test-strategy-contact-closure_scatter_pct = 闭合间最小离散
 choice-em_relay = 电磁继电器
 choice-fine = 细量程电流
 choice-coarse_current = 宽量程电流
+choice-high_current = 大电流
 choice-zener = 60 V 稳压管
 choice-diode = 二极管
 choice-pulse = 限值处单步

@@ -92,7 +92,7 @@ async fn a_revision_has_form_unit_range_and_value_of_keys() {
     assert_eq!(
         *field,
         json!({"path": "limits.operate_voltage_v.high", "form": "number", "unit": "V", "low": 0.0, "low_allowed": true,
-            "high": 20.0, "optional": true, "value": 9.0})
+            "high": 1000.0, "optional": true, "value": 9.0})
     );
 }
 
@@ -168,7 +168,7 @@ async fn a_refused_value_names_its_key_and_changes_nothing() {
     let before = fixture.recipe_text();
     for (values, key) in [
         (
-            json!({"limits.operate_voltage_v.high": 99}),
+            json!({"limits.operate_voltage_v.high": 2000}),
             "limits.operate_voltage_v.high",
         ),
         (json!({"part.body_mm": [22.5, 0, 16.5]}), "part.body_mm.1"),
