@@ -1,14 +1,13 @@
 //! The protocol on both sides, command by command. Controller and simulated modules implement the same manuals
 //! independently.
 
-use bus::{Answer, LineSettings, Pace, PortError, Ports, Request};
+use bus::{Answer, LineSettings, Pace, Request};
 use dcon::{
     Address, AnalogIn, BaudCode, Command, Common, Config, Counter, Family, FormatByte, ModuleName,
     Reply, ReplyError, TypeCode, UpTo, decode_request, factory_command,
 };
 use rigsim::{SharedRig, bench, wire};
 use std::collections::BTreeSet;
-use tokio::io::DuplexStream;
 use tokio::sync::mpsc;
 
 const TABLE: &str = include_str!("protocol.txt");
@@ -131,16 +130,6 @@ fn no_factory_command_can_be_written() {
 
 // ---- the line task of the controller over a simulated bench ---------------------------------------------------------
 
-struct BenchPort(wire::Plug);
-
-impl Ports for BenchPort {
-    type Port = DuplexStream;
-
-    async fn open(&mut self) -> Result<DuplexStream, PortError> {
-        self.0.open().ok_or(PortError::Gone)
-    }
-}
-
 /// Sends commands in order. Returns each result with the number of EEPROM writes so far.
 fn told(modules: &str, checksum: bool, commands: &[Command]) -> Vec<(Answer, u64)> {
     let talk = async {
@@ -152,7 +141,7 @@ fn told(modules: &str, checksum: bool, commands: &[Command]) -> Vec<(Answer, u64
         settings.checksum = checksum;
         let pace = Pace::virtual_time();
         tokio::spawn(bus::run_reopening(
-            BenchPort(plug),
+            bus::from_streams(move || plug.open()),
             settings,
             pace,
             asked,

@@ -39,8 +39,6 @@ pub mod source;
 #[cfg(feature = "sim")]
 pub mod story;
 pub mod traces;
-#[cfg(feature = "sim")]
-mod wire_ports;
 
 use admission::admit;
 use anyhow::Context;

@@ -3,10 +3,10 @@
 use super::lot::LotContext;
 use super::source::{LinePort, RigSource};
 #[cfg(feature = "sim")]
-use super::{simulated, source::Simulated, wire_ports::WirePorts};
+use super::{simulated, source::Simulated};
 use crate::cycle::LineEnds;
 use anyhow::anyhow;
-use bus::{LineLog, LineSettings, Pace, SerialPorts};
+use bus::{LineLog, LineSettings, OpenPort, Pace};
 use config::Plant;
 use machine::rig::wiring::LineId;
 #[cfg(feature = "sim")]
@@ -71,27 +71,17 @@ impl Lines {
     fn serial(&mut self, plant: &Plant, line: LineId, port: &str, pace: &Pace) {
         let path = port.to_string();
         let baud = plant.wiring.line(line).baud;
-        self.ports(plant, line, SerialPorts { path, baud }, pace);
+        self.open(plant, line, bus::serial_port(path, baud), pace);
     }
 
-    /// Starts the task of a line over its ports.
-    fn ports<P: bus::Ports + Send + 'static>(
-        &mut self,
-        plant: &Plant,
-        line: LineId,
-        ports: P,
-        pace: &Pace,
-    ) where
-        P::Port: Send,
-    {
+    /// Starts the task of a line over the ports that `open` gives.
+    fn open(&mut self, plant: &Plant, line: LineId, open: OpenPort, pace: &Pace) {
         let settings = settings(plant, line);
         self.logs
             .push((settings.name.clone(), settings.log.clone()));
         let (requests, requested) = mpsc::channel(1);
         let (answer, answers) = mpsc::channel(1);
-        tokio::spawn(bus::run_reopening(
-            ports, settings, *pace, requested, answer,
-        ));
+        tokio::spawn(bus::run_reopening(open, settings, *pace, requested, answer));
         self.ends.push(LineEnds {
             line,
             requests,
@@ -185,7 +175,12 @@ fn simulated_lines(
         lines._ptys = Some(ptys);
     } else {
         for (name, plug) in wire::plugs(&rig) {
-            lines.ports(plant, named(&name)?, WirePorts(plug), pace);
+            lines.open(
+                plant,
+                named(&name)?,
+                bus::from_streams(move || plug.open()),
+                pace,
+            );
         }
     }
     lines.rig = Some(rig);

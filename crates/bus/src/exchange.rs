@@ -1,13 +1,13 @@
 //! The bytes of one exchange: write, read until CR or the deadline, wait for silence.
 
 use super::trace::Direction;
-use super::{LineLog, Pace};
+use super::{LineLog, Pace, Port};
 use dcon::{Command, FRAME_LIMIT};
 use std::future::poll_fn;
 use std::io;
 use std::pin::{Pin, pin};
 use std::task::Poll;
-use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt, ReadBuf};
+use tokio::io::{AsyncReadExt, AsyncWriteExt, ReadBuf};
 use tokio::time::Sleep;
 use units::{RigTime, Span};
 
@@ -94,13 +94,13 @@ pub(super) enum SilenceEnd {
 }
 
 /// A port with the clock and the log that go with it.
-pub(super) struct Exchange<'a, P> {
-    pub(super) port: &'a mut P,
+pub(super) struct Exchange<'a> {
+    pub(super) port: &'a mut dyn Port,
     pub(super) pace: Pace,
     pub(super) log: &'a LineLog,
 }
 
-impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
+impl Exchange<'_> {
     /// Writes `request` and reads until a frame is complete or `deadline` passes; `frame` holds the bytes received.
     pub(super) async fn ask(
         &mut self,

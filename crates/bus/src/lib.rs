@@ -84,11 +84,11 @@ mod tests;
 
 pub use answer::{Answer, LineError, Request};
 pub use health::{Health, Histogram, ModuleHealth};
-pub use line::{Ports, run, run_reopening};
+pub use line::{run, run_reopening};
 pub use log::LineLog;
 pub use meaning::Meaning;
 pub use pace::Pace;
-pub use port::{PortError, SerialPorts, open_serial};
+pub use port::{OpenPort, Port, PortError, from_streams, open_serial, serial_port};
 pub use probation::PROBATION_ANSWERS;
 pub use raw::{RawReply, send_raw};
 pub use recorded::{Recorded, RecordedError, arrow, escaped, unescaped};

@@ -1,48 +1,32 @@
 //! The task of a line: takes requests and returns answers, one at a time and in order.
 
 use super::exchange::{Exchange, Frame};
+use super::from_streams;
 use super::outstanding::OutstandingReplies;
 use super::probation::Probation;
 use super::transaction::{Times, Transaction, Trouble};
-use super::{Answer, LineError, LineSettings, Pace, PortError, Request};
+use super::{Answer, LineError, LineSettings, OpenPort, Pace, Port, PortError, Request};
 use dcon::{Command, Common, FRAME_LIMIT, Reply};
-use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::sync::mpsc;
 use units::{RigTime, Span};
 
-/// Source of a line's port, at the start and after a loss.
-pub trait Ports {
-    /// Byte stream to the modules.
-    type Port: AsyncRead + AsyncWrite + Unpin;
-    /// Opens the port anew. The line calls it at most once per back-off time.
-    fn open(&mut self) -> impl Future<Output = Result<Self::Port, PortError>> + Send;
-}
-
-/// A ready-made stream, which cannot be opened twice.
-struct SinglePort<P>(Option<P>);
-
-impl<P: AsyncRead + AsyncWrite + Unpin + Send> Ports for SinglePort<P> {
-    type Port = P;
-
-    async fn open(&mut self) -> Result<P, PortError> {
-        self.0.take().ok_or(PortError::Gone)
-    }
-}
-
 /// Serves requests over `port` until one of the channels closes. Every request gets an answer.
-pub async fn run<P: AsyncRead + AsyncWrite + Unpin + Send>(
-    port: P,
+pub async fn run(
+    port: impl Port + 'static,
     settings: LineSettings,
     pace: Pace,
     requests: mpsc::Receiver<Request>,
     answers: mpsc::Sender<Answer>,
 ) {
-    run_reopening(SinglePort(Some(port)), settings, pace, requests, answers).await;
+    let mut port = Some(port);
+    let once = from_streams(move || port.take());
+    run_reopening(once, settings, pace, requests, answers).await;
 }
 
-/// Serves requests as [`run`] does, with ports that it opens itself: the first at the first request.
-pub async fn run_reopening<O: Ports>(
-    ports: O,
+/// Serves requests as [`run`] does, over ports that it opens itself: the first at the first request, the next at most once
+/// per back-off time after a loss.
+pub async fn run_reopening(
+    open: OpenPort,
     settings: LineSettings,
     pace: Pace,
     mut requests: mpsc::Receiver<Request>,
@@ -50,7 +34,7 @@ pub async fn run_reopening<O: Ports>(
 ) {
     let backoff = Span::ms(settings.reopen_first_ms);
     let mut line = Line {
-        ports,
+        open,
         port: None,
         settings,
         pace,
@@ -79,9 +63,9 @@ pub async fn run_reopening<O: Ports>(
     }
 }
 
-struct Line<O: Ports> {
-    ports: O,
-    port: Option<O::Port>,
+struct Line {
+    open: OpenPort,
+    port: Option<Box<dyn Port>>,
     settings: LineSettings,
     pace: Pace,
     request: Vec<u8>,
@@ -102,7 +86,7 @@ struct Try {
     outcome: Result<Reply, LineError>,
 }
 
-impl<O: Ports> Line<O> {
+impl Line {
     /// Writes a setting only if the module does not have it already, because the EEPROM of a module wears. Writes it
     /// too if the module cannot report it.
     async fn serve(&mut self, request: Request) -> Answer {
@@ -201,7 +185,7 @@ impl<O: Ports> Line<O> {
         };
         let mut transaction = Transaction {
             exchange: Exchange {
-                port,
+                port: port.as_mut(),
                 pace: self.pace,
                 log: &self.settings.log,
             },
@@ -222,7 +206,7 @@ impl<O: Ports> Line<O> {
             return Ok(());
         }
         if self.pace.now() >= self.reopen_at {
-            match self.ports.open().await {
+            match (self.open)() {
                 Ok(port) => {
                     self.port = Some(port);
                     self.silent = true;

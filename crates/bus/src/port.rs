@@ -1,12 +1,30 @@
-//! Opens serial ports, with errors that name the remedy.
+//! The port of a line, and serial ports with errors that name the remedy.
 
-use super::Ports;
 use std::io;
 use std::path::Path;
 use thiserror::Error;
+use tokio::io::{AsyncRead, AsyncWrite};
 use tokio_serial::{
     DataBits, ErrorKind, FlowControl, Parity, SerialPortBuilderExt, SerialStream, StopBits,
 };
+
+/// Byte stream to the modules of a line.
+pub trait Port: AsyncRead + AsyncWrite + Unpin + Send {}
+
+impl<P: AsyncRead + AsyncWrite + Unpin + Send> Port for P {}
+
+/// Opens the port of a line, at the start and after a loss.
+pub type OpenPort = Box<dyn FnMut() -> Result<Box<dyn Port>, PortError> + Send>;
+
+/// Returns a port from a source of ready-made streams; the port is gone when the source has none.
+pub fn from_streams<P: Port + 'static>(
+    mut next: impl FnMut() -> Option<P> + Send + 'static,
+) -> OpenPort {
+    Box::new(move || match next() {
+        Some(stream) => Ok(Box::new(stream)),
+        None => Err(PortError::Gone),
+    })
+}
 
 /// Why the line has no usable port.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -78,19 +96,7 @@ fn port_error(path: &str, baud: u32, error: &tokio_serial::Error) -> PortError {
     }
 }
 
-/// A serial port by path: opened at the first request, and again after a loss.
-#[derive(Debug, Clone)]
-pub struct SerialPorts {
-    /// Path of the device or of a link to it.
-    pub path: String,
-    /// Bits per second.
-    pub baud: u32,
-}
-
-impl Ports for SerialPorts {
-    type Port = SerialStream;
-
-    async fn open(&mut self) -> Result<SerialStream, PortError> {
-        open_serial(&self.path, self.baud)
-    }
+/// Returns what opens the serial port at `path`, a device or a link to one, at `baud` bits per second.
+pub fn serial_port(path: String, baud: u32) -> OpenPort {
+    Box::new(move || Ok(Box::new(open_serial(&path, baud)?)))
 }

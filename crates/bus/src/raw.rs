@@ -1,10 +1,9 @@
 //! Sends one raw frame, for tools: the line does not know the command, so it repeats and checks nothing.
 
 use super::exchange::{Exchange, Frame, FrameEnd};
-use super::{LineSettings, Pace};
+use super::{LineSettings, Pace, Port};
 use dcon::FRAME_LIMIT;
 use std::io;
-use tokio::io::{AsyncRead, AsyncWrite};
 use units::Span;
 
 /// The bytes received.
@@ -22,8 +21,8 @@ pub struct RawReply {
 ///
 /// # Errors
 /// Returns the error of the port.
-pub async fn send_raw<P: AsyncRead + AsyncWrite + Unpin>(
-    port: &mut P,
+pub async fn send_raw(
+    port: &mut dyn Port,
     settings: &LineSettings,
     pace: Pace,
     request: &[u8],

@@ -7,7 +7,6 @@ use super::probation::Probation;
 use dcon::{Address, Command, Reply, ReplyError};
 use std::io;
 use std::mem::{replace, take};
-use tokio::io::{AsyncRead, AsyncWrite};
 use units::RigTime;
 
 /// Why a try failed; the line adds its name and the command to make a [`super::LineError`].
@@ -46,8 +45,8 @@ pub(super) struct Times {
 }
 
 /// A port with the state of the line behind it.
-pub(super) struct Transaction<'a, P> {
-    pub(super) exchange: Exchange<'a, P>,
+pub(super) struct Transaction<'a> {
+    pub(super) exchange: Exchange<'a>,
     pub(super) settings: &'a LineSettings,
     pub(super) outstanding: &'a mut OutstandingReplies,
     pub(super) probation: &'a mut Probation,
@@ -55,7 +54,7 @@ pub(super) struct Transaction<'a, P> {
     pub(super) silent: &'a mut bool,
 }
 
-impl<P: AsyncRead + AsyncWrite + Unpin> Transaction<'_, P> {
+impl Transaction<'_> {
     /// Carries out `command`, encoded in `request`; leaves the bytes received in `frame`.
     pub(super) async fn transact(
         &mut self,

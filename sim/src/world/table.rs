@@ -113,12 +113,11 @@ fn overlay(base_path: &Path, path: &Path, text: &str) -> Result<WorldTable, Conf
         toml::from_str(&base_text).map_err(|e| content(base_path, &base_text, &e))?;
     let over: toml::Table = toml::from_str(text).map_err(|e| content(path, text, &e))?;
     merge(&mut base, over);
-    base.try_into()
-        .map_err(|e: toml::de::Error| ConfigError::Content {
-            path: path.to_path_buf(),
-            line: line_of_key(text, e.message()),
-            message: e.message().to_owned(),
-        })
+    toml::from_str(&base.to_string()).map_err(|e| ConfigError::Content {
+        path: path.to_path_buf(),
+        line: line_of_key(text, e.message()),
+        message: e.message().to_owned(),
+    })
 }
 
 fn merge(base: &mut toml::Table, over: toml::Table) {

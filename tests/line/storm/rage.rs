@@ -9,7 +9,7 @@
 //! - a failure must name line, address and command (else *nameless*);
 //! - every request must be answered within [`PATIENCE`] of rig time (else it *hangs*).
 
-use bus::{Answer, LineError, LineSettings, Pace, PortError, Ports, Request};
+use bus::{Answer, LineError, LineSettings, Pace, Request};
 use dcon::{
     Address, AnalogIn, AnalogOut, Channel, Command, Common, Counter, DataFormat, Digital,
     InputForm, Level, OutputForm, OutputWord, Reply, ReplyError, TypeCode, UpTo, Value,
@@ -17,10 +17,9 @@ use dcon::{
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use rigsim::fingerprint::{self, FingerprintLine};
-use rigsim::wire::{self, Plug};
+use rigsim::wire;
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
-use tokio::io::DuplexStream;
 use tokio::sync::mpsc;
 
 /// Every fault of the line, each at 1 %: lost, late within and beyond the time-out, damaged, doubled, reset, unplugged.
@@ -95,16 +94,6 @@ impl Weather {
     }
 }
 
-struct PlugPorts(Plug);
-
-impl Ports for PlugPorts {
-    type Port = DuplexStream;
-
-    async fn open(&mut self) -> Result<DuplexStream, PortError> {
-        self.0.open().ok_or(PortError::Gone)
-    }
-}
-
 /// Runs a storm of `transactions` transactions.
 pub fn rage(seed: u64, transactions: u64, faults: &[&str]) -> Weather {
     in_virtual_time(storm(seed, transactions, faults))
@@ -130,7 +119,7 @@ pub async fn storm(seed: u64, transactions: u64, faults: &[&str]) -> Weather {
     let mut settings = LineSettings::new(fingerprint::LINE, 115_200);
     settings.late_reply_ms = GRACE_MS;
     tokio::spawn(bus::run_reopening(
-        PlugPorts(plug),
+        bus::from_streams(move || plug.open()),
         settings,
         pace,
         asked,

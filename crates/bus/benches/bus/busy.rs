@@ -7,7 +7,7 @@
 //! this machine reaches a bar above the peer.
 
 use super::bare;
-use bus::{Answer, LineSettings, Pace, Request, SerialPorts, Wire};
+use bus::{Answer, LineSettings, Pace, Request, Wire};
 use dcon::{
     Address, AnalogIn, Channel, Command, Counter, DataFormat, Digital, InputForm, OutputWord,
     TypeCode, UpTo, Width,
@@ -162,14 +162,13 @@ fn measured(baud: u32, commands: &[Command]) -> Result<Row, Box<dyn Error>> {
     std::fs::remove_file(&file)?;
     let ptys = rigsim::pty::serve(&rig, Rates::Ignored)?;
     let path = ptys.paths().remove(0).1.to_string_lossy().into_owned();
-    let ports = SerialPorts { path, baud };
     let answers = tokio::runtime::Builder::new_multi_thread()
         .worker_threads(2)
         .enable_all()
         .build()?
-        .block_on(exchange_all(ports.clone(), commands, count));
+        .block_on(exchange_all(&path, baud, commands, count));
     let requests: Vec<Vec<u8>> = commands.iter().cycle().take(count).map(written).collect();
-    let peer = bare::exchange_all(&ports.path, wire, &requests)?;
+    let peer = bare::exchange_all(&path, wire, &requests)?;
     row(wire, &answers, count, peer)
 }
 
@@ -220,13 +219,13 @@ fn written(command: &Command) -> Vec<u8> {
 }
 
 /// Sends `commands` in turn until `count` have been answered; the next request always waits.
-async fn exchange_all(ports: SerialPorts, commands: &[Command], count: usize) -> Vec<Answer> {
-    let mut settings = LineSettings::new("bench", ports.baud);
+async fn exchange_all(path: &str, baud: u32, commands: &[Command], count: usize) -> Vec<Answer> {
+    let mut settings = LineSettings::new("bench", baud);
     settings.checksum = false;
     let (ask, to_line) = mpsc::channel(1);
     let (from_line, mut answers) = mpsc::channel(1);
     tokio::spawn(bus::run_reopening(
-        ports,
+        bus::serial_port(path.to_owned(), baud),
         settings,
         Pace::real(),
         to_line,

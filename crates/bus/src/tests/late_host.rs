@@ -52,11 +52,7 @@ impl AsyncWrite for Unnoticed {
 }
 
 /// Sends one request through `port`.
-async fn exchange<P: AsyncRead + AsyncWrite + Unpin + Send>(
-    port: P,
-    pace: Pace,
-    command: Command,
-) -> Answer {
+async fn exchange(port: impl Port + 'static, pace: Pace, command: Command) -> Answer {
     let (ask, to_line) = mpsc::channel(1);
     let (from_line, mut answers) = mpsc::channel(1);
     let request = Request {

@@ -35,24 +35,17 @@ fn a_closed_stream_takes_the_time_of_a_silent_module() {
     assert_eq!(pace, RigTime(2 * settings().time_out(&count()).0));
 }
 
-/// A port that is missing at first, then ends after one reply, and so on.
-struct Flaky {
-    pace: Pace,
-    opened: u32,
-}
-
-impl Ports for Flaky {
-    type Port = DuplexStream;
-
-    async fn open(&mut self) -> Result<DuplexStream, PortError> {
-        self.opened += 1;
-        if !self.opened.is_multiple_of(2) {
+/// Returns a port that is missing at first, then ends after one reply, and so on.
+fn flaky(pace: Pace) -> OpenPort {
+    let mut opened = 0u32;
+    Box::new(move || {
+        opened += 1;
+        if !opened.is_multiple_of(2) {
             return Err(PortError::Missing {
                 path: "/dev/none".to_owned(),
             });
         }
         let (ours, mut theirs) = duplex(64);
-        let pace = self.pace;
         tokio::spawn(async move {
             next_request(&mut theirs).await;
             pace.sleep_until(pace.now() + Span(2_000)).await;
@@ -60,8 +53,8 @@ impl Ports for Flaky {
             // After the next request the port closes.
             next_request(&mut theirs).await;
         });
-        Ok(ours)
-    }
+        Ok(Box::new(ours))
+    })
 }
 
 #[test]
@@ -71,7 +64,7 @@ fn a_lost_port_is_opened_again_after_its_back_off() {
         let (ask, to_line) = mpsc::channel(1);
         let (from_line, mut answers) = mpsc::channel(1);
         tokio::spawn(run_reopening(
-            Flaky { pace, opened: 0 },
+            flaky(pace),
             settings(),
             pace,
             to_line,
