@@ -223,7 +223,7 @@ fn a_recipe_without_reference_parts_is_refused() {
     workshop.write("config/golden.toml", &text);
     let said = run(&workshop, 1, "").with_status(2);
     let refused =
-        "[part].nominal_v: found 12, expected a coil voltage with at least 3 golden parts";
+        "[part].nominal_v: found 12, expected a coil voltage with at least 3 reference parts";
     assert!(said.stderr.contains(refused), "{said}");
 }
 

@@ -96,15 +96,25 @@ impl Plant {
     /// Refuses a recipe that this plant lacks references for, or that its modules cannot measure.
     ///
     /// # Errors
-    /// The first fault, with file, line, key and the module that cannot measure it.
+    /// The first of [`infeasible`](Self::infeasible).
     pub fn admit(&self, recipe: &Recipe) -> Result<(), ConfigError> {
-        recipe.feasible(&self.rig()).or_else(|fault| {
-            let path = self
-                .dir
-                .join("recipes")
-                .join(format!("{}.toml", recipe.name));
-            Err(File::parse(path, recipe.source_text.clone())?.locate(&fault))
-        })
+        self.infeasible(recipe)
+            .into_iter()
+            .next()
+            .map_or(Ok(()), Err)
+    }
+
+    /// Returns every reason why this plant cannot perform a recipe, each with file, line, key and what forbids it.
+    pub fn infeasible(&self, recipe: &Recipe) -> Vec<ConfigError> {
+        let faults = recipe.infeasible(&self.rig());
+        let path = self
+            .dir
+            .join("recipes")
+            .join(format!("{}.toml", recipe.name));
+        match File::parse(path, recipe.source_text.clone()) {
+            Ok(file) => faults.iter().map(|fault| file.locate(fault)).collect(),
+            Err(error) => vec![error],
+        }
     }
 }
 

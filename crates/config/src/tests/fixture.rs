@@ -108,7 +108,7 @@ fn a_rig_without_references_refuses_relays_and_takes_resistors() {
         (no_board, "references: rig.toml has no [reference]"),
         (
             no_parts,
-            "golden parts: rig.toml names no file of them in [calibration].golden",
+            "reference parts: rig.toml names no file of them in [calibration].golden",
         ),
     ];
     for (rig, lacks) in cases {

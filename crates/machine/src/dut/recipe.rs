@@ -79,12 +79,9 @@ pub trait KindRecipe {
         stored: Option<Calibration>,
     ) -> Result<Device, MissingPoint>;
 
-    /// Checks that the rig has the points, bins and references of the kind, that its modules can perform the recipe, and that
-    /// their uncertainty leaves something to judge.
-    ///
-    /// # Errors
-    /// Names the first key that asks too much and the module that stands against it, or what `rig.toml` lacks.
-    fn feasible(&self, limits: &Limits, rig: &Rig) -> Result<(), Fault>;
+    /// Returns every reason why the rig cannot perform the recipe: points, bins and references that `rig.toml` lacks, keys that
+    /// ask too much of a module, limits beyond the reach of the test or closer than its uncertainty.
+    fn infeasible(&self, limits: &Limits, rig: &Rig) -> Vec<Fault>;
 
     /// Returns what the test asks of the supply.
     fn demand(&self, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand;
@@ -181,15 +178,13 @@ impl Recipe {
         self.device.check()
     }
 
-    /// Checks that a rig can perform the recipe, and that its uncertainty leaves something to judge.
-    ///
-    /// # Errors
-    /// Names the first key that asks too much and the module that stands against it, or what `rig.toml` lacks.
-    pub fn feasible(&self, rig: &Rig) -> Result<(), Fault> {
-        self.device.feasible(&self.limits, rig)
+    /// Returns every reason why a rig cannot perform the recipe or has nothing to judge, each with its key; none for a feasible
+    /// recipe.
+    pub fn infeasible(&self, rig: &Rig) -> Vec<Fault> {
+        self.device.infeasible(&self.limits, rig)
     }
 
-    /// Returns the wiring in the smallest range of the supply that serves the recipe, which must be [feasible](Self::feasible).
+    /// Returns the wiring in the smallest range of the supply that serves the recipe, which must not be [infeasible](Self::infeasible).
     ///
     /// # Errors
     /// Names the key that asks more of the supply than any range gives.

@@ -168,7 +168,7 @@ async fn a_refused_value_names_its_key_and_changes_nothing() {
     let before = fixture.recipe_text();
     for (values, key) in [
         (
-            json!({"limits.operate_voltage_v.high": 2000}),
+            json!({"limits.operate_voltage_v.high": 99}),
             "limits.operate_voltage_v.high",
         ),
         (json!({"part.body_mm": [22.5, 0, 16.5]}), "part.body_mm.1"),

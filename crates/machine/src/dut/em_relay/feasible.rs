@@ -3,6 +3,7 @@
 //!
 //! A strategy needs outputs that step or slew, a counter in counting mode and enabled channels.
 
+mod limits;
 mod supply;
 
 use super::bins;
@@ -31,17 +32,32 @@ const SLOW_CONVERSIONS_PER_S: f64 = 10.0;
 /// Type code of an I-7080 in counting mode; 51 is frequency mode.
 const COUNTS: u8 = 0x50;
 
-/// Refuses a recipe that these modules cannot perform, or whose limits are narrower than the guard bands; the fault
-/// names the key of the recipe and the module.
+/// Returns every reason why the rig cannot perform the recipe, each with its key: missing references, bins or points first,
+/// then what the supply, the modules or the uncertainty forbid.
+pub fn faults(recipe: &RelayRecipe, limits: &Limits, rig: &Rig) -> Vec<Fault> {
+    let references = check_references(recipe.part.nominal_v, rig);
+    let mut faults = Vec::from_iter(references.err());
+    match reach(recipe, limits, rig) {
+        Ok(reach) => faults.extend(out_of_reach(recipe, limits, rig.accuracy, &reach)),
+        Err(fault) => faults.push(fault),
+    }
+    faults.extend(check_early_stop(recipe, limits).err());
+    faults.extend(guard_band_faults(recipe, limits, rig.accuracy));
+    faults
+}
+
+/// The rig as far as a recipe reaches: its wiring in the range of the supply that serves the recipe, and its points.
+struct Reach {
+    wiring: Wiring,
+    points: Points,
+}
+
+/// Finds bins, points and supply range of the recipe.
 ///
 /// # Errors
-/// The first fault.
-pub fn check(
-    recipe: &RelayRecipe,
-    limits: &Limits,
-    wiring: &Wiring,
-    accuracy: &AccuracySettings,
-) -> Result<(), Fault> {
+/// Names the first that the rig does not have.
+fn reach(recipe: &RelayRecipe, limits: &Limits, rig: &Rig) -> Result<Reach, Fault> {
+    let wiring = rig.wiring;
     if let Some(missing) = bins::BY_RANK.iter().find(|bin| !wiring.axis.has(**bin)) {
         let expected = format!("a rig with the bins of this kind: rig.toml has no bin.{missing}");
         return Err(Fault::new("kind", "\"em_relay\"", expected));
@@ -50,33 +66,29 @@ pub fn check(
         let expected = "every point that its test needs";
         Fault::new("test", missing, expected)
     })?;
-    let range = demand(recipe, limits, accuracy).range(wiring)?;
-    let wiring = &wiring.in_range(range);
-    supply::check(recipe, limits, wiring, &points)?;
-    check_strategies(recipe, wiring, &points, accuracy)?;
-    supply::check_ramp(recipe, wiring, &points, accuracy)?;
-    check_early_stop(recipe, limits)?;
-    check_guard_bands(recipe, limits, accuracy)
+    let range = demand(recipe, limits, rig.accuracy).range(wiring)?;
+    let wiring = wiring.in_range(range);
+    Ok(Reach { wiring, points })
 }
 
-/// Checks that the modules can perform the strategy of each threshold.
-fn check_strategies(
+/// Returns what lies beyond the supply, the converters and the modules.
+fn out_of_reach(
     recipe: &RelayRecipe,
-    wiring: &Wiring,
-    points: &Points,
+    limits: &Limits,
     accuracy: &AccuracySettings,
-) -> Result<(), Fault> {
+    reach: &Reach,
+) -> Vec<Fault> {
+    let mut faults = supply::faults(recipe, limits, reach);
+    faults.extend(limits::faults(recipe, limits, reach));
     for (key, strategy) in recipe.test.strategy.each() {
-        let key = format!("test.strategy.{key}");
-        if let Some(why) = hindrance(strategy, wiring, points, accuracy) {
-            return Err(Fault::new(
-                key,
-                strategy.name(),
-                format!("a strategy that these modules can perform: {why}"),
-            ));
-        }
+        let why = hindrance(strategy, &reach.wiring, &reach.points, accuracy);
+        faults.extend(why.map(|why| {
+            let expected = format!("a strategy that these modules can perform: {why}");
+            Fault::new(format!("test.strategy.{key}"), strategy.name(), expected)
+        }));
     }
-    Ok(())
+    faults.extend(supply::check_ramp(recipe, reach, accuracy).err());
+    faults
 }
 
 /// Checks that closures which stop early have limits to be clear of.
@@ -99,38 +111,36 @@ fn check_early_stop(recipe: &RelayRecipe, limits: &Limits) -> Result<(), Fault> 
     Ok(())
 }
 
-/// Checks that the guard bands leave something between the limits.
-fn check_guard_bands(
+/// Returns the limits between which the guard bands leave nothing.
+fn guard_band_faults(
     recipe: &RelayRecipe,
     limits: &Limits,
     accuracy: &AccuracySettings,
-) -> Result<(), Fault> {
-    for parameter in Parameter::ALL {
+) -> impl Iterator<Item = Fault> {
+    Parameter::ALL.into_iter().filter_map(move |parameter| {
         let limit = limits.of(parameter);
-        let (Some(low), Some(high)) = (limit.low, limit.high) else {
-            continue;
-        };
+        let (low, high) = (limit.low?, limit.high?);
         let least = 2.0 * expected_u(parameter, recipe, accuracy);
-        if high - low < least {
-            let found = format!("{low} to {high}");
+        (high - low < least).then(|| {
             let expected = format!(
                 "limits more than {least:.3} apart: the guard bands at both ends leave nothing between"
             );
-            return Err(Fault::new(format!("limits.{parameter}"), found, expected));
-        }
-    }
-    Ok(())
+            Fault::new(format!("limits.{parameter}"), format!("{low} to {high}"), expected)
+        })
+    })
 }
 
 /// Refuses a rig without references on its board, or without enough reference parts of this nominal voltage.
 ///
 /// # Errors
 /// Names what `rig.toml` lacks, or the coil voltages of the reference parts.
-pub fn check_references(nominal_v: f64, rig: &Rig) -> Result<(), Fault> {
+fn check_references(nominal_v: f64, rig: &Rig) -> Result<(), Fault> {
     let lacks = match (rig.reference, rig.reference_parts.parts.is_empty()) {
         (Some(_), false) => return check_reference_parts(nominal_v, rig.reference_parts),
         (None, true | false) => "references: rig.toml has no [reference]",
-        (Some(_), true) => "golden parts: rig.toml names no file of them in [calibration].golden",
+        (Some(_), true) => {
+            "reference parts: rig.toml names no file of them in [calibration].golden"
+        }
     };
     let expected = format!("a rig with {lacks}");
     Err(Fault::new("kind", "\"em_relay\"", expected))
@@ -145,7 +155,7 @@ fn check_reference_parts(nominal_v: f64, parts: &ReferenceSet) -> Result<(), Fau
     others.dedup();
     let others: Vec<String> = others.iter().map(|volts| format!("{volts} V")).collect();
     let expected = format!(
-        "a coil voltage with at least {FEWEST_PARTS} golden parts; there are some of {}",
+        "a coil voltage with at least {FEWEST_PARTS} reference parts; there are some of {}",
         others.join(", ")
     );
     Err(Fault::new("part.nominal_v", nominal_v, expected))

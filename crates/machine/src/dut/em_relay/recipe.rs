@@ -53,9 +53,8 @@ impl KindRecipe for RelayRecipe {
         Ok(Device::EmRelay(Box::new(device)))
     }
 
-    fn feasible(&self, limits: &Limits, rig: &Rig) -> Result<(), Fault> {
-        feasible::check_references(self.part.nominal_v, rig)?;
-        feasible::check(self, limits, rig.wiring, rig.accuracy)
+    fn infeasible(&self, limits: &Limits, rig: &Rig) -> Vec<Fault> {
+        feasible::faults(self, limits, rig)
     }
 
     fn demand(&self, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand {

@@ -76,31 +76,26 @@ impl KindRecipe for ResistorRecipe {
         Ok(Device::Resistor(Box::new(device)))
     }
 
-    /// Checks that the rig has the bin and the points, that level and current lie within reach of the modules, and that the
-    /// uncertainty leaves something between the limits.
-    ///
-    /// # Errors
-    /// Names the first key that asks for what is not there.
-    fn feasible(&self, limits: &Limits, rig: &Rig) -> Result<(), Fault> {
-        let wiring = rig.wiring;
-        if !wiring.axis.has(BIN) {
-            let expected = format!("a rig with the bins of this kind: rig.toml has no bin.{BIN}");
-            return Err(Fault::new("kind", "\"resistor\"", expected));
-        }
-        let points = Points::resolve(wiring).map_err(|missing| {
-            let expected = "a rig with every point that its test needs";
-            Fault::new("test", missing, expected)
-        })?;
-        let wiring = &wiring.in_range(self.demand(limits, rig.accuracy).range(wiring)?);
+    fn infeasible(&self, limits: &Limits, rig: &Rig) -> Vec<Fault> {
+        let (wiring, points) = match self.reach(limits, rig) {
+            Ok(reach) => reach,
+            Err(fault) => return vec![fault],
+        };
         let channel = ChannelAccuracy {
             accuracy: *rig.accuracy,
             volt_per_ampere: wiring.analog_in(points.current).gain,
         };
-        check_modules(wiring, &points)?;
-        self.check_limit(limits.of(Parameter::Resistance), &channel)?;
-        wiring
+        let level = wiring
             .reaches(points.level, Volt(self.test.level_v))
-            .map_err(|cannot| Fault::new("test.level_v", self.test.level_v, cannot.to_string()))
+            .map_err(|cannot| Fault::new("test.level_v", self.test.level_v, cannot.to_string()));
+        [
+            check_modules(&wiring, &points),
+            self.check_limit(limits.of(Parameter::Resistance), &channel),
+            level,
+        ]
+        .into_iter()
+        .filter_map(Result::err)
+        .collect()
     }
 
     fn demand(&self, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand {
@@ -124,6 +119,24 @@ impl KindRecipe for ResistorRecipe {
 }
 
 impl ResistorRecipe {
+    /// Returns the wiring in the supply range of the recipe, and its points.
+    ///
+    /// # Errors
+    /// Names the bin, the point or the range that the rig does not have.
+    fn reach(&self, limits: &Limits, rig: &Rig) -> Result<(Wiring, Points), Fault> {
+        let wiring = rig.wiring;
+        if !wiring.axis.has(BIN) {
+            let expected = format!("a rig with the bins of this kind: rig.toml has no bin.{BIN}");
+            return Err(Fault::new("kind", "\"resistor\"", expected));
+        }
+        let points = Points::resolve(wiring).map_err(|missing| {
+            let expected = "a rig with every point that its test needs";
+            Fault::new("test", missing, expected)
+        })?;
+        let range = self.demand(limits, rig.accuracy).range(wiring)?;
+        Ok((wiring.in_range(range), points))
+    }
+
     fn check_limit(&self, limit: Limit, channel: &ChannelAccuracy) -> Result<(), Fault> {
         if limit.is_open() {
             let expected = "a low or a high limit: nothing else is measured";

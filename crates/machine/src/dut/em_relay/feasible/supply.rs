@@ -1,6 +1,6 @@
 //! What a test asks of the supply, and whether the range that gives it suits the recipe.
 
-use super::nominal_v_per_s;
+use super::{Reach, nominal_v_per_s};
 use crate::dut::accuracy::AccuracySettings;
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Points};
@@ -12,7 +12,7 @@ use crate::rig::wiring::Wiring;
 use units::{Ampere, Volt};
 
 /// Highest voltage at a terminal of the coil converter that still counts: 98 % of its +-10 V.
-const READABLE_V: f64 = 9.8;
+pub(super) const READABLE_V: f64 = 9.8;
 /// Lowest voltage at a terminal that tells a current from none.
 const LEAST_CURRENT_V: f64 = 0.3;
 /// Share by which a good coil may differ from its nominal resistance where the recipe sets no limit.
@@ -53,34 +53,34 @@ fn accepted_ohm(recipe: &RelayRecipe, limits: &Limits) -> (f64, f64) {
     )
 }
 
-/// Checks that the outputs and the channels of this range suit the recipe. `wiring`: in the range of the recipe.
-pub(super) fn check(
-    recipe: &RelayRecipe,
-    limits: &Limits,
-    wiring: &Wiring,
-    points: &Points,
-) -> Result<(), Fault> {
-    check_outputs(recipe, wiring, points)?;
-    check_voltage(recipe, wiring, points)?;
-    check_current(recipe, limits, wiring, points)
+/// Returns what the outputs and the channels of the range cannot do for the recipe.
+pub(super) fn faults(recipe: &RelayRecipe, limits: &Limits, reach: &Reach) -> Vec<Fault> {
+    let Reach { wiring, points } = reach;
+    let mut faults = Vec::from_iter(output_faults(recipe, wiring, points));
+    faults.extend(check_voltage(recipe, wiring, points).err());
+    faults.extend(check_current(recipe, limits, wiring, points).err());
+    faults
 }
 
-/// Checks that level and coarse output reach the pre-bias and the height of the coarse ramp.
-fn check_outputs(recipe: &RelayRecipe, wiring: &Wiring, points: &Points) -> Result<(), Fault> {
+/// Returns the level and the coarse output where they do not reach the pre-bias and the height of the coarse ramp.
+fn output_faults(
+    recipe: &RelayRecipe,
+    wiring: &Wiring,
+    points: &Points,
+) -> impl Iterator<Item = Fault> {
     let test = &recipe.test;
-    for (key, output, volts) in [
+    let asked = [
         ("test.prebias_v", AnalogOut::SupplyLevel, test.prebias_v),
         (
             "test.coarse_span_v",
             AnalogOut::SupplyCoarse,
             test.coarse_span_v,
         ),
-    ] {
-        wiring
-            .reaches(points.source(output), Volt(volts))
-            .map_err(|cannot| Fault::new(key, volts, cannot.to_string()))?;
-    }
-    Ok(())
+    ];
+    asked.into_iter().filter_map(|(key, output, volts)| {
+        let cannot = wiring.reaches(points.source(output), Volt(volts)).err()?;
+        Some(Fault::new(key, volts, cannot.to_string()))
+    })
 }
 
 /// Checks that the channel of the coil voltage reads the pre-bias.
@@ -132,15 +132,14 @@ fn check_current(
 /// thresholds of the lot scatter, or it tells nothing about the part.
 pub(super) fn check_ramp(
     recipe: &RelayRecipe,
-    wiring: &Wiring,
-    points: &Points,
+    reach: &Reach,
     accuracy: &AccuracySettings,
 ) -> Result<(), Fault> {
     let test = &recipe.test;
     if !test.strategy.each().iter().any(|(_, it)| it.ramps()) {
         return Ok(());
     }
-    let v_per_s = nominal_v_per_s(wiring, points.source(AnalogOut::SupplyCoarse));
+    let v_per_s = nominal_v_per_s(&reach.wiring, reach.points.source(AnalogOut::SupplyCoarse));
     let step_v = v_per_s * accuracy.ao_refresh_ms * 1e-3;
     let (sd_v, key) = (test.expected_operate_sd_v, "test.expected_operate_sd_v");
     if step_v <= sd_v {

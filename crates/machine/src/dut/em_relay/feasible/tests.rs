@@ -3,20 +3,25 @@
 
 use super::super::bins;
 use super::super::{Parameter, Strategy};
-use super::{check, check_references, hindrance, nominal_v_per_s};
+use super::{faults, hindrance, nominal_v_per_s};
 use crate::dut::Recipe;
 use crate::dut::accuracy::AccuracySettings;
 use crate::dut::device::Rig;
 use crate::dut::em_relay::points::{AnalogOut, Points};
 use crate::dut::em_relay::recipe::{CoilChannels, RelayRecipe};
-use crate::dut::em_relay::settings::{ReferenceSet, ReferenceSettings};
-use crate::dut::recipe::DeviceRecipe;
+use crate::dut::em_relay::settings::ReferenceSettings;
+use crate::dut::recipe::{DeviceRecipe, Limits};
 use crate::rig::fault::Fault;
 use crate::rig::settings::RigSettings;
 use crate::rig::wiring::{Module, Wiring};
 use serde::Deserialize;
 
 const RIG: &str = include_str!("../../../../../../config/rig.toml");
+
+#[derive(Deserialize)]
+struct Board {
+    reference: ReferenceSettings,
+}
 
 #[derive(Deserialize)]
 struct Promised {
@@ -54,7 +59,28 @@ fn feasible(recipe: &Recipe, wiring: &Wiring, accuracy: &AccuracySettings) -> Re
     let DeviceRecipe::EmRelay(relay) = &recipe.device else {
         panic!("a relay");
     };
-    check(relay, &recipe.limits, wiring, accuracy)
+    faults_on(relay, &recipe.limits, wiring, accuracy)
+        .into_iter()
+        .next()
+        .map_or(Ok(()), Err)
+}
+
+/// Every fault of the recipe on a rig with the references and reference parts of the default plant.
+fn faults_on(
+    relay: &RelayRecipe,
+    limits: &Limits,
+    wiring: &Wiring,
+    accuracy: &AccuracySettings,
+) -> Vec<Fault> {
+    let golden = include_str!("../../../../../../config/golden.toml");
+    let board: Board = toml::from_str(RIG).unwrap();
+    let rig = Rig {
+        wiring,
+        reference: Some(&board.reference),
+        accuracy,
+        reference_parts: &toml::from_str(golden).unwrap(),
+    };
+    faults(relay, limits, &rig)
 }
 
 fn module<'a>(wiring: &'a mut Wiring, name: &str) -> &'a mut Module {
@@ -239,62 +265,98 @@ fn limits_narrower_than_the_guard_bands_are_refused() {
     );
 }
 
-/// Fault of the default recipe after a change of its sections, on the default plant.
-fn refused_recipe(change: impl Fn(&mut RelayRecipe)) -> String {
+/// Checks that the default recipe has this fault on the default plant after a change of its sections.
+#[track_caller]
+fn assert_refused(change: impl Fn(&mut RelayRecipe), fault: &str) {
     let (wiring, accuracy) = plant();
     let recipe = recipe(Strategy::CoarseFine);
     let DeviceRecipe::EmRelay(mut relay) = recipe.device.clone() else {
         panic!("a relay");
     };
     change(&mut relay);
-    let fault = check(&relay, &recipe.limits, &wiring, &accuracy).unwrap_err();
-    fault.to_string()
+    let faults = faults_on(&relay, &recipe.limits, &wiring, &accuracy);
+    let texts: Vec<String> = faults.iter().map(ToString::to_string).collect();
+    assert!(texts.iter().any(|text| text == fault), "{texts:#?}");
 }
 
 #[test]
 fn a_voltage_beyond_every_range_is_refused() {
-    assert_eq!(
-        refused_recipe(|relay| relay.part.nominal_v = 110.0),
+    assert_refused(
+        |relay| relay.part.nominal_v = 110.0,
         "part.nominal_v: found 110.05 V at the supply, expected at most 60 V: \
-         rig.toml supply_range.x6.max_v"
+         rig.toml supply_range.x6.max_v",
     );
-    let high = refused_recipe(|relay| relay.test.coarse_span_v = 60.0);
-    assert!(
-        high.starts_with("test.coarse_span_v: found 65.13 V"),
-        "{high}"
+    assert_refused(
+        |relay| relay.test.coarse_span_v = 60.0,
+        "test.coarse_span_v: found 65.13 V at the supply, expected at most 60 V: \
+         rig.toml supply_range.x6.max_v",
     );
 }
 
 #[test]
 fn a_coil_current_beyond_its_range_is_refused() {
     // 36 V need the range of 60 V, which gives 40 mA.
-    assert_eq!(
-        refused_recipe(|relay| relay.part.nominal_v = 36.0),
+    assert_refused(
+        |relay| relay.part.nominal_v = 36.0,
         "limits.coil_resistance_ohm.low: found 100.0 mA at 36.02 V, expected at most 40.0 mA: \
-         rig.toml supply_range.x6.max_ma"
+         rig.toml supply_range.x6.max_ma",
     );
 }
 
 #[test]
 fn a_pre_bias_beyond_the_voltage_channel_is_refused() {
-    let refused = refused_recipe(|relay| relay.test.prebias_v = 6.2);
-    assert_eq!(
-        refused,
+    assert_refused(
+        |relay| relay.test.prebias_v = 6.2,
         "test.prebias_v: found 6.2, expected at most 6.12 V: \
-         coil_voltage_fine reads no more in this supply range"
+         coil_voltage_fine reads no more in this supply range",
     );
 }
 
 #[test]
 fn a_current_channel_must_suit_the_coil() {
-    let high = refused_recipe(|relay| relay.test.prebias_v = 6.0);
-    assert!(high.contains("fine, 16.7 mA at the pre-bias"), "{high}");
-    assert!(high.contains("coil_current_fine reads at most 16.3 mA"));
-    let low = refused_recipe(|relay| {
-        relay.test.coil_channels = CoilChannels::HighCurrent;
-        relay.test.prebias_v = 2.0;
-    });
-    assert!(low.contains("coil_current_high from 5.00 mA on"), "{low}");
+    assert_refused(
+        |relay| relay.test.prebias_v = 6.0,
+        "test.coil_channels: found fine, 16.7 mA at the pre-bias, expected channels that read it: \
+         coil_current_fine reads at most 16.3 mA",
+    );
+    assert_refused(
+        |relay| {
+            relay.test.coil_channels = CoilChannels::HighCurrent;
+            relay.test.prebias_v = 2.0;
+        },
+        "test.coil_channels: found high_current, 4.55 mA at the pre-bias, expected channels that tell it from none: \
+         coil_current_high from 5.00 mA on",
+    );
+}
+
+#[test]
+fn limits_beyond_the_reach_of_the_test_are_refused() {
+    let (wiring, accuracy) = plant();
+    let faults_with = |limits: &str| -> Vec<String> {
+        let mut recipe = recipe(Strategy::CoarseFine);
+        recipe.limits = toml::from_str(limits).unwrap();
+        let DeviceRecipe::EmRelay(relay) = &recipe.device else {
+            panic!("a relay");
+        };
+        let faults = faults_on(relay, &recipe.limits, &wiring, &accuracy);
+        faults.iter().map(ToString::to_string).collect()
+    };
+    let ramp = "the end of the coarse ramp, test.prebias_v + test.coarse_span_v";
+    let beyond = "[operate_voltage_v]\nhigh = 44.0\n[release_voltage_v]\nlow = 12.0\n\
+        [operate_time_ms]\nhigh = 61.0\n[contact_resistance_no_mohm]\nhigh = 200.0\n";
+    assert_eq!(
+        faults_with(beyond),
+        [
+            format!("limits.operate_voltage_v.high: found 44, expected at most 11.10 V: {ramp}"),
+            format!("limits.release_voltage_v.low: found 12, expected at most 11.10 V: {ramp}"),
+            "limits.operate_time_ms.high: found 61, expected at most 60.00 ms: the test waits no longer for a contact".to_owned(),
+            "limits.contact_resistance_no_mohm.high: found 200, expected at most 196.00 mOhm: \
+             contact_drop reads no more at 1 A".to_owned(),
+        ]
+    );
+    let within = "[operate_voltage_v]\nhigh = 11.0\n[operate_time_ms]\nhigh = 60.0\n\
+        [contact_resistance_no_mohm]\nhigh = 196.0\n";
+    assert_eq!(faults_with(within), [""; 0]);
 }
 
 #[test]
@@ -314,34 +376,18 @@ fn a_channel_that_the_rig_lacks_is_refused() {
 
 #[test]
 fn a_coarse_ramp_too_quick_for_the_lot_is_refused() {
-    assert_eq!(
-        refused_recipe(|relay| relay.test.expected_operate_sd_v = 0.09),
+    assert_refused(
+        |relay| relay.test.expected_operate_sd_v = 0.09,
         "test.expected_operate_sd_v: found 0.09, expected at least 0.096 V: \
-         the coarse ramp of 96 V/s rises so far between two refreshes"
+         the coarse ramp of 96 V/s rises so far between two refreshes",
     );
 }
 
 #[test]
 fn a_voltage_without_reference_parts_is_refused() {
-    #[derive(Deserialize)]
-    struct Board {
-        reference: ReferenceSettings,
-    }
-    let golden = include_str!("../../../../../../config/golden.toml");
-    let parts: ReferenceSet = toml::from_str(golden).unwrap();
-    let board: Board = toml::from_str(RIG).unwrap();
-    let (wiring, accuracy) = plant();
-    let rig = Rig {
-        wiring: &wiring,
-        reference: Some(&board.reference),
-        accuracy: &accuracy,
-        reference_parts: &parts,
-    };
-    check_references(12.0, &rig).unwrap();
-    let fault = check_references(36.0, &rig).unwrap_err().to_string();
-    assert_eq!(
-        fault,
-        "part.nominal_v: found 36, expected a coil voltage with at least 3 golden parts; \
-         there are some of 3 V, 5 V, 6 V, 9 V, 12 V, 18 V, 24 V, 48 V"
+    assert_refused(
+        |relay| relay.part.nominal_v = 36.0,
+        "part.nominal_v: found 36, expected a coil voltage with at least 3 reference parts; \
+         there are some of 3 V, 5 V, 6 V, 9 V, 12 V, 18 V, 24 V, 48 V",
     );
 }

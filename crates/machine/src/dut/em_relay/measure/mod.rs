@@ -66,6 +66,7 @@ pub use stage::Stage;
 use stage::order;
 use state::TestState;
 use std::collections::VecDeque;
+pub use timing::{BOUNCE_WINDOW, LONGEST_OPERATION};
 use units::{RigTime, Span};
 
 /// Time without drive after which release, bounce and swing of the armature are over.

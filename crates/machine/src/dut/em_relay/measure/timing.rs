@@ -19,8 +19,10 @@ use crate::dut::em_relay::timing::{bounce_ms, counts, gate_ms};
 use units::{Span, Volt};
 
 /// Slowest operation or release that the stage waits for.
-const LONGEST: Span = Span::ms(60);
-/// Time from the latch until the window has closed; it closes after 20 ms, and gate 1 counts bounce until then.
+pub const LONGEST_OPERATION: Span = Span::ms(60);
+/// Time after the latch during which gate 1 counts bounce: the board then closes the window.
+pub const BOUNCE_WINDOW: Span = Span::ms(20);
+/// Time from the latch until the window has closed for certain.
 const WINDOW_AFTER_LATCH: Span = Span::ms(21);
 /// Greatest difference between the delays of both gates, in counts; gate 1 is open whenever gate 0 is.
 const GATE_SKEW: u32 = 4;
@@ -117,7 +119,7 @@ fn until_made() -> [Act; 2] {
     [
         Act::Until {
             point: DigitalIn::Latch,
-            within: LONGEST,
+            within: LONGEST_OPERATION,
         },
         Act::Mark,
     ]
@@ -150,7 +152,7 @@ fn time_and_bounce(
     };
     let gate0 = counts(before[0].count, after[0].count);
     let gate1 = counts(before[1].count, after[1].count);
-    let longest = (LONGEST + WINDOW_AFTER_LATCH).as_seconds() * context.clock().hz;
+    let longest = (LONGEST_OPERATION + WINDOW_AFTER_LATCH).as_seconds() * context.clock().hz;
     // No contact moves within one count: a gate without counts means that the counter has restarted.
     let still = gate0 == 0;
     if still || f64::from(gate0.max(gate1)) > longest || gate1 + GATE_SKEW < gate0 {
