@@ -210,11 +210,8 @@ impl Mechanism {
             since: now,
             from,
         });
-        let actuators = Actuator::ALL.len();
-        assert!(
-            self.underway.len() < actuators,
-            "two motions of one actuator"
-        );
+        let several = self.underway.len() >= Actuator::ALL.len();
+        assert!(!several, "two motions of one actuator");
         if let Some(station) = movement.station() {
             self.axis_at = Some(station);
         }
@@ -299,11 +296,7 @@ impl Mechanism {
     pub fn position(&self, actuator: Actuator, now: RigTime, image: &Image) -> Position {
         for underway in &self.underway {
             if let Some(to_mm) = underway.movement.motion(&self.strokes).target_mm(actuator) {
-                let index = Actuator::ALL
-                    .iter()
-                    .position(|known| *known == actuator)
-                    .unwrap_or(0);
-                return underway.from[index].reaching(to_mm);
+                return underway.from[actuator.index()].reaching(to_mm);
             }
         }
         let is = |point, state| image.input(point, now, SENSOR_AGE) == Some(state);

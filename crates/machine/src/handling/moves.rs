@@ -48,10 +48,7 @@ pub struct Strokes {
 impl Strokes {
     /// Returns the full stroke of an actuator, mm.
     pub fn of(&self, actuator: Actuator) -> f64 {
-        Actuator::ALL
-            .iter()
-            .position(|known| *known == actuator)
-            .map_or(f64::NAN, |index| self.length_mm[index])
+        self.length_mm[actuator.index()]
     }
 
     /// Returns the position of a station, mm; NaN for one outside the table, which the guard refuses.
@@ -180,21 +177,10 @@ impl Move {
 
     /// Returns the target station of the sort axis.
     pub fn station(self) -> Option<AxisStation> {
-        match self {
-            Move::AxisTo(station) => Some(station),
-            Move::EscapementRelease
-            | Move::EscapementHold
-            | Move::PusherExtend
-            | Move::PusherRetract
-            | Move::ClampClose
-            | Move::ClampOpen
-            | Move::ProbesUp
-            | Move::ProbesDown
-            | Move::SortDown
-            | Move::SortUp
-            | Move::GripperClose
-            | Move::GripperOpen => None,
-        }
+        let Move::AxisTo(station) = self else {
+            return None;
+        };
+        Some(station)
     }
 
     /// Returns the actuator that performs it.
@@ -246,47 +232,22 @@ impl Move {
     }
 }
 
-/// Actuator of a time-out, a retry or an alarm; both jaws are one clamp.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum ActuatorKey {
-    /// Escapement between track and pocket.
-    Escapement,
-    /// Pusher from the pocket to the nest.
-    Pusher,
-    /// Both jaws.
-    Clamp,
-    /// Lift of the probes.
-    ProbeLift,
-    /// Sort axis.
-    Axis,
-    /// Gripper up and down.
-    SortZ,
-    /// Fingers.
-    Gripper,
-}
-
-impl ActuatorKey {
-    /// Every key.
-    pub const ALL: [Self; 7] = [
-        Self::Escapement,
-        Self::Pusher,
-        Self::Clamp,
-        Self::ProbeLift,
-        Self::Axis,
-        Self::SortZ,
-        Self::Gripper,
-    ];
-
-    /// Returns the key in `config/rig.toml`, counters and alarms.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Escapement => "escapement",
-            Self::Pusher => "pusher",
-            Self::Clamp => "clamp",
-            Self::ProbeLift => "probe_lift",
-            Self::Axis => "axis",
-            Self::SortZ => "sort_z",
-            Self::Gripper => "gripper",
-        }
+named! {
+    /// Actuator of a time-out, a retry or an alarm; both jaws are one clamp.
+    ActuatorKey {
+        /// Escapement between track and pocket.
+        Escapement = "escapement",
+        /// Pusher from the pocket to the nest.
+        Pusher = "pusher",
+        /// Both jaws.
+        Clamp = "clamp",
+        /// Lift of the probes.
+        ProbeLift = "probe_lift",
+        /// Sort axis.
+        Axis = "axis",
+        /// Gripper up and down.
+        SortZ = "sort_z",
+        /// Fingers.
+        Gripper = "gripper",
     }
 }
