@@ -119,11 +119,6 @@ impl Wiring {
     }
 }
 
-struct Place {
-    module: ModuleId,
-    channel: Channel,
-}
-
 /// Terminals in use, each with the key of its point.
 struct TerminalsInUse<'a> {
     modules: &'a [Module],
@@ -138,13 +133,9 @@ impl TerminalsInUse<'_> {
         module: &str,
         channel: u8,
         kind: Terminals,
-    ) -> Result<Place, Fault> {
+    ) -> Result<(ModuleId, Channel), Fault> {
         let Some(index) = self.modules.iter().position(|known| known.name == module) else {
-            let known: Vec<&str> = self
-                .modules
-                .iter()
-                .map(|module| module.name.as_str())
-                .collect();
+            let known: Vec<&str> = self.modules.iter().map(|it| it.name.as_str()).collect();
             let expected = format!("one of the modules {}", known.join(", "));
             return Err(Fault::new(
                 format!("{key}.module"),
@@ -162,7 +153,7 @@ impl TerminalsInUse<'_> {
                 format!("a module with {}", kind.words()),
             ));
         }
-        let Some(place) = Channel::new(channel).filter(|_| channel < channels) else {
+        let Some(terminal) = Channel::new(channel).filter(|_| channel < channels) else {
             let expected = format!("0..{} of an {}", channels - 1, model.name());
             return Err(Fault::new(format!("{key}.channel"), channel, expected));
         };
@@ -170,10 +161,7 @@ impl TerminalsInUse<'_> {
             let found = format!("{module} channel {channel}");
             return Err(Fault::new(key, found, "a terminal of its own").against(other));
         }
-        Ok(Place {
-            module: ModuleId(index),
-            channel: place,
-        })
+        Ok((ModuleId(index), terminal))
     }
 
     /// Reserves a terminal for each point of a section.
@@ -188,7 +176,7 @@ impl TerminalsInUse<'_> {
             let key = format!("{section}.{}", name(point));
             let wired = wired.get(name(point)).ok_or_else(|| unwired(&key))?;
             let (module, channel) = wired.at();
-            let Place { module, channel } = self.take(&key, module, channel, kind)?;
+            let (module, channel) = self.take(&key, module, channel, kind)?;
             let gain = wired.gain();
             let terminal = AnalogTerminal {
                 module,

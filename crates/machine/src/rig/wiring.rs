@@ -136,7 +136,7 @@ pub struct Wiring {
     pub axis: AxisTable,
     /// Ranges of the supply, smallest first; empty without a source.
     pub supply_ranges: Vec<SupplyRange>,
-    /// Range that the gains hold for; none for those of the file, at factor 1.
+    /// Range for which the gains hold; `None` for the gains of the file, at factor 1.
     pub supply_range: Option<SupplyRange>,
     /// Inputs of the machine, then of the fixtures, then beams.
     pub(super) digital_in: Vec<(String, Terminal)>,
