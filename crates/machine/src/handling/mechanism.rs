@@ -14,6 +14,7 @@ use crate::guard::{Actuator, PartPlaces, PartSize, Position, Situation};
 use crate::rig::axis::AxisStation;
 use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
+use crate::rig::stroke::StrokeLimits;
 use units::{RigTime, Span};
 
 /// Greatest age of a valid sensor value.
@@ -61,7 +62,7 @@ pub struct MechanismUpdate {
 #[derive(Debug)]
 pub struct Mechanism {
     strokes: Strokes,
-    timeout: Vec<(&'static str, Span)>,
+    limits: StrokeLimits,
     underway: Vec<Underway>,
     /// Motions requested and not driven yet.
     waiting: Vec<Move>,
@@ -77,10 +78,10 @@ pub struct Mechanism {
 
 impl Mechanism {
     /// Makes a mechanism with unknown positions and no motion.
-    pub fn new(strokes: Strokes, timeout: Vec<(&'static str, Span)>, part_size: PartSize) -> Self {
+    pub fn new(strokes: Strokes, limits: StrokeLimits, part_size: PartSize) -> Self {
         Self {
             strokes,
-            timeout,
+            limits,
             underway: Vec::new(),
             waiting: Vec::new(),
             again: Vec::new(),
@@ -119,8 +120,7 @@ impl Mechanism {
 
     /// Returns true from the drive of a motion of the same actuator until its arrival.
     pub fn is_moving(&self, movement: Move) -> bool {
-        let key = movement.actuator_key();
-        let same = |other: &Move| other.actuator_key() == key;
+        let same = |other: &Move| other.key() == movement.key();
         self.underway
             .iter()
             .any(|underway| same(&underway.movement))
@@ -191,19 +191,19 @@ impl Mechanism {
     /// Records that a motion was driven.
     pub fn driven(&mut self, movement: Move, now: RigTime, image: &Image) {
         let from = self.positions(now, image);
-        let key = movement.actuator_key();
+        let key = movement.key();
         self.underway
-            .retain(|underway| underway.movement.actuator_key() != key);
+            .retain(|underway| underway.movement.key() != key);
         self.watch.remove(key);
         self.uses.probe_touches += u64::from(movement == Move::ProbesUp);
         self.uses.jaw_closings += u64::from(movement == Move::ClampClose);
         match self
             .strokes_made
             .iter_mut()
-            .find(|(known, _)| *known == key)
+            .find(|(known, _)| *known == key.name())
         {
             Some((_, strokes)) => *strokes += 1,
-            None => self.strokes_made.push((key, 1)),
+            None => self.strokes_made.push((key.name(), 1)),
         }
         self.underway.push(Underway {
             movement,
@@ -280,11 +280,7 @@ impl Mechanism {
     }
 
     fn timeout_of(&self, movement: Move) -> Span {
-        let key = movement.actuator_key();
-        self.timeout
-            .iter()
-            .find(|(known, _)| *known == key)
-            .map_or(Span::ms(1000), |(_, span)| *span)
+        self.limits[movement.key().index()]
     }
 
     /// Position of every actuator, in the order of [`Actuator::ALL`].

@@ -4,6 +4,7 @@ use crate::guard::{Actuator, Motion, Position, Stroke};
 use crate::rig::axis::AxisStation;
 use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
+use crate::rig::stroke::ActuatorKey;
 
 /// One motion of the machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -229,25 +230,5 @@ impl Move {
             AxisStation::Bin(bin) => Some(bin),
             AxisStation::Nest | AxisStation::Park => None,
         }
-    }
-}
-
-named! {
-    /// Actuator of a time-out, a retry or an alarm; both jaws are one clamp.
-    ActuatorKey {
-        /// Escapement between track and pocket.
-        Escapement = "escapement",
-        /// Pusher from the pocket to the nest.
-        Pusher = "pusher",
-        /// Both jaws.
-        Clamp = "clamp",
-        /// Lift of the probes.
-        ProbeLift = "probe_lift",
-        /// Sort axis.
-        Axis = "axis",
-        /// Gripper up and down.
-        SortZ = "sort_z",
-        /// Fingers.
-        Gripper = "gripper",
     }
 }

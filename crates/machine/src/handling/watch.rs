@@ -5,10 +5,11 @@
 //! reset.
 
 use super::mechanism::{DEBOUNCE, SENSOR_AGE};
-use super::moves::{ActuatorKey, Move};
+use super::moves::Move;
 use super::trouble::Trouble;
 use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
+use crate::rig::stroke::ActuatorKey;
 use units::RigTime;
 
 /// A resting actuator.
@@ -31,7 +32,7 @@ pub struct Watch {
 impl Watch {
     /// Adds an actuator that has reached the end of `movement`.
     pub fn add(&mut self, movement: Move) {
-        self.remove(movement.actuator_key());
+        self.remove(movement.key());
         assert!(
             self.resting.len() < ActuatorKey::COUNT,
             "more resting actuators than actuators"
@@ -44,8 +45,8 @@ impl Watch {
     }
 
     /// Removes an actuator that begins a motion.
-    pub fn remove(&mut self, key: &str) {
-        self.resting.retain(|it| it.movement.actuator_key() != key);
+    pub fn remove(&mut self, key: ActuatorKey) {
+        self.resting.retain(|it| it.movement.key() != key);
     }
 
     /// Removes all actuators.

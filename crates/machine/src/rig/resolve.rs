@@ -13,14 +13,13 @@ use super::modules::resolve_modules;
 use super::point::{DigitalIn, DigitalOut, Fixture, Quantity, Switch};
 use super::reaction::check_reaction;
 use super::settings::{
-    ActuatorSettings, AnalogInSettings, AnalogOutSettings, ChannelSettings, DigitalInSettings,
-    RigSettings,
+    AnalogInSettings, AnalogOutSettings, ChannelSettings, DigitalInSettings, RigSettings,
 };
+use super::stroke::resolve_strokes;
 use super::supply::resolve_ranges;
-use super::wiring::{AnalogTerminal, Line, Module, ModuleId, StrokeLimits, Terminal, Wiring};
+use super::wiring::{AnalogTerminal, Line, Module, ModuleId, Terminal, Wiring};
 use dcon::Channel;
 use std::collections::BTreeMap;
-use units::Span;
 
 impl Wiring {
     /// Resolves all names, checks the whole and returns the first fault. `fixtures`: points that the kinds of device
@@ -313,24 +312,4 @@ fn check_masks(wiring: &Wiring) -> Result<(), Fault> {
         }
     }
     Ok(())
-}
-
-fn resolve_strokes(actuators: &BTreeMap<String, ActuatorSettings>) -> Result<StrokeLimits, Fault> {
-    let limit = |name: &str| match actuators.get(name) {
-        Some(settings) => Ok(Span::seconds(settings.timeout_ms / 1000.0)),
-        None => Err(Fault::new(
-            format!("actuator.{name}"),
-            "nothing",
-            "a time-out",
-        )),
-    };
-    Ok(StrokeLimits {
-        escapement: limit("escapement")?,
-        pusher: limit("pusher")?,
-        clamp: limit("clamp")?,
-        probe_lift: limit("probe_lift")?,
-        sort_z: limit("sort_z")?,
-        gripper: limit("gripper")?,
-        axis: limit("axis")?,
-    })
 }

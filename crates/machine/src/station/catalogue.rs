@@ -2,8 +2,8 @@
 //!
 //! The catalogue of texts holds cause, consequence and action as attributes of the code.
 
-use crate::handling::moves::ActuatorKey;
 use crate::handling::wear::Wearing;
+use crate::rig::stroke::ActuatorKey;
 use std::fmt;
 use texts::{Args, Lang, Message};
 
