@@ -97,7 +97,7 @@ struct Line<O: Ports> {
 
 /// One try: start, end and outcome.
 struct Try {
-    asked_at: RigTime,
+    requested_at: RigTime,
     answered_at: RigTime,
     outcome: Result<Reply, LineError>,
 }
@@ -156,11 +156,14 @@ impl<O: Ports> Line<O> {
         let text = self.frame.bytes();
         let raw = String::from_utf8_lossy(text.strip_suffix(b"\r").unwrap_or(text)).into_owned();
         let Try {
-            asked_at,
+            requested_at,
             answered_at,
             outcome,
         } = last;
-        assert!(answered_at >= asked_at, "the answer precedes its request");
+        assert!(
+            answered_at >= requested_at,
+            "the answer precedes its request"
+        );
         assert!(
             tries_used == 1 || tries_used <= request.tries,
             "more tries than the request allows"
@@ -170,7 +173,7 @@ impl<O: Ports> Line<O> {
             command,
             outcome,
             raw,
-            asked_at,
+            requested_at,
             answered_at,
             tries_used,
         }
@@ -178,7 +181,7 @@ impl<O: Ports> Line<O> {
 
     async fn attempt(&mut self, command: &Command) -> Try {
         let mut times = Times {
-            asked_at: self.pace.now(),
+            requested_at: self.pace.now(),
             answered_at: None,
         };
         let result = self.transact(command, &mut times).await;
@@ -188,7 +191,7 @@ impl<O: Ports> Line<O> {
             Err(_) => {}
         }
         Try {
-            asked_at: times.asked_at,
+            requested_at: times.requested_at,
             answered_at: times.answered_at.unwrap_or_else(|| self.pace.now()),
             outcome: result.map_err(|trouble| self.explain(*command, trouble)),
         }
@@ -281,7 +284,7 @@ impl<O: Ports> Line<O> {
             .settings
             .wire()
             .time(self.request.len() + self.frame.bytes().len());
-        let taken = attempt.answered_at.since(attempt.asked_at);
+        let taken = attempt.answered_at.since(attempt.requested_at);
         let latency = Span(taken.0.saturating_sub(on_wire.0));
         let reads_reset = matches!(command, Command::Common(_, Common::ReadResetStatus));
         self.settings
