@@ -11,8 +11,9 @@ use crate::fault::LineFaults;
 use crate::module::base::Commissioning;
 use crate::module::tolerances::{self, Tolerances};
 use crate::module::{Module, setting};
-use crate::rig::{Rig, WorldRecord};
+use crate::rig::Rig;
 use crate::terminal::{ModuleSpec, Plant};
+use crate::truth::WorldRecord;
 
 /// Name of the only line.
 pub const LINE: &str = "bench";
@@ -231,12 +232,4 @@ impl Plant for Signals {
     }
 }
 
-impl WorldRecord for Signals {
-    fn truth(&mut self) -> Vec<serde_json::Value> {
-        Vec::new()
-    }
-
-    fn crashes(&mut self) -> Vec<String> {
-        Vec::new()
-    }
-}
+impl WorldRecord for Signals {}

@@ -22,9 +22,10 @@ use crate::fault::LineFaults;
 use crate::module::Module;
 use crate::module::base::Commissioning;
 use crate::module::tolerances::{self, Tolerances};
-use crate::rig::{Rig, WorldRecord};
+use crate::rig::Rig;
 use crate::shared::{SharedRig, split};
 use crate::terminal::{ModuleSpec, Plant};
+use crate::truth::WorldRecord;
 
 /// Name of the line.
 pub const LINE: &str = "storm";
@@ -270,15 +271,7 @@ impl Plant for Fingerprints {
     }
 }
 
-impl WorldRecord for Fingerprints {
-    fn truth(&mut self) -> Vec<serde_json::Value> {
-        Vec::new()
-    }
-
-    fn crashes(&mut self) -> Vec<String> {
-        Vec::new()
-    }
-}
+impl WorldRecord for Fingerprints {}
 
 #[cfg(test)]
 mod tests {

@@ -9,11 +9,9 @@ use std::sync::mpsc::{self, Receiver, Sender};
 
 use serde::Serialize;
 
-use crate::error::SimError;
-use crate::rig::{WorldModel, WorldRecord};
+use crate::rig::WorldModel;
 use crate::terminal::Plant;
-use crate::truth::{BodyTruth, Overdrive};
-use crate::world::WorldOptions;
+use crate::truth::{Overdrive, WorldRecord};
 
 /// One entry of the journal.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -78,6 +76,11 @@ impl JournaledWorld {
         let (sender, receiver) = mpsc::channel();
         self.listener = Some(sender);
         receiver
+    }
+
+    /// Returns the facts of the world, and control of its faults.
+    pub(crate) fn record(&mut self) -> &mut dyn WorldRecord {
+        &mut *self.scene
     }
 
     /// Notes the arrival of a request.
@@ -173,39 +176,5 @@ impl Plant for JournaledWorld {
 
     fn reference_clock_hz(&self) -> f64 {
         self.scene.reference_clock_hz()
-    }
-}
-
-impl WorldRecord for JournaledWorld {
-    fn truth(&mut self) -> Vec<serde_json::Value> {
-        self.scene.truth()
-    }
-
-    fn crashes(&mut self) -> Vec<String> {
-        self.scene.crashes()
-    }
-
-    fn overdrives(&self) -> &[Overdrive] {
-        self.scene.overdrives()
-    }
-
-    fn inject(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
-        self.scene.inject(fault, value)
-    }
-
-    fn bodies(&mut self) -> Vec<BodyTruth> {
-        self.scene.bodies()
-    }
-
-    fn refill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
-        self.scene.refill(options)
-    }
-
-    fn cancel_faults(&mut self) {
-        self.scene.cancel_faults();
-    }
-
-    fn motion_starts(&mut self) -> Vec<(u64, &'static str)> {
-        self.scene.motion_starts()
     }
 }

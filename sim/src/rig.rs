@@ -18,54 +18,8 @@ use crate::line::wire_us;
 use crate::module::Module;
 use crate::shared;
 use crate::terminal::Plant;
-use crate::truth::{BodyTruth, Overdrive};
+use crate::truth::WorldRecord;
 use crate::uart;
-use crate::world::WorldOptions;
-
-/// Facts of the world that no module reports, and control of its faults.
-pub trait WorldRecord {
-    /// Returns one object per lot part that has entered the nest, in order.
-    fn truth(&mut self) -> Vec<serde_json::Value>;
-
-    /// Returns a description of each crash: two bodies that touch although they must not.
-    fn crashes(&mut self) -> Vec<String>;
-
-    /// Returns every overdrive of a coil, in order of time; none in a world without a coil supply.
-    fn overdrives(&self) -> &[Overdrive] {
-        &[]
-    }
-
-    /// Activates a fault of the world; `value` is the number of a part.
-    ///
-    /// # Errors
-    /// Fails when the world has no such fault, or the fault applies only to the start.
-    fn inject(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
-        let _ = value;
-        Err(SimError::UnknownFault { name: fault.into() })
-    }
-
-    /// Replaces the parts in the magazine; does nothing in a world without one.
-    ///
-    /// # Errors
-    /// Fails when a configuration file is missing or wrong.
-    fn refill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
-        let _ = options;
-        Ok(())
-    }
-
-    /// Returns every body that has left the magazine, in order of leaving; none in a world without a magazine.
-    fn bodies(&mut self) -> Vec<BodyTruth> {
-        Vec::new()
-    }
-
-    /// Returns the start of each recent motion that an output caused: microseconds and actuator.
-    fn motion_starts(&mut self) -> Vec<(u64, &'static str)> {
-        Vec::new()
-    }
-
-    /// Cancels the faults of the world that have not struck yet.
-    fn cancel_faults(&mut self) {}
-}
 
 /// A world: terminals for the modules, facts for the tests.
 pub trait WorldModel: Plant + WorldRecord + Send {}
@@ -263,45 +217,12 @@ impl Rig {
             return shared::check_targets(&self.faults, known);
         }
         let number = value.map(|text| shared::number(name, text)).transpose()?;
-        self.scene.inject(name, number)
+        self.record().inject(name, number)
     }
 
-    /// See [`WorldRecord::truth`].
-    pub fn truth(&mut self) -> Vec<serde_json::Value> {
-        self.scene.truth()
-    }
-
-    /// See [`WorldRecord::crashes`].
-    pub fn crashes(&mut self) -> Vec<String> {
-        self.scene.crashes()
-    }
-
-    /// See [`WorldRecord::overdrives`].
-    pub fn overdrives(&self) -> &[Overdrive] {
-        self.scene.overdrives()
-    }
-
-    /// See [`WorldRecord::bodies`].
-    pub fn bodies(&mut self) -> Vec<BodyTruth> {
-        self.scene.bodies()
-    }
-
-    /// See [`WorldRecord::refill`].
-    ///
-    /// # Errors
-    /// Fails as [`WorldRecord::refill`] does.
-    pub fn refill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
-        self.scene.refill(options)
-    }
-
-    /// See [`WorldRecord::cancel_faults`]; faults of lines and modules end with their windows.
-    pub fn cancel_faults(&mut self) {
-        self.scene.cancel_faults();
-    }
-
-    /// See [`WorldRecord::motion_starts`].
-    pub fn motion_starts(&mut self) -> Vec<(u64, &'static str)> {
-        self.scene.motion_starts()
+    /// Returns the facts of the world, and control of its faults; those of lines and modules end with their windows.
+    pub fn record(&mut self) -> &mut dyn WorldRecord {
+        self.scene.record()
     }
 
     fn run_events(&mut self, t_us: u64) {

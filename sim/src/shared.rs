@@ -10,7 +10,7 @@ use crate::fault::{self, FaultInfo, LineFaults};
 use crate::module::Module;
 use crate::module::base::Commissioning;
 use crate::module::tolerances::{self, Tolerances};
-use crate::rig::{Reply, Rig, WorldRecord};
+use crate::rig::{Reply, Rig};
 use crate::terminal::ModuleSpec;
 use crate::truth::{BodyTruth, Overdrive};
 use crate::world::{World, WorldOptions};
@@ -183,40 +183,6 @@ fn modules(
     file.modules.iter().map(module).collect()
 }
 
-impl WorldRecord for World {
-    fn truth(&mut self) -> Vec<serde_json::Value> {
-        World::truth(self)
-    }
-
-    fn crashes(&mut self) -> Vec<String> {
-        World::crashes(self)
-    }
-
-    fn overdrives(&self) -> &[Overdrive] {
-        World::overdrives(self)
-    }
-
-    fn inject(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
-        World::inject(self, fault, value)
-    }
-
-    fn bodies(&mut self) -> Vec<BodyTruth> {
-        World::bodies(self)
-    }
-
-    fn motion_starts(&mut self) -> Vec<(u64, &'static str)> {
-        World::motion_starts(self)
-    }
-
-    fn cancel_faults(&mut self) {
-        World::cancel_faults(self);
-    }
-
-    fn refill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
-        Ok(World::refill(self, options)?)
-    }
-}
-
 impl SharedRig {
     /// Shares a rig.
     pub fn new(rig: Rig) -> Self {
@@ -290,12 +256,12 @@ impl SharedRig {
 
     /// Returns the truth of every lot part that has entered the nest, in order.
     pub fn truth(&self) -> Vec<serde_json::Value> {
-        self.rig().truth()
+        self.rig().record().truth()
     }
 
     /// Returns every body that has left the magazine, in order of leaving.
     pub fn bodies(&self) -> Vec<BodyTruth> {
-        self.rig().bodies()
+        self.rig().record().bodies()
     }
 
     /// Replaces the parts in the magazine for another lot, as an operator does; only recipe, number of parts and
@@ -304,27 +270,28 @@ impl SharedRig {
     /// # Errors
     /// Fails when a configuration file is missing or wrong; the magazine then stays unchanged.
     pub fn refill(&self, options: &Options) -> Result<(), SimError> {
-        self.rig().refill(&options.of_world(Vec::new()))
+        let options = options.of_world(Vec::new());
+        self.rig().record().refill(&options)
     }
 
     /// Cancels the faults of the world that have not struck yet.
     pub fn cancel_faults(&self) {
-        self.rig().cancel_faults();
+        self.rig().record().cancel_faults();
     }
 
     /// Returns the start of each recent motion that an output caused: microseconds and actuator.
     pub fn motion_starts(&self) -> Vec<(u64, &'static str)> {
-        self.rig().motion_starts()
+        self.rig().record().motion_starts()
     }
 
     /// Returns a description of each crash.
     pub fn crashes(&self) -> Vec<String> {
-        self.rig().crashes()
+        self.rig().record().crashes()
     }
 
     /// Returns every drive of a coil in a supply range above the commanded one, in order of time.
     pub fn overdrives(&self) -> Vec<Overdrive> {
-        self.rig().overdrives().to_vec()
+        self.rig().record().overdrives().to_vec()
     }
 
     /// Locks the rig. A poisoned lock is safe: a line that panics leaves the rig between two events.

@@ -1,8 +1,60 @@
-//! True values of each specimen and the path of its body: the record that judges the controller.
+//! True values of each specimen, the path of its body, crashes and overdrives: the record that judges the controller.
 
 use serde::Serialize;
 
+use crate::error::SimError;
+use crate::world::WorldOptions;
 use crate::world::relay::Levels;
+
+/// Facts of the world that no module reports, and control of its faults. A world of fixed signals has neither parts nor
+/// faults.
+pub trait WorldRecord {
+    /// Returns one object per lot part that has entered the nest, in order.
+    fn truth(&self) -> Vec<serde_json::Value> {
+        Vec::new()
+    }
+
+    /// Returns a description of each crash, two bodies that touch although they must not, in order of time.
+    fn crashes(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// Returns every overdrive of a coil, in order of time.
+    fn overdrives(&self) -> &[Overdrive] {
+        &[]
+    }
+
+    /// Activates a fault of the world; `value` is the number of a part.
+    ///
+    /// # Errors
+    /// Fails when the fault is unknown, applies only to the start, or needs the number of a part.
+    fn inject(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
+        let _ = value;
+        Err(SimError::UnknownFault { name: fault.into() })
+    }
+
+    /// Replaces the parts in the magazine as an operator does; only the options about parts apply.
+    ///
+    /// # Errors
+    /// Fails when a configuration file is missing or wrong; the magazine then stays unchanged.
+    fn refill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
+        let _ = options;
+        Ok(())
+    }
+
+    /// Returns every body that has left the magazine, in order of leaving.
+    fn bodies(&self) -> Vec<BodyTruth> {
+        Vec::new()
+    }
+
+    /// Returns the start of each recent motion that an output caused: microseconds and actuator.
+    fn motion_starts(&self) -> Vec<(u64, &'static str)> {
+        Vec::new()
+    }
+
+    /// Cancels the faults of the world that have not struck yet.
+    fn cancel_faults(&mut self) {}
+}
 
 /// True values of one lot part; `None` where the part has not shown the quantity.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]

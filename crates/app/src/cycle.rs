@@ -215,7 +215,7 @@ impl Cycle {
 
     fn take(&mut self, line: LineId, purpose: Purpose, answer: Answer) {
         assert!(
-            answer.answered_at >= answer.asked_at,
+            answer.answered_at >= answer.requested_at,
             "answered before it was asked"
         );
         // Reading the reset status clears it, so no reply can be repeated: after a lost reply a restart of the module
@@ -227,7 +227,13 @@ impl Cycle {
         let trouble = match &answer.outcome {
             Ok(reply) => self
                 .image
-                .accept(line, &answer.command, reply, &answer.raw, answer.asked_at)
+                .accept(
+                    line,
+                    &answer.command,
+                    reply,
+                    &answer.raw,
+                    answer.requested_at,
+                )
                 .err()
                 .map(|unexpected| format!("line {}: {unexpected}", self.wiring.line(line).name)),
             Err(error) => Some(format!(
@@ -296,8 +302,8 @@ impl Cycle {
         if self.links.history_lost.load(Ordering::Acquire) {
             self.bus_alarm.get_or_insert(AlarmCode::HistoryLost.into());
         }
-        if let Some(asked_at) = self.image.input_at(DigitalIn::EmergencyStopOk) {
-            self.worst_age = self.worst_age.max(now.since(asked_at));
+        if let Some(requested_at) = self.image.input_at(DigitalIn::EmergencyStopOk) {
+            self.worst_age = self.worst_age.max(now.since(requested_at));
         }
         let orders = self.orders(now);
         self.making_safe = packml::is_aborted(self.station.outer());

@@ -28,7 +28,7 @@ pub struct Answer {
     /// Characters received, without CR; empty when none came.
     pub raw: String,
     /// Time at which the first character of the last try was sent.
-    pub asked_at: RigTime,
+    pub requested_at: RigTime,
     /// Time at which the reply was complete, or the line gave it up.
     pub answered_at: RigTime,
     /// Number of tries, at least 1.

@@ -81,7 +81,7 @@ struct Line {
 
 /// One try: start, end and outcome.
 struct Try {
-    asked_at: RigTime,
+    requested_at: RigTime,
     answered_at: RigTime,
     outcome: Result<Reply, LineError>,
 }
@@ -140,11 +140,14 @@ impl Line {
         let text = self.frame.bytes();
         let raw = String::from_utf8_lossy(text.strip_suffix(b"\r").unwrap_or(text)).into_owned();
         let Try {
-            asked_at,
+            requested_at,
             answered_at,
             outcome,
         } = last;
-        assert!(answered_at >= asked_at, "the answer precedes its request");
+        assert!(
+            answered_at >= requested_at,
+            "the answer precedes its request"
+        );
         assert!(
             tries_used == 1 || tries_used <= request.tries,
             "more tries than the request allows"
@@ -154,7 +157,7 @@ impl Line {
             command,
             outcome,
             raw,
-            asked_at,
+            requested_at,
             answered_at,
             tries_used,
         }
@@ -162,7 +165,7 @@ impl Line {
 
     async fn attempt(&mut self, command: &Command) -> Try {
         let mut times = Times {
-            asked_at: self.pace.now(),
+            requested_at: self.pace.now(),
             answered_at: None,
         };
         let result = self.transact(command, &mut times).await;
@@ -172,7 +175,7 @@ impl Line {
             Err(_) => {}
         }
         Try {
-            asked_at: times.asked_at,
+            requested_at: times.requested_at,
             answered_at: times.answered_at.unwrap_or_else(|| self.pace.now()),
             outcome: result.map_err(|trouble| self.explain(*command, trouble)),
         }
@@ -265,7 +268,7 @@ impl Line {
             .settings
             .wire()
             .time(self.request.len() + self.frame.bytes().len());
-        let taken = attempt.answered_at.since(attempt.asked_at);
+        let taken = attempt.answered_at.since(attempt.requested_at);
         let latency = Span(taken.0.saturating_sub(on_wire.0));
         let reads_reset = matches!(command, Command::Common(_, Common::ReadResetStatus));
         self.settings

@@ -10,7 +10,7 @@
 //! Residual risk: let a share c of an address's replies be damaged such that a share p of them passes, and a share d
 //! of all its replies be visibly damaged. Then c p (1 - d)^100 readings are false and accepted before the probation
 //! begins, and (c p)^2 within it. With every fault of the storm at 1 % that is less than one in ten million; `cargo
-//! bench --bench line_storm` prints it. Two modules that always answer together have c = 1 and d close to 1, so
+//! bench -p bus --bench line_storm` prints it. Two modules that always answer together have c = 1 and d close to 1, so
 //! probation begins with the first reply.
 
 use dcon::Address;

@@ -132,7 +132,7 @@ fn a_reply_in_time_carries_its_text_and_times() {
     assert_eq!(got[0].outcome, Ok(Reply::Count(30)));
     assert_eq!(got[0].raw, ">0000001ED4");
     assert_eq!(
-        (got[0].asked_at, got[0].answered_at),
+        (got[0].requested_at, got[0].answered_at),
         (RigTime(0), RigTime(3_000))
     );
     assert_eq!((got[0].ticket, got[0].tries_used), (0, 1));
@@ -174,7 +174,7 @@ fn a_silent_module_times_out_after_every_allowed_try() {
     assert_eq!(got[0].tries_used, 3);
     assert_eq!(sent.len(), 3);
     let limit = settings().time_out(&count());
-    assert_eq!(got[0].answered_at.since(got[0].asked_at), limit);
+    assert_eq!(got[0].answered_at.since(got[0].requested_at), limit);
     let text = got[0].outcome.as_ref().unwrap_err().to_string();
     assert!(
         text.starts_with("line measure, 03: ") && text.contains("no whole reply within"),
@@ -242,7 +242,7 @@ fn a_refusal_causes_neither_a_repetition_nor_a_silence() {
     );
     assert_eq!(got[1].tries_used, 1);
     assert_eq!(
-        got[2].asked_at,
+        got[2].requested_at,
         got[1].answered_at + settings().turnaround()
     );
     // After the damage the line reads the count twice.
@@ -316,7 +316,7 @@ fn a_line_that_never_falls_silent_gets_no_request() {
     assert!(unsent > 0 && sent.len() < 2 * (10 - unsent), "{sent:?}");
     for pair in got.windows(2) {
         assert!(
-            pair[1].asked_at.since(pair[0].asked_at) <= longest,
+            pair[1].requested_at.since(pair[0].requested_at) <= longest,
             "{:?}",
             pair[1]
         );
@@ -338,7 +338,7 @@ fn a_broadcast_takes_its_wire_time_and_the_turnaround() {
     assert_eq!(got[0].outcome, Ok(Reply::Sent));
     assert_eq!(sent, ["~**D2", "~**D2"]);
     let each = settings().wire().time(6) + settings().turnaround();
-    assert_eq!(got[1].asked_at.since(got[0].asked_at), each);
+    assert_eq!(got[1].requested_at.since(got[0].requested_at), each);
 }
 
 #[test]
@@ -348,7 +348,7 @@ fn requests_are_answered_in_order_one_turnaround_apart() {
     for pair in got.windows(2) {
         assert_eq!(pair[1].ticket, pair[0].ticket + 1);
         assert_eq!(
-            pair[1].asked_at,
+            pair[1].requested_at,
             pair[0].answered_at + settings().turnaround()
         );
     }

@@ -40,7 +40,7 @@ fn is_answer(result: &Result<Reply, Trouble>) -> bool {
 /// Times at which a try began and was answered.
 #[derive(Default)]
 pub(super) struct Times {
-    pub(super) asked_at: RigTime,
+    pub(super) requested_at: RigTime,
     pub(super) answered_at: Option<RigTime>,
 }
 
@@ -75,7 +75,7 @@ impl Transaction<'_> {
         }
         self.exchange.discard().await?;
         let Some(address) = command.address() else {
-            times.asked_at = self.now();
+            times.requested_at = self.now();
             return self.broadcast(request).await;
         };
         let result = self.attempt(command, address, request, frame, times).await;
@@ -110,7 +110,7 @@ impl Transaction<'_> {
         frame: &mut Frame,
         times: &mut Times,
     ) -> Result<Reply, Trouble> {
-        times.asked_at = self.now();
+        times.requested_at = self.now();
         let result = self.ask(command, request, frame, times).await;
         self.update_probation(address, frame, &result);
         if !is_answer(&result) && !matches!(result, Err(Trouble::Broken(_))) {
@@ -145,7 +145,7 @@ impl Transaction<'_> {
         times: &mut Times,
         first: Reply,
     ) -> Result<Reply, Trouble> {
-        let begun = times.asked_at;
+        let begun = times.requested_at;
         let third_until = begun + self.settings.time_out(command) + self.settings.turnaround();
         let mut answers = vec![first];
         let mut heard = Vec::with_capacity(2);

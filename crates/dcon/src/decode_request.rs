@@ -4,7 +4,7 @@
 //! bits), so a text may fit several commands; each family has its own list. Ranges are not on the wire, so numbers
 //! stay in their notation.
 
-use super::frame::hex_digit;
+use super::frame::{hex_digit, hex_number};
 use super::{
     Address, AlarmKind, AnalogIn, AnalogOut, BaudCode, Channel, Command, Common, Config, Counter,
     DataFormat, Digital, Edge, FormatByte, GateMode, GroupWrite, InputForm, InputMode, Level,
@@ -36,16 +36,15 @@ const OUTPUT_FORMS: [OutputForm; 5] = [
 pub fn decode_request(request: &[u8]) -> Vec<Command> {
     let canonical = canonical(request);
     let request = canonical.as_deref().unwrap_or(request);
-    let rest = match request {
+    let addressed = match request {
         b"~**" => return vec![Command::HostOk],
         b"#**" => return vec![Command::SampleAll],
-        [_, high, low, rest @ ..] => match (hex_digit(*high), hex_digit(*low)) {
-            (Some(high), Some(low)) => (Address(high << 4 | low), rest),
-            _ => return Vec::new(),
-        },
-        _ => return Vec::new(),
+        [_, high, low, rest @ ..] => byte(&[*high, *low]).map(|to| (Address(to), rest)),
+        _ => None,
     };
-    let (to, rest) = rest;
+    let Some((to, rest)) = addressed else {
+        return Vec::new();
+    };
     let mut found = Vec::new();
     found.extend(common(rest).into_iter().map(|ask| ask.to(to)));
     found.extend(analog_in(rest).into_iter().map(|ask| ask.to(to)));
@@ -74,19 +73,9 @@ fn canonical(request: &[u8]) -> Option<Vec<u8>> {
     Some(canonical)
 }
 
-fn number(text: &[u8]) -> Option<u32> {
-    if text.is_empty() || text.len() > 8 {
-        return None;
-    }
-    text.iter().try_fold(0u32, |value, byte| {
-        Some(value << 4 | u32::from(hex_digit(*byte)?))
-    })
-}
-
 fn byte(text: &[u8]) -> Option<u8> {
-    number(text)
-        .filter(|_| text.len() == 2)
-        .map(|value| value as u8)
+    let value = hex_number(text).filter(|_| text.len() == 2);
+    value.map(|value| value as u8)
 }
 
 fn digit<const MAX: u8>(byte: u8) -> Option<UpTo<MAX>> {
@@ -130,7 +119,7 @@ fn common(rest: &[u8]) -> Vec<Common> {
             .map(Common::WriteName),
         _ => None,
     };
-    let config = number(rest).filter(|_| rest.len() == 8).map(|word| {
+    let config = hex_number(rest).filter(|_| rest.len() == 8).map(|word| {
         let [address, type_code, baud, format] = word.to_be_bytes();
         Common::WriteConfig {
             address: Address(address),
@@ -231,7 +220,7 @@ fn digital(rest: &[u8]) -> Vec<Digital> {
         4 => Some(Width::Four),
         _ => None,
     };
-    let bits = number(rest).and_then(|bits| u16::try_from(bits).ok());
+    let bits = hex_number(rest).and_then(|bits| u16::try_from(bits).ok());
     let word = width
         .zip(bits)
         .and_then(|(width, bits)| OutputWord::new(width, bits));
@@ -324,7 +313,7 @@ fn of_one(n: UpTo<1>, rest: &[u8]) -> Vec<Counter> {
     if let Some(value) = rest
         .get(2..)
         .filter(|data| data.len() == 8)
-        .and_then(number)
+        .and_then(hex_number)
     {
         found.extend([
             Counter::WritePreset(n, value),

@@ -1,7 +1,7 @@
 //! Reads the fields of a reply by width. Each step consumes exactly what the grammar demands, or returns an error
 //! that names the missing field.
 
-use super::frame::hex_digit;
+use super::frame::hex_number;
 use super::{Address, ReplyError};
 use std::ops::RangeInclusive;
 
@@ -82,15 +82,10 @@ impl<'a> Fields<'a> {
 
     pub(super) fn hex(&mut self, width: usize) -> Result<u32, ReplyError> {
         let at = self.at;
-        self.take(width)?
-            .iter()
-            .try_fold(0u32, |value, byte| match hex_digit(*byte) {
-                Some(digit) => Ok(value << 4 | u32::from(digit)),
-                None => Err(ReplyError::BadField {
-                    at,
-                    expected: "hex number",
-                }),
-            })
+        hex_number(self.take(width)?).ok_or(ReplyError::BadField {
+            at,
+            expected: "hex number",
+        })
     }
 
     pub(super) fn byte(&mut self) -> Result<u8, ReplyError> {

@@ -38,18 +38,27 @@ pub(super) fn open(frame: &[u8], with_checksum: bool) -> Result<(&[u8], bool), R
 }
 
 fn verified(text: &[u8]) -> Result<&[u8], ReplyError> {
-    let Some((text, &[high, low])) = text.split_last_chunk::<2>() else {
+    let split = text.split_last_chunk::<2>();
+    let Some((text, found)) = split.and_then(|(text, sum)| Some((text, hex_number(sum)? as u8)))
+    else {
         return Err(ReplyError::ChecksumMissing);
     };
-    let (Some(high), Some(low)) = (hex_digit(high), hex_digit(low)) else {
-        return Err(ReplyError::ChecksumMissing);
-    };
-    let (found, expected) = (high << 4 | low, checksum(text));
+    let expected = checksum(text);
     if found == expected {
         Ok(text)
     } else {
         Err(ReplyError::ChecksumWrong { found, expected })
     }
+}
+
+/// Value of upper-case hex digits, at most eight; `None` for anything else.
+pub(super) fn hex_number(text: &[u8]) -> Option<u32> {
+    if text.is_empty() || text.len() > 8 {
+        return None;
+    }
+    text.iter().try_fold(0u32, |value, byte| {
+        Some(value << 4 | u32::from(hex_digit(*byte)?))
+    })
 }
 
 /// Value of an upper-case hex digit; `None` for any other byte, lower case included.

@@ -5,7 +5,7 @@
 //! value may lie anywhere beyond.
 
 use super::fields::Fields;
-use super::frame::hex_digit;
+use super::frame::hex_number;
 use super::{DataFormat, InputForm, ReplyError, TypeCode};
 
 /// Value of a channel in its notation.
@@ -125,9 +125,7 @@ impl Readings {
 }
 
 fn hex(field: &[u8], range: TypeCode) -> Option<Value> {
-    let steps = field.iter().try_fold(0u16, |value, byte| {
-        Some(value << 4 | u16::from(hex_digit(*byte)?))
-    })?;
+    let steps = hex_number(field)? as u16;
     Some(match (range.unipolar_input(), steps) {
         (true, 0xFFFF) | (false, 0x7FFF) => Value::OverRange,
         (false, 0x8000) => Value::UnderRange,

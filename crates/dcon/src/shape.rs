@@ -152,58 +152,46 @@ impl Shape {
         self.shortest() < self.longest()
     }
 
+    /// Returns true when the address of the request follows the lead.
+    fn repeats_address(self) -> bool {
+        let own = matches!(
+            self,
+            Self::AcceptedAs(_) | Self::Config | Self::Bits | Self::Sampled | Self::Latched
+        );
+        self.lead() == b'!' && !own
+    }
+
     /// Decodes `text`, from lead to last character before checksum and CR.
     pub(super) fn decode(self, text: &[u8], expected: Address) -> Result<Reply, ReplyError> {
         let mut fields = Fields::new(text);
         fields.start(self.lead(), self.shortest()..=self.longest())?;
+        if self.repeats_address() {
+            fields.address_is(expected)?;
+        }
+        let fields = &mut fields;
         match self {
-            Self::Output => Ok(Reply::Accepted),
+            Self::Accepted | Self::Output => Ok(Reply::Accepted),
             Self::AcceptedAs(new) => fields.address_is(new).map(|()| Reply::Accepted),
-            Self::Config => config(&mut fields, expected),
+            Self::Config => config(fields, expected),
             Self::Bits | Self::PortBits | Self::Sampled | Self::Latched => {
-                self.bits(&mut fields, expected)
+                self.bits(fields, expected)
             }
-            Self::Count => fields.hex(8).map(Reply::Count),
+            Self::Count | Self::Setting32 => fields.hex(8).map(Reply::Count),
             Self::Frequency => fields.hex(8).map(Reply::Frequency),
             Self::Reading(form) => {
                 let width = fields.length() - 1;
-                Reading::decode(form, width, &mut fields).map(Reply::Reading)
+                Reading::decode(form, width, fields).map(Reply::Reading)
             }
-            Self::Readings(form) => Readings::decode(form, &mut fields).map(Reply::Readings),
-            Self::Accepted
-            | Self::Text
-            | Self::Flag
-            | Self::Byte
-            | Self::Decimal { .. }
-            | Self::Watchdog
-            | Self::StoredBits
-            | Self::Events
-            | Self::Setting32
-            | Self::Gate
-            | Self::Inputs
-            | Self::Alarm
-            | Self::Level(_)
-            | Self::OutputChannel
-            | Self::ChannelRange(_) => {
-                fields.address_is(expected)?;
-                self.addressed(&mut fields)
-            }
-        }
-    }
-
-    /// Decodes replies that begin with `!AA`, starting after the address.
-    fn addressed(self, fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
-        match self {
+            Self::Readings(form) => Readings::decode(form, fields).map(Reply::Readings),
             Self::Flag => fields.flag().map(Reply::Flag),
             Self::Byte => fields.byte().map(Reply::Byte),
             Self::Decimal { digits, max } => fields
                 .decimal(usize::from(digits), u32::from(max))
                 .map(Reply::Decimal),
             Self::Watchdog => watchdog(fields),
-            Self::Text => text(fields),
+            Self::Text => text_of(fields),
             Self::StoredBits => stored_bits(fields),
             Self::Events => Ok(Reply::Events(fields.decimal(5, 65_535)? as u16)),
-            Self::Setting32 => fields.hex(8).map(Reply::Count),
             Self::Gate => code(fields, GateMode::from_code, "gate mode (0 to 2)").map(Reply::Gate),
             Self::Inputs => {
                 code(fields, InputMode::from_code, "input mode (0 to 3)").map(Reply::Inputs)
@@ -211,19 +199,7 @@ impl Shape {
             Self::Alarm => alarm(fields),
             Self::Level(form) => Level::decode(form, fields).map(Reply::Level),
             Self::OutputChannel => output_channel(fields),
-            Self::ChannelRange(asked) => channel_range(fields, asked),
-            Self::Accepted
-            | Self::AcceptedAs(_)
-            | Self::Output
-            | Self::Config
-            | Self::Bits
-            | Self::PortBits
-            | Self::Sampled
-            | Self::Latched
-            | Self::Count
-            | Self::Frequency
-            | Self::Reading(_)
-            | Self::Readings(_) => Ok(Reply::Accepted),
+            Self::ChannelRange(channel) => channel_range(fields, channel),
         }
     }
 
@@ -256,7 +232,7 @@ fn two_bytes(fields: &mut Fields<'_>) -> Result<Bits, ReplyError> {
     })
 }
 
-/// The pattern is the first byte: eight-output modules append 00.
+/// Decodes a stored pattern: of modules with eight outputs, the first byte; they append 00.
 fn stored_bits(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
     two_bytes(fields).map(Reply::Bits)
 }
@@ -300,7 +276,7 @@ fn watchdog(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
     })
 }
 
-fn text(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
+fn text_of(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
     let at = fields.at();
     Text::new(fields.rest())
         .map(Reply::Text)
@@ -339,10 +315,10 @@ fn output_channel(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
     }
 }
 
-fn channel_range(fields: &mut Fields<'_>, asked: Channel) -> Result<Reply, ReplyError> {
+fn channel_range(fields: &mut Fields<'_>, channel: Channel) -> Result<Reply, ReplyError> {
     fields.filler(b"C", "letter C")?;
     let at = fields.at();
-    if fields.hex(1)? != u32::from(asked.get()) {
+    if fields.hex(1)? != u32::from(channel.get()) {
         return Err(ReplyError::BadField {
             at,
             expected: "channel of the request",
@@ -350,7 +326,7 @@ fn channel_range(fields: &mut Fields<'_>, asked: Channel) -> Result<Reply, Reply
     }
     fields.filler(b"R", "letter R")?;
     Ok(Reply::ChannelRange {
-        channel: asked,
+        channel,
         range: TypeCode(fields.byte()?),
     })
 }

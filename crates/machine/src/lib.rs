@@ -15,6 +15,9 @@
 //! - [`view`]: what a screen shows.
 //! - [`form`]: keys that a configuration file may hold.
 
+#[macro_use]
+mod named;
+
 pub mod dut;
 pub mod form;
 pub mod gauge;

@@ -26,6 +26,7 @@ pub mod mechanism;
 pub mod places;
 pub mod posture;
 pub mod probes;
+mod record;
 pub mod relay;
 pub mod resistor;
 pub mod signal;
@@ -36,9 +37,7 @@ pub mod wiring;
 use std::path::PathBuf;
 
 use crate::config::{ConfigError, RigFile, SupplyRange, read_rig, read_world};
-use crate::error::SimError;
 use crate::terminal::Plant;
-use crate::truth::{BodyTruth, Overdrive};
 use axis::Axis;
 use board::Board;
 use board::supply::CoilSupply;
@@ -46,7 +45,7 @@ use bodies::Bodies;
 use draw::{Draw, Subject};
 use edges::Edges;
 use environment::Environment;
-use fault::{Fault, Kind, WorldFaults};
+use fault::{Fault, WorldFaults};
 use magazine::{Magazine, Part};
 use mechanism::Mechanism;
 use signal::{Commands, In};
@@ -150,80 +149,6 @@ impl World {
     /// Returns the seed of noise and temperatures, where it differs from the seed of the rig.
     pub fn noise_seed(&self) -> Option<u64> {
         self.noise_seed
-    }
-
-    /// Returns the truth of every lot part that has entered the nest, in order.
-    pub fn truth(&self) -> Vec<serde_json::Value> {
-        let truths = self.mechanism.places.truth();
-        truths
-            .into_iter()
-            .filter_map(|t| serde_json::to_value(t).ok())
-            .collect()
-    }
-
-    /// Returns every body that has left the magazine, in order of leaving.
-    pub fn bodies(&self) -> Vec<BodyTruth> {
-        self.mechanism.bodies()
-    }
-
-    /// Cancels the faults that have not struck yet.
-    pub fn cancel_faults(&mut self) {
-        self.mechanism.cancel_faults();
-    }
-
-    /// Returns the start of each recent motion that an output caused: microseconds and actuator.
-    pub fn motion_starts(&self) -> Vec<(u64, &'static str)> {
-        self.mechanism.motion_starts().collect()
-    }
-
-    /// Returns a description of each crash, in order of time.
-    pub fn crashes(&self) -> Vec<String> {
-        self.mechanism.crashes().to_vec()
-    }
-
-    /// Returns every overdrive of a coil, in order of time.
-    pub fn overdrives(&self) -> &[Overdrive] {
-        self.board.overdrives()
-    }
-
-    /// Activates a fault; `value` is the number of a part.
-    ///
-    /// # Errors
-    /// Fails when the fault is unknown, applies only to the start, or needs the number of a part.
-    pub fn inject(&mut self, name: &str, value: Option<f64>) -> Result<(), SimError> {
-        let Some(fault) = Fault::from_name(name) else {
-            return Err(SimError::UnknownFault { name: name.into() });
-        };
-        let wrong = |expected: &str| SimError::FaultValue {
-            name: name.into(),
-            found: value.map_or_else(|| "nothing".into(), |value| value.to_string()),
-            expected: expected.into(),
-        };
-        match (fault.kind(), value) {
-            (Kind::Timed, None) => self.mechanism.inject(fault, self.now_us),
-            (Kind::Timed, Some(_)) => return Err(wrong("no value, since the fault strikes now")),
-            (Kind::OfPart, Some(part)) => self.mechanism.add_part_fault(fault, part),
-            (Kind::OfPart, None) => return Err(wrong("the number of a part")),
-            (Kind::OfStart, _) => {
-                return Err(wrong(
-                    "a fault that a running rig accepts; this one applies only to the start",
-                ));
-            }
-        }
-        Ok(())
-    }
-
-    /// Replaces the parts in the magazine as an operator does; only the options about parts apply.
-    ///
-    /// # Errors
-    /// Fails when a configuration file is missing or wrong; the magazine then stays unchanged.
-    pub fn refill(&mut self, options: &WorldOptions) -> Result<(), ConfigError> {
-        let table = read_world(&options.config_dir, options.world_file.as_deref())?;
-        let (track, ambient) = (self.environment.track_c, self.environment.ambient_c);
-        self.mechanism
-            .refill(|faults| Magazine::load(options, &table, faults, track, ambient))?;
-        self.mechanism_changed();
-        Ok(())
     }
 
     /// Returns the specimen in the nest.

@@ -1,23 +1,30 @@
 //! The fixed names of the points, which assign signals to terminals.
 
+/// Declares an enum by the names of its variants in files.
 macro_rules! vocabulary {
-    ($(#[$doc:meta])* $enum:ident { $($name:ident = $text:literal),* $(,)? }) => {
+    ($(#[$doc:meta])* $enum:ident { $($(#[$line:meta])* $name:ident = $text:literal),* $(,)? }) => {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-        #[allow(missing_docs)] // the names are those of config/rig.toml
-        pub enum $enum { $($name),* }
+        #[allow(missing_docs)] // a name of config/rig.toml explains its point
+        pub enum $enum { $($(#[$line])* $name),* }
 
         impl $enum {
-            /// Every point, in order of the enum.
+            /// Every variant, in order of the enum.
             pub const ALL: &'static [$enum] = &[$($enum::$name),*];
 
-            /// Returns the point of this name.
+            /// Returns the variant of this name.
             pub fn from_name(name: &str) -> Option<Self> {
                 match name { $($text => Some($enum::$name),)* _ => None }
+            }
+
+            /// Returns the name in files.
+            pub fn name(self) -> &'static str {
+                match self { $($enum::$name => $text),* }
             }
         }
     };
 }
+pub(crate) use vocabulary;
 
 vocabulary! {
     /// Signals to the controller.

@@ -11,6 +11,7 @@ mod supply;
 use std::path::PathBuf;
 
 use super::*;
+use crate::truth::WorldRecord;
 
 pub(super) fn config_dir() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../config"))

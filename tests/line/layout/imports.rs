@@ -33,6 +33,7 @@ const PURE: &[(&str, &[&str])] = &[
 /// Modules of `machine` with their allowed imports.
 const MACHINE: &[(&str, &[&str])] = &[
     ("form", &[]),
+    ("named", &[]),
     ("gauge", &[]),
     ("guard", &[]),
     ("rig", &["guard"]),

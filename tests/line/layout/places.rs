@@ -16,8 +16,6 @@ const TOP: &[&str] = &[
     "LICENSE-APACHE",
     "LICENSE-MIT",
     "README.md",
-    "benches",
-    "crates",
     "clippy.toml",
     "config",
     "crates",

@@ -355,8 +355,8 @@ fn analog(answer: &Answer, address: u8, channel: u8, value: Value) -> Found {
     if fingerprint::origin_of_analog(code) != (address, channel) {
         return Found::Foreign;
     }
-    let taken = answer.answered_at.since(answer.asked_at).0;
-    let distance = fingerprint::distance_of_analog_us(code, answer.asked_at.0);
+    let taken = answer.answered_at.since(answer.requested_at).0;
+    let distance = fingerprint::distance_of_analog_us(code, answer.requested_at.0);
     told(distance <= CONVERSION_US + taken, Found::Stale)
 }
 
@@ -365,7 +365,7 @@ fn word(answer: &Answer, address: u8, word: u16) -> Found {
     if fingerprint::origin_of_word(word) != address {
         return Found::Foreign;
     }
-    let taken = answer.answered_at.since(answer.asked_at).0;
+    let taken = answer.answered_at.since(answer.requested_at).0;
     let age = fingerprint::age_of_word_us(word, answer.answered_at.0);
     told(age <= taken + fingerprint::WORD_STEP_US, Found::Stale)
 }
@@ -379,5 +379,5 @@ fn read_back(answer: &Answer, address: u8, word: u16, line: &FingerprintLine) ->
 }
 
 fn carried(answer: &Answer, address: u8, word: u16, line: &FingerprintLine) -> bool {
-    line.carried(address, word, answer.asked_at.0, answer.answered_at.0)
+    line.carried(address, word, answer.requested_at.0, answer.answered_at.0)
 }

@@ -13,13 +13,12 @@ use machine::guard::{Actuator, Guard, PartSize};
 use machine::handling::mechanism::Mechanism;
 use machine::handling::moves::Strokes;
 use machine::rig::axis::AxisStation;
-use machine::rig::wiring::StrokeLimits;
 use machine::station::catalogue::AlarmCode;
 use machine::station::trouble::Alarm;
 use machine::station::{Plan, Station};
 use machine::view::Mimic;
 use std::sync::Arc;
-use units::{RigTime, Span};
+use units::RigTime;
 
 pub(super) fn cycle(
     context: &LotContext,
@@ -71,7 +70,7 @@ pub(super) fn cycle(
         worn: uses,
         left,
     };
-    let mechanism = Mechanism::new(strokes, timeouts(&wiring.strokes), size_of(context.recipe));
+    let mechanism = Mechanism::new(strokes, wiring.strokes, size_of(context.recipe));
     let mut station = Station::new(plan, device, wiring.axis.clone(), mechanism);
     // An unattended run cannot acknowledge alarms of an earlier one.
     for left in alarms.into_iter().filter(|_| attended) {
@@ -106,16 +105,4 @@ fn size_of(recipe: &Recipe) -> PartSize {
         body_mm: part.body_mm,
         pin_length_mm: part.pin_length_mm,
     }
-}
-
-fn timeouts(limits: &StrokeLimits) -> Vec<(&'static str, Span)> {
-    vec![
-        ("escapement", limits.escapement),
-        ("pusher", limits.pusher),
-        ("clamp", limits.clamp),
-        ("probe_lift", limits.probe_lift),
-        ("sort_z", limits.sort_z),
-        ("gripper", limits.gripper),
-        ("axis", limits.axis),
-    ]
 }

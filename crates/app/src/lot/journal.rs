@@ -186,7 +186,7 @@ impl Journal {
         };
         let mut rows = vec![Row::RunEnded(RunEndRecord {
             lot: lot.clone(),
-            ended: ending.clone(),
+            ended: *ending,
             cause: exit.cause().map(|it| (it.code.clone(), it.text.clone())),
         })];
         let state = match ending {

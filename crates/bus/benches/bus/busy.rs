@@ -183,7 +183,7 @@ fn row(
     if bad > 0 {
         return Err(format!("{bad} of {count} not answered").into());
     }
-    let times: Vec<RigTime> = answers.iter().map(|answer| answer.asked_at).collect();
+    let times: Vec<RigTime> = answers.iter().map(|answer| answer.requested_at).collect();
     let mut each_us: Vec<u64> = times
         .windows(2)
         .map(|pair| pair[1].since(pair[0]).0)

@@ -86,7 +86,7 @@ fn a_reply_that_waited_for_the_host_counts() {
     };
     let heard = answer(THIRTY);
     assert_eq!(heard.outcome, Ok(Reply::Count(30)));
-    assert_eq!(heard.answered_at.since(heard.asked_at), limit);
+    assert_eq!(heard.answered_at.since(heard.requested_at), limit);
     assert!(matches!(
         answer(b"").outcome,
         Err(LineError::TimeOut { .. })

@@ -65,8 +65,8 @@ fn a_switched_input_needs_a_third_answer_that_agrees() {
     };
     assert_eq!((got[1].outcome.clone(), sent), (Ok(Reply::Bits(bits)), 4));
     // The time is that of the second answer, the first that shows the new input.
-    assert!(got[1].asked_at >= got[0].answered_at + Span(2_000));
-    assert!(got[1].answered_at.since(got[1].asked_at) < Span(3_000));
+    assert!(got[1].requested_at >= got[0].answered_at + Span(2_000));
+    assert!(got[1].answered_at.since(got[1].requested_at) < Span(3_000));
     let (got, _) = told(b">3B3F2C\r");
     assert!(matches!(
         got[1].outcome,
@@ -148,7 +148,7 @@ fn of_three_moving_readings_the_middle_one_counts() {
     let (got, sent) = read_of([b">1000FF\r", b">200000\r", b">300001\r"]);
     assert_eq!((&*got.raw, sent), (">200000", 4));
     assert!(got.outcome.is_ok(), "{got:?}");
-    assert!(got.answered_at.since(got.asked_at) < Span(3_000));
+    assert!(got.answered_at.since(got.requested_at) < Span(3_000));
 }
 
 #[test]
@@ -162,7 +162,7 @@ fn damage_within_the_noise_of_a_reading_is_rejected() {
         let (got, _) = read_of(said.map(|bytes| bytes.as_slice()));
         assert_eq!(got.raw, ">003304", "{got:?}");
         // The time is that of the accepted answer alone.
-        assert!(got.answered_at.since(got.asked_at) < Span(3_000));
+        assert!(got.answered_at.since(got.requested_at) < Span(3_000));
     }
 }
 

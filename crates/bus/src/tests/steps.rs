@@ -115,7 +115,7 @@ fn a_module_that_names_itself_ends_the_wait_for_silence() {
         vec![vec![], vec![(2_000, NINE)]],
         &[(count(), 1), (count(), 1)],
     ));
-    let spent = got[1].asked_at.since(got[0].answered_at);
+    let spent = got[1].requested_at.since(got[0].answered_at);
     assert!(spent < Span(2_500), "{spent:?}");
     assert_eq!(got[1].outcome, Ok(Reply::Count(9)));
 }
@@ -125,7 +125,7 @@ fn no_transaction_takes_longer_than_its_bound() {
     let bound = longest_transaction(&settings(), &[count()]);
     for late in [0, 40_000, 70_000, 100_000, 450_000] {
         for pair in answers(late, 2).windows(2) {
-            let taken = pair[1].asked_at.since(pair[0].asked_at);
+            let taken = pair[1].requested_at.since(pair[0].requested_at);
             assert!(taken <= bound, "late by {late}: {taken:?}");
         }
     }

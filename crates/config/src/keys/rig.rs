@@ -8,11 +8,10 @@ use machine::dut::FIXTURES;
 use machine::dut::em_relay::keys::board::REFERENCE;
 use machine::form::{Form, Key, Points, key, optional};
 use machine::rig::point::{DigitalIn, DigitalOut, Fixture};
+use machine::rig::stroke::ActuatorKey;
 use measuring::{ACCURACY, CALIBRATION};
 use modules::{BUS, LINE, MODULE, SAFETY};
-use points::{
-    ACTUATOR, ACTUATORS, ANALOG_IN, ANALOG_OUT, BIN, CHANNEL, DIGITAL_IN, STATION, SUPPLY_RANGE,
-};
+use points::{ACTUATOR, ANALOG_IN, ANALOG_OUT, BIN, CHANNEL, DIGITAL_IN, STATION, SUPPLY_RANGE};
 
 /// Form of points that only kinds of device declare.
 const fn of_kinds(may: fn() -> Vec<&'static str>, entry: &'static Form) -> Form {
@@ -75,7 +74,7 @@ pub const FILE: &[Key] = keys! {
         "digital inputs by point");
     key("digital_out", Form::Points(Points { must: DigitalOut::NAMES, may: digital_out, free: false, entry: &Form::Table(CHANNEL) }), "rig",
         "digital outputs by point");
-    key("actuator", Form::Each(ACTUATORS, &Form::Table(ACTUATOR)), "station", "supervision of strokes");
+    key("actuator", Form::Each(ActuatorKey::NAMES, &Form::Table(ACTUATOR)), "station", "supervision of strokes");
     key("axis", Form::Each(&["nest", "park"], &Form::Table(STATION)), "rig", "places of the sort axis that are not bins");
     key("bin", Form::NamedWith(&["pass", "retest"], &Form::Table(BIN)), "rig, station", "bins by name");
     optional("reference", Form::Table(REFERENCE), "gauge",

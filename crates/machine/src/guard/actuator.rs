@@ -71,7 +71,7 @@ impl Actuator {
     }
 
     /// Returns the index in [`Actuator::ALL`] and in every table by actuator.
-    pub(super) const fn index(self) -> usize {
+    pub const fn index(self) -> usize {
         self as usize
     }
 }

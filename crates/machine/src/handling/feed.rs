@@ -119,12 +119,7 @@ fn releasing(turn: &mut Turn, since: RigTime, attempt: u8) -> Feed {
 fn pushed(turn: &mut Turn, nest: NestId) -> Feed {
     match turn.input(DigitalIn::NestPresent) {
         Some(true) => {
-            let reference = if turn.ledger.is_pocket_found() {
-                None
-            } else {
-                turn.next_reference_part()
-            };
-            turn.ledger.enter_nest(nest, reference);
+            turn.enter_nest(nest);
             turn.drive(Move::PusherRetract);
             Feed::Retracting
         }

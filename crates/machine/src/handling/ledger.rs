@@ -41,6 +41,14 @@ pub struct Part {
     pub interrupted: Option<String>,
 }
 
+impl Part {
+    /// Marks the part as interrupted, unless it is already; returns the reason that stays.
+    pub fn interrupt(&mut self, why: &str) -> String {
+        let why = self.interrupted.get_or_insert_with(|| why.to_owned());
+        why.clone()
+    }
+}
+
 /// The fall of the part in [`Place::Falling`]; it begins when the part [has left](Self::has_left) the fingers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fall {

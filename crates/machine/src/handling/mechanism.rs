@@ -14,6 +14,7 @@ use crate::guard::{Actuator, PartPlaces, PartSize, Position, Situation};
 use crate::rig::axis::AxisStation;
 use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
+use crate::rig::stroke::StrokeLimits;
 use units::{RigTime, Span};
 
 /// Greatest age of a valid sensor value.
@@ -61,7 +62,7 @@ pub struct MechanismUpdate {
 #[derive(Debug)]
 pub struct Mechanism {
     strokes: Strokes,
-    timeout: Vec<(&'static str, Span)>,
+    limits: StrokeLimits,
     underway: Vec<Underway>,
     /// Motions requested and not driven yet.
     waiting: Vec<Move>,
@@ -77,10 +78,10 @@ pub struct Mechanism {
 
 impl Mechanism {
     /// Makes a mechanism with unknown positions and no motion.
-    pub fn new(strokes: Strokes, timeout: Vec<(&'static str, Span)>, part_size: PartSize) -> Self {
+    pub fn new(strokes: Strokes, limits: StrokeLimits, part_size: PartSize) -> Self {
         Self {
             strokes,
-            timeout,
+            limits,
             underway: Vec::new(),
             waiting: Vec::new(),
             again: Vec::new(),
@@ -119,8 +120,7 @@ impl Mechanism {
 
     /// Returns true from the drive of a motion of the same actuator until its arrival.
     pub fn is_moving(&self, movement: Move) -> bool {
-        let key = movement.actuator_key();
-        let same = |other: &Move| other.actuator_key() == key;
+        let same = |other: &Move| other.key() == movement.key();
         self.underway
             .iter()
             .any(|underway| same(&underway.movement))
@@ -191,30 +191,27 @@ impl Mechanism {
     /// Records that a motion was driven.
     pub fn driven(&mut self, movement: Move, now: RigTime, image: &Image) {
         let from = self.positions(now, image);
-        let key = movement.actuator_key();
+        let key = movement.key();
         self.underway
-            .retain(|underway| underway.movement.actuator_key() != key);
+            .retain(|underway| underway.movement.key() != key);
         self.watch.remove(key);
         self.uses.probe_touches += u64::from(movement == Move::ProbesUp);
         self.uses.jaw_closings += u64::from(movement == Move::ClampClose);
         match self
             .strokes_made
             .iter_mut()
-            .find(|(known, _)| *known == key)
+            .find(|(known, _)| *known == key.name())
         {
             Some((_, strokes)) => *strokes += 1,
-            None => self.strokes_made.push((key, 1)),
+            None => self.strokes_made.push((key.name(), 1)),
         }
         self.underway.push(Underway {
             movement,
             since: now,
             from,
         });
-        let actuators = Actuator::ALL.len();
-        assert!(
-            self.underway.len() < actuators,
-            "two motions of one actuator"
-        );
+        let several = self.underway.len() >= Actuator::ALL.len();
+        assert!(!several, "two motions of one actuator");
         if let Some(station) = movement.station() {
             self.axis_at = Some(station);
         }
@@ -283,11 +280,7 @@ impl Mechanism {
     }
 
     fn timeout_of(&self, movement: Move) -> Span {
-        let key = movement.actuator_key();
-        self.timeout
-            .iter()
-            .find(|(known, _)| *known == key)
-            .map_or(Span::ms(1000), |(_, span)| *span)
+        self.limits[movement.key().index()]
     }
 
     /// Position of every actuator, in the order of [`Actuator::ALL`].
@@ -299,11 +292,7 @@ impl Mechanism {
     pub fn position(&self, actuator: Actuator, now: RigTime, image: &Image) -> Position {
         for underway in &self.underway {
             if let Some(to_mm) = underway.movement.motion(&self.strokes).target_mm(actuator) {
-                let index = Actuator::ALL
-                    .iter()
-                    .position(|known| *known == actuator)
-                    .unwrap_or(0);
-                return underway.from[index].reaching(to_mm);
+                return underway.from[actuator.index()].reaching(to_mm);
             }
         }
         let is = |point, state| image.input(point, now, SENSOR_AGE) == Some(state);

@@ -4,6 +4,7 @@ use crate::guard::{Actuator, Motion, Position, Stroke};
 use crate::rig::axis::AxisStation;
 use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
+use crate::rig::stroke::ActuatorKey;
 
 /// One motion of the machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,10 +49,7 @@ pub struct Strokes {
 impl Strokes {
     /// Returns the full stroke of an actuator, mm.
     pub fn of(&self, actuator: Actuator) -> f64 {
-        Actuator::ALL
-            .iter()
-            .position(|known| *known == actuator)
-            .map_or(f64::NAN, |index| self.length_mm[index])
+        self.length_mm[actuator.index()]
     }
 
     /// Returns the position of a station, mm; NaN for one outside the table, which the guard refuses.
@@ -180,21 +178,10 @@ impl Move {
 
     /// Returns the target station of the sort axis.
     pub fn station(self) -> Option<AxisStation> {
-        match self {
-            Move::AxisTo(station) => Some(station),
-            Move::EscapementRelease
-            | Move::EscapementHold
-            | Move::PusherExtend
-            | Move::PusherRetract
-            | Move::ClampClose
-            | Move::ClampOpen
-            | Move::ProbesUp
-            | Move::ProbesDown
-            | Move::SortDown
-            | Move::SortUp
-            | Move::GripperClose
-            | Move::GripperOpen => None,
-        }
+        let Move::AxisTo(station) = self else {
+            return None;
+        };
+        Some(station)
     }
 
     /// Returns the actuator that performs it.
@@ -242,51 +229,6 @@ impl Move {
         match self.station()? {
             AxisStation::Bin(bin) => Some(bin),
             AxisStation::Nest | AxisStation::Park => None,
-        }
-    }
-}
-
-/// Actuator of a time-out, a retry or an alarm; both jaws are one clamp.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum ActuatorKey {
-    /// Escapement between track and pocket.
-    Escapement,
-    /// Pusher from the pocket to the nest.
-    Pusher,
-    /// Both jaws.
-    Clamp,
-    /// Lift of the probes.
-    ProbeLift,
-    /// Sort axis.
-    Axis,
-    /// Gripper up and down.
-    SortZ,
-    /// Fingers.
-    Gripper,
-}
-
-impl ActuatorKey {
-    /// Every key.
-    pub const ALL: [Self; 7] = [
-        Self::Escapement,
-        Self::Pusher,
-        Self::Clamp,
-        Self::ProbeLift,
-        Self::Axis,
-        Self::SortZ,
-        Self::Gripper,
-    ];
-
-    /// Returns the key in `config/rig.toml`, counters and alarms.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Escapement => "escapement",
-            Self::Pusher => "pusher",
-            Self::Clamp => "clamp",
-            Self::ProbeLift => "probe_lift",
-            Self::Axis => "axis",
-            Self::SortZ => "sort_z",
-            Self::Gripper => "gripper",
         }
     }
 }

@@ -142,18 +142,12 @@ impl Nest {
         }
     }
 
-    /// Returns the running test, for the page.
+    /// Returns the running test.
     pub fn test(&self) -> Option<&Procedure> {
-        match &self.state {
-            NestState::Testing(test) => Some(test),
-            NestState::Empty
-            | NestState::Clamping
-            | NestState::Probing
-            | NestState::Judged
-            | NestState::Gripping
-            | NestState::Unclamping
-            | NestState::Lifting => None,
-        }
+        let NestState::Testing(test) = &self.state else {
+            return None;
+        };
+        Some(test)
     }
 }
 

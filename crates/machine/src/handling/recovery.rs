@@ -178,11 +178,7 @@ impl SensedParts {
 fn pushed(turn: &mut Turn, seen: &SensedParts) {
     let gone = turn.ledger.holds(Place::Pocket) && !seen.pocket;
     if gone && !turn.ledger.holds(Place::NEST) && seen.nest {
-        let reference = match turn.ledger.is_pocket_found() {
-            true => None,
-            false => turn.next_reference_part(),
-        };
-        turn.ledger.enter_nest(NestId::FIRST, reference);
+        turn.enter_nest(NestId::FIRST);
     }
 }
 

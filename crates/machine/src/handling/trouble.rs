@@ -6,7 +6,7 @@ use crate::rig::bin::Bin;
 use crate::rig::supply::RangeMismatch;
 use units::Span;
 
-/// A trouble and what it concerns.
+/// A trouble, with the motion, place, bin or part concerned.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Trouble {
     /// A stroke missed its end within this time, at the repetition if there is one.

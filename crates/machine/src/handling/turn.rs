@@ -71,8 +71,12 @@ impl Turn<'_> {
             && self.arrived(Move::EscapementHold)
     }
 
-    /// Takes the serial number of the next part, if it is a reference part.
-    pub fn next_reference_part(&mut self) -> Option<String> {
-        self.reference_serials.pop_front()
+    /// Moves the part from the pocket to the nest; a part of this run is the next reference part as long as there is one.
+    pub fn enter_nest(&mut self, nest: NestId) {
+        let reference = match self.ledger.is_pocket_found() {
+            true => None,
+            false => self.reference_serials.pop_front(),
+        };
+        self.ledger.enter_nest(nest, reference);
     }
 }

@@ -1,19 +1,20 @@
 //! Watches resting actuators: each must keep showing its end, and never both ends at once.
 //!
-//! A deviation shorter than [`DEBOUNCE`] is a bounce: counted, without consequence. While a deviation is undecided, no
-//! A bounce (shorter than [`DEBOUNCE`]) is only counted. While a deviation is undecided, no motion begins. An unread
-//! sensor is no trouble here; its line reports it. The drive of the axis is watched after its reset.
+//! A deviation shorter than [`DEBOUNCE`] is a bounce, which only its counter shows. While a deviation is undecided, no
+//! motion begins. An unread sensor is no trouble here; its line reports it. Watches the drive of the axis after its
+//! reset.
 
 use super::mechanism::{DEBOUNCE, SENSOR_AGE};
 use super::moves::Move;
 use super::trouble::Trouble;
 use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
+use crate::rig::stroke::ActuatorKey;
 use units::RigTime;
 
 /// A resting actuator.
 #[derive(Debug, Clone, Copy)]
-struct Stand {
+struct Resting {
     movement: Move,
     left_since: Option<RigTime>,
     both_since: Option<RigTime>,
@@ -22,7 +23,7 @@ struct Stand {
 /// All resting actuators.
 #[derive(Debug, Default)]
 pub struct Watch {
-    stands: Vec<Stand>,
+    resting: Vec<Resting>,
     bounces: u64,
     /// Time of the axis drive's reset; an alarm before it is already being handled.
     drive_reset: Option<RigTime>,
@@ -31,12 +32,12 @@ pub struct Watch {
 impl Watch {
     /// Adds an actuator that has reached the end of `movement`.
     pub fn add(&mut self, movement: Move) {
-        self.remove(movement.actuator_key());
+        self.remove(movement.key());
         assert!(
-            self.stands.len() < 7,
+            self.resting.len() < ActuatorKey::COUNT,
             "more resting actuators than actuators"
         );
-        self.stands.push(Stand {
+        self.resting.push(Resting {
             movement,
             left_since: None,
             both_since: None,
@@ -44,14 +45,13 @@ impl Watch {
     }
 
     /// Removes an actuator that begins a motion.
-    pub fn remove(&mut self, key: &str) {
-        self.stands
-            .retain(|stand| stand.movement.actuator_key() != key);
+    pub fn remove(&mut self, key: ActuatorKey) {
+        self.resting.retain(|it| it.movement.key() != key);
     }
 
     /// Removes all actuators.
     pub fn forget(&mut self) {
-        self.stands.clear();
+        self.resting.clear();
         self.drive_reset = None;
     }
 
@@ -62,8 +62,8 @@ impl Watch {
 
     /// Returns true while a deviation is undecided between fault and bounce.
     pub fn is_undecided(&self) -> bool {
-        let mut stands = self.stands.iter();
-        stands.any(|stand| stand.left_since.is_some() || stand.both_since.is_some())
+        let mut resting = self.resting.iter();
+        resting.any(|it| it.left_since.is_some() || it.both_since.is_some())
     }
 
     /// Returns the number of bounces.
@@ -82,8 +82,8 @@ impl Watch {
             trouble.push(Trouble::AxisDrive);
         }
         let bounces = &mut self.bounces;
-        self.stands.retain_mut(|stand| {
-            let movement = stand.movement;
+        self.resting.retain_mut(|one| {
+            let movement = one.movement;
             let left = movement
                 .arrival()
                 .iter()
@@ -93,8 +93,8 @@ impl Watch {
                 .iter()
                 .any(|point| seen(*point) == Some(true));
             let (left, both) = (
-                lasts(&mut stand.left_since, left, now, bounces),
-                lasts(&mut stand.both_since, both, now, bounces),
+                lasts(&mut one.left_since, left, now, bounces),
+                lasts(&mut one.both_since, both, now, bounces),
             );
             match (both, left) {
                 (true, _) => trouble.push(Trouble::BothEnds(movement)),
@@ -108,21 +108,10 @@ impl Watch {
 }
 
 fn gone(movement: Move) -> Trouble {
-    match movement {
-        Move::GripperClose => Trouble::Dropped,
-        Move::EscapementRelease
-        | Move::EscapementHold
-        | Move::PusherExtend
-        | Move::PusherRetract
-        | Move::ClampClose
-        | Move::ClampOpen
-        | Move::ProbesUp
-        | Move::ProbesDown
-        | Move::AxisTo(_)
-        | Move::SortDown
-        | Move::SortUp
-        | Move::GripperOpen => Trouble::LeftEnd(movement),
+    if movement == Move::GripperClose {
+        return Trouble::Dropped;
     }
+    Trouble::LeftEnd(movement)
 }
 
 /// Returns true once a state has lasted for the whole debounce time.

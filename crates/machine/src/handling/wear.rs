@@ -27,24 +27,12 @@ impl Uses {
     }
 }
 
-/// Wearing part.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Wearing {
-    /// Probes, by touches.
-    Probes,
-    /// Jaws, by closings.
-    Jaws,
-}
-
-impl Wearing {
-    /// Every wearing part.
-    pub const ALL: [Self; 2] = [Self::Probes, Self::Jaws];
-
-    /// Returns the name in alarms.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Probes => "probes",
-            Self::Jaws => "jaws",
-        }
+named! {
+    /// Wearing part.
+    Wearing {
+        /// Probes, by touches.
+        Probes = "probes",
+        /// Jaws, by closings.
+        Jaws = "jaws",
     }
 }

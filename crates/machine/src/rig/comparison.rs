@@ -5,7 +5,7 @@
 use super::commission::Mismatch;
 use super::model::Model;
 use super::wiring::{Module, Wiring};
-use dcon::{BaudCode, Common, Config, DataFormat, FormatByte, Level};
+use dcon::{BaudCode, Command, Common, Config, DataFormat, FormatByte, Level};
 
 /// The wiring of one module, for comparison with its answers.
 pub(super) struct Comparison<'a> {
@@ -28,6 +28,20 @@ impl Comparison<'_> {
             found: found.to_string(),
             expected: expected.to_string(),
             remedy: None,
+        }
+    }
+
+    /// Returns the mismatch with the command that corrects it.
+    fn corrected_by(
+        &self,
+        remedy: Command,
+        what: &'static str,
+        found: impl ToString,
+        expected: impl ToString,
+    ) -> Mismatch {
+        Mismatch {
+            remedy: Some(remedy),
+            ..self.mismatch(what, found, expected)
         }
     }
 
@@ -65,12 +79,8 @@ impl Comparison<'_> {
             config,
         }
         .to(module.address);
-        let expected = format!("{:02X}", wanted.0);
-        let difference = self.mismatch("format byte", format!("{:02X}", found.format.0), expected);
-        Some(Mismatch {
-            remedy: Some(remedy),
-            ..difference
-        })
+        let [found, expected] = [found.format, wanted].map(|it| format!("{:02X}", it.0));
+        Some(self.corrected_by(remedy, "format byte", found, expected))
     }
 
     /// Returns the required format byte; bits without a setting keep the value found.
@@ -113,21 +123,10 @@ impl Comparison<'_> {
     }
 
     pub(super) fn mask(&self, found: u8) -> Option<Mismatch> {
-        match self.module.mask {
-            Some(mask) if mask != found => {
-                let remedy = dcon::AnalogIn::WriteMask(mask).to(self.module.address);
-                let difference = self.mismatch(
-                    "channel mask",
-                    format!("{found:02X}"),
-                    format!("{mask:02X}"),
-                );
-                Some(Mismatch {
-                    remedy: Some(remedy),
-                    ..difference
-                })
-            }
-            Some(_) | None => None,
-        }
+        let mask = self.module.mask.filter(|mask| *mask != found)?;
+        let remedy = dcon::AnalogIn::WriteMask(mask).to(self.module.address);
+        let [found, expected] = [found, mask].map(|it| format!("{it:02X}"));
+        Some(self.corrected_by(remedy, "channel mask", found, expected))
     }
 
     pub(super) fn status(&self, status: u8) -> Option<Mismatch> {
@@ -137,10 +136,7 @@ impl Comparison<'_> {
             return None;
         }
         let remedy = Common::ClearWatchdogStatus.to(self.module.address);
-        Some(Mismatch {
-            remedy: Some(remedy),
-            ..self.mismatch("host watchdog", "tripped", "not tripped")
-        })
+        Some(self.corrected_by(remedy, "host watchdog", "tripped", "not tripped"))
     }
 
     pub(super) fn watchdog(&self, enabled: Option<bool>, timeout_tenths: u8) -> Option<Mismatch> {
@@ -162,15 +158,12 @@ impl Comparison<'_> {
             enabled: wanted,
             timeout_tenths: wanted_tenths,
         };
-        let difference = self.mismatch(
+        Some(self.corrected_by(
+            command.to(self.module.address),
             "host watchdog",
             words(enabled, timeout_tenths),
             words(Some(wanted), wanted_tenths),
-        );
-        Some(Mismatch {
-            remedy: Some(command.to(self.module.address)),
-            ..difference
-        })
+        ))
     }
 
     /// No single command can correct a safe value: the module stores its present output as the safe value.

@@ -188,21 +188,13 @@ impl Outputs {
             ..
         }) = &mut self.modules[terminal.module.0]
         {
-            let next = if on {
-                *word | terminal.bit()
-            } else {
-                *word & !terminal.bit()
+            let switched = |bits: u16| match on {
+                true => bits | terminal.bit(),
+                false => bits & !terminal.bit(),
             };
-            let edge_low = before.map(|low| {
-                if on {
-                    low | terminal.bit()
-                } else {
-                    low & !terminal.bit()
-                }
-            });
-            *due |= next != *word;
-            *word = next;
-            *before = edge_low;
+            *due |= switched(*word) != *word;
+            *word = switched(*word);
+            *before = before.map(switched);
         }
     }
 

@@ -114,43 +114,45 @@ impl Image {
     /// Stores the reply; returns false when it does not fit its command.
     fn store(&mut self, arrival: &Arrival<'_>, reply: &Reply) -> bool {
         use dcon::AnalogIn::{ReadAll, ReadAllHex, ReadOne};
+        let module = arrival.module;
         match (&arrival.command, reply) {
             (Command::AnalogIn(_, ReadAll(_) | ReadAllHex(_)), Reply::Readings(readings)) => {
                 self.store_readings(arrival, |channel| readings.get(usize::from(channel.get())));
-                true
             }
             (Command::AnalogIn(_, ReadOne { channel: one, .. }), Reply::Reading(reading)) => {
                 self.store_readings(arrival, |channel| (channel == *one).then_some(*reading));
-                true
             }
             (Command::Digital(_, Digital::ReadPort | Digital::ReadAll), Reply::Bits(bits)) => {
-                self.words[arrival.module.0] = Some(Word {
-                    bits: bits.word(),
-                    at: arrival.at,
-                });
-                true
+                let (bits, at) = (bits.word(), arrival.at);
+                self.words[module.0] = Some(Word { bits, at });
             }
             (Command::Digital(_, Digital::ReadEvents { channel }), Reply::Events(count)) => {
                 self.store_events(arrival, *channel, *count);
-                true
             }
             (Command::Counter(_, dcon::Counter::Read(number)), Reply::Count(count)) => {
                 self.store_count(arrival, number.get(), *count);
-                true
             }
             (Command::AnalogOut(_, dcon::AnalogOut::ReadPresent { .. }), Reply::Level(level)) => {
-                let range = self.wiring.module(arrival.module).type_code;
-                self.levels[arrival.module.0] =
-                    level.in_units(range).map(|volts| (volts, arrival.at));
-                true
+                let volts = level.in_units(self.wiring.module(module).type_code);
+                self.levels[module.0] = volts.map(|volts| (volts, arrival.at));
             }
             (Command::Common(_, Common::ReadResetStatus), Reply::Flag(was_reset)) => {
                 if *was_reset {
-                    self.forget(arrival.module);
-                    self.resets.push(arrival.module);
+                    self.forget(module);
+                    self.resets.push(module);
                 }
-                true
             }
+            (
+                Command::AnalogIn(_, ReadAll(_) | ReadAllHex(_) | ReadOne { .. })
+                | Command::Digital(
+                    _,
+                    Digital::ReadPort | Digital::ReadAll | Digital::ReadEvents { .. },
+                )
+                | Command::Counter(_, dcon::Counter::Read(_))
+                | Command::AnalogOut(_, dcon::AnalogOut::ReadPresent { .. })
+                | Command::Common(_, Common::ReadResetStatus),
+                _,
+            ) => return false,
             (
                 Command::HostOk
                 | Command::SampleAll
@@ -160,8 +162,9 @@ impl Image {
                 | Command::Digital(..)
                 | Command::Counter(..),
                 _,
-            ) => !carries_value(&arrival.command),
+            ) => {}
         }
+        true
     }
 
     fn store_readings(
@@ -368,22 +371,4 @@ fn sample(
         quality,
         origin,
     }
-}
-
-/// Returns true for commands whose reply carries process values; another kind of reply to them is an error.
-fn carries_value(command: &Command) -> bool {
-    matches!(
-        command,
-        Command::AnalogIn(
-            _,
-            dcon::AnalogIn::ReadAll(_)
-                | dcon::AnalogIn::ReadAllHex(_)
-                | dcon::AnalogIn::ReadOne { .. }
-        ) | Command::Digital(
-            _,
-            Digital::ReadPort | Digital::ReadAll | Digital::ReadEvents { .. }
-        ) | Command::Counter(_, dcon::Counter::Read(_))
-            | Command::AnalogOut(_, dcon::AnalogOut::ReadPresent { .. })
-            | Command::Common(_, Common::ReadResetStatus)
-    )
 }

@@ -30,6 +30,7 @@ pub mod reaction;
 pub mod resolve;
 pub mod sample;
 pub mod settings;
+pub mod stroke;
 pub mod supply;
 pub mod wiring;
 

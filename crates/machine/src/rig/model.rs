@@ -2,41 +2,42 @@
 
 use dcon::Width;
 
-/// A model of the I-7000 family.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Model {
-    /// 8 analog inputs, 16 bit at 10 conversions a second.
-    I7017,
-    /// 8 analog inputs with a fast mode.
-    I7017F,
-    /// 8 protected analog inputs with a fast mode.
-    I7017R,
-    /// 1 analog output, 12 bit.
-    I7021,
-    /// 1 analog output, 16 bit.
-    I7021P,
-    /// 3 resistance thermometers.
-    I7033,
-    /// 14 isolated digital inputs.
-    I7041,
-    /// 16 digital outputs.
-    I7043,
-    /// 16 isolated digital outputs.
-    I7045,
-    /// 7 digital inputs and 8 outputs.
-    I7050,
-    /// 16 isolated digital inputs with event counters.
-    I7051,
-    /// 4 digital inputs and 4 relays.
-    I7060,
-    /// 8 digital inputs and 3 relays.
-    I7063,
-    /// 4 digital inputs and 5 relays.
-    I7065,
-    /// 7 relays.
-    I7067,
-    /// 2 gated 32-bit counters.
-    I7080,
+named! {
+    /// A model of the I-7000 family. A module answers `$AAM` with its name, without the `I-`.
+    Model {
+        /// 8 analog inputs, 16 bit at 10 conversions a second.
+        I7017 = "I-7017",
+        /// 8 analog inputs with a fast mode.
+        I7017F = "I-7017F",
+        /// 8 protected analog inputs with a fast mode.
+        I7017R = "I-7017R",
+        /// 1 analog output, 12 bit.
+        I7021 = "I-7021",
+        /// 1 analog output, 16 bit.
+        I7021P = "I-7021P",
+        /// 3 resistance thermometers.
+        I7033 = "I-7033",
+        /// 14 isolated digital inputs.
+        I7041 = "I-7041",
+        /// 16 digital outputs.
+        I7043 = "I-7043",
+        /// 16 isolated digital outputs.
+        I7045 = "I-7045",
+        /// 7 digital inputs and 8 outputs.
+        I7050 = "I-7050",
+        /// 16 isolated digital inputs with event counters.
+        I7051 = "I-7051",
+        /// 4 digital inputs and 4 relays.
+        I7060 = "I-7060",
+        /// 8 digital inputs and 3 relays.
+        I7063 = "I-7063",
+        /// 4 digital inputs and 5 relays.
+        I7065 = "I-7065",
+        /// 7 relays.
+        I7067 = "I-7067",
+        /// 2 gated 32-bit counters.
+        I7080 = "I-7080",
+    }
 }
 
 /// The kind of terminal a point needs.
@@ -57,43 +58,6 @@ pub enum Terminals {
 }
 
 impl Model {
-    /// Every model.
-    pub const ALL: &'static [Model] = &[
-        Self::I7017,
-        Self::I7017F,
-        Self::I7017R,
-        Self::I7021,
-        Self::I7021P,
-        Self::I7033,
-        Self::I7041,
-        Self::I7043,
-        Self::I7045,
-        Self::I7050,
-        Self::I7051,
-        Self::I7060,
-        Self::I7063,
-        Self::I7065,
-        Self::I7067,
-        Self::I7080,
-    ];
-
-    /// Names of [`Self::ALL`], as in `config/rig.toml`.
-    pub const NAMES: &'static [&'static str] = &[
-        "I-7017", "I-7017F", "I-7017R", "I-7021", "I-7021P", "I-7033", "I-7041", "I-7043",
-        "I-7045", "I-7050", "I-7051", "I-7060", "I-7063", "I-7065", "I-7067", "I-7080",
-    ];
-
-    /// Returns the model with this name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        let index = Self::NAMES.iter().position(|known| *known == name)?;
-        Self::ALL.get(index).copied()
-    }
-
-    /// Returns the name in `config/rig.toml`; a module answers `$AAM` with it, without the `I-`.
-    pub fn name(self) -> &'static str {
-        Self::NAMES[self as usize]
-    }
-
     /// Returns the number of terminals of a kind; 0 for none.
     pub fn channels(self, kind: Terminals) -> u8 {
         let count = |has: bool, channels: u8| if has { channels } else { 0 };

@@ -8,53 +8,11 @@
 //!
 //! The wiring resolves a name to a handle ([`DigitalInput`] and its like): an index into its table.
 
-/// Declares one closed list of points: an enum whose variants have their name in `config/rig.toml`.
-macro_rules! points {
-    ($(#[$doc:meta])* $kind:ident { $($(#[$line:meta])* $variant:ident = $name:literal,)+ }) => {
-        $(#[$doc])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        pub enum $kind {
-            $($(#[$line])* #[doc = concat!("`", $name, "`")] $variant,)+
-        }
-
-        impl $kind {
-            /// All points, in the order of declaration.
-            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
-            /// Number of points; [`Self::index`] is below it.
-            pub const COUNT: usize = Self::ALL.len();
-            /// All names, in the order of [`Self::ALL`].
-            pub const NAMES: &'static [&'static str] = &[$($name),+];
-
-            /// Returns the name in `config/rig.toml`.
-            pub const fn name(self) -> &'static str {
-                match self { $(Self::$variant => $name),+ }
-            }
-
-            /// Returns the point with this name; `None` when there is none.
-            pub fn from_name(name: &str) -> Option<Self> {
-                Self::ALL.iter().copied().find(|point| point.name() == name)
-            }
-
-            /// Returns the position in [`Self::ALL`].
-            pub const fn index(self) -> usize {
-                self as usize
-            }
-        }
-
-        impl std::fmt::Display for $kind {
-            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str(self.name())
-            }
-        }
-    };
-}
-pub(crate) use points;
-
 use thiserror::Error;
 
-points! {
-    /// Contacts and sensors of the machine; `true` means that the named state holds, whatever the polarity of the
-    /// wire.
+named! {
+    /// Contacts and sensors of the machine, by their names in `config/rig.toml`; `true` means that the named state
+    /// holds, whatever the polarity of the wire.
     DigitalIn {
         EmergencyStopOk = "emergency_stop_ok",
         DoorClosed = "door_closed",
@@ -84,8 +42,8 @@ points! {
     }
 }
 
-points! {
-    /// Transistor outputs of the machine: the valves, the axis, the lamps.
+named! {
+    /// Transistor outputs of the machine, by their names in `config/rig.toml`: the valves, the axis, the lamps.
     DigitalOut {
         EscapementRelease = "escapement_release",
         PusherExtend = "pusher_extend",

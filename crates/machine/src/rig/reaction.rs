@@ -53,7 +53,7 @@ impl Wiring {
             true => Span(self.longest_failure(line).0 - self.confirmed(line).0),
             false => self.longest_failure(line),
         };
-        let write = self.answered(line, LONGEST_DIGITAL_REPLY, self.digital_allowance());
+        let write = self.short_exchange(line);
         let modules = self.modules_on(line).map(|module| self.module(module));
         let writes = modules.filter(|module| module.model.has_outputs());
         writes.fold(busy, |time, _| time + write)
@@ -75,12 +75,13 @@ impl Wiring {
     /// Returns the time of a read of a digital module, its repetition, and the name of its module, each at the last
     /// moment.
     fn confirmed(&self, line: LineId) -> Span {
-        let read = self.answered(line, LONGEST_DIGITAL_REPLY, self.digital_allowance());
-        read + read + self.question(line)
+        let read = self.short_exchange(line);
+        read + read + read
     }
 
-    /// Returns the time of the request for a module's name; its reply is no longer than a count.
-    fn question(&self, line: LineId) -> Span {
+    /// Returns the time of a transaction with a digital module, also one that writes or reads a name: no reply is longer
+    /// than a count.
+    fn short_exchange(&self, line: LineId) -> Span {
         self.answered(line, LONGEST_DIGITAL_REPLY, self.digital_allowance())
     }
 
@@ -89,19 +90,13 @@ impl Wiring {
         let analog = self
             .modules_on(line)
             .any(|module| self.module(module).model.is_analog_in());
-        let longest = if analog {
-            LONGEST_ANALOG_REPLY
-        } else {
-            LONGEST_DIGITAL_REPLY
-        };
-        let allowance = if analog {
-            self.analog_allowance()
-        } else {
-            self.digital_allowance()
+        let (longest, allowance) = match analog {
+            true => (LONGEST_ANALOG_REPLY, self.analog_allowance()),
+            false => (LONGEST_DIGITAL_REPLY, self.digital_allowance()),
         };
         let silence = self.wire(line, longest) + allowance;
         let failed = self.answered(line, longest, allowance);
-        failed + failed + self.question(line) + silence
+        failed + failed + self.short_exchange(line) + silence
     }
 
     /// Returns the time of a transaction answered at the last moment, with the rest after it.

@@ -13,14 +13,13 @@ use super::modules::resolve_modules;
 use super::point::{DigitalIn, DigitalOut, Fixture, Quantity, Switch};
 use super::reaction::check_reaction;
 use super::settings::{
-    ActuatorSettings, AnalogInSettings, AnalogOutSettings, ChannelSettings, DigitalInSettings,
-    RigSettings,
+    AnalogInSettings, AnalogOutSettings, ChannelSettings, DigitalInSettings, RigSettings,
 };
+use super::stroke::resolve_strokes;
 use super::supply::resolve_ranges;
-use super::wiring::{AnalogTerminal, Line, Module, ModuleId, StrokeLimits, Terminal, Wiring};
+use super::wiring::{AnalogTerminal, Line, Module, ModuleId, Terminal, Wiring};
 use dcon::Channel;
 use std::collections::BTreeMap;
-use units::Span;
 
 impl Wiring {
     /// Resolves all names, checks the whole and returns the first fault. `fixtures`: points that the kinds of device
@@ -119,11 +118,6 @@ impl Wiring {
     }
 }
 
-struct Place {
-    module: ModuleId,
-    channel: Channel,
-}
-
 /// Terminals in use, each with the key of its point.
 struct TerminalsInUse<'a> {
     modules: &'a [Module],
@@ -138,13 +132,9 @@ impl TerminalsInUse<'_> {
         module: &str,
         channel: u8,
         kind: Terminals,
-    ) -> Result<Place, Fault> {
+    ) -> Result<(ModuleId, Channel), Fault> {
         let Some(index) = self.modules.iter().position(|known| known.name == module) else {
-            let known: Vec<&str> = self
-                .modules
-                .iter()
-                .map(|module| module.name.as_str())
-                .collect();
+            let known: Vec<&str> = self.modules.iter().map(|it| it.name.as_str()).collect();
             let expected = format!("one of the modules {}", known.join(", "));
             return Err(Fault::new(
                 format!("{key}.module"),
@@ -162,7 +152,7 @@ impl TerminalsInUse<'_> {
                 format!("a module with {}", kind.words()),
             ));
         }
-        let Some(place) = Channel::new(channel).filter(|_| channel < channels) else {
+        let Some(terminal) = Channel::new(channel).filter(|_| channel < channels) else {
             let expected = format!("0..{} of an {}", channels - 1, model.name());
             return Err(Fault::new(format!("{key}.channel"), channel, expected));
         };
@@ -170,10 +160,7 @@ impl TerminalsInUse<'_> {
             let found = format!("{module} channel {channel}");
             return Err(Fault::new(key, found, "a terminal of its own").against(other));
         }
-        Ok(Place {
-            module: ModuleId(index),
-            channel: place,
-        })
+        Ok((ModuleId(index), terminal))
     }
 
     /// Reserves a terminal for each point of a section.
@@ -188,7 +175,7 @@ impl TerminalsInUse<'_> {
             let key = format!("{section}.{}", name(point));
             let wired = wired.get(name(point)).ok_or_else(|| unwired(&key))?;
             let (module, channel) = wired.at();
-            let Place { module, channel } = self.take(&key, module, channel, kind)?;
+            let (module, channel) = self.take(&key, module, channel, kind)?;
             let gain = wired.gain();
             let terminal = AnalogTerminal {
                 module,
@@ -325,24 +312,4 @@ fn check_masks(wiring: &Wiring) -> Result<(), Fault> {
         }
     }
     Ok(())
-}
-
-fn resolve_strokes(actuators: &BTreeMap<String, ActuatorSettings>) -> Result<StrokeLimits, Fault> {
-    let limit = |name: &str| match actuators.get(name) {
-        Some(settings) => Ok(Span::seconds(settings.timeout_ms / 1000.0)),
-        None => Err(Fault::new(
-            format!("actuator.{name}"),
-            "nothing",
-            "a time-out",
-        )),
-    };
-    Ok(StrokeLimits {
-        escapement: limit("escapement")?,
-        pusher: limit("pusher")?,
-        clamp: limit("clamp")?,
-        probe_lift: limit("probe_lift")?,
-        sort_z: limit("sort_z")?,
-        gripper: limit("gripper")?,
-        axis: limit("axis")?,
-    })
 }

@@ -27,22 +27,20 @@ pub struct SupplyRange {
     pub factor: f64,
     /// Highest voltage of the supply.
     pub max: Volt,
-    /// Largest current of the supply; none where the file does not state it.
+    /// Largest current of the supply; `None` on a rig without ranges, whose file states none.
     pub max_current: Option<Ampere>,
-    /// True for a range of the file, false for the only one of a rig without ranges.
-    pub is_selected: bool,
 }
 
-/// The greatest voltage and current that a test asks of the supply, each with the key of the recipe that asks for it.
+/// Greatest voltage and current that a test needs from the supply, each with the key of the recipe that sets it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SupplyDemand {
     /// Highest voltage, with the tolerance of the sources.
     pub volts: Volt,
-    /// Key that asks for the voltage.
+    /// Key that sets the voltage.
     pub volts_key: &'static str,
     /// Largest current of a good part.
     pub current: Ampere,
-    /// Key that asks for the current.
+    /// Key that sets the current.
     pub current_key: &'static str,
 }
 
@@ -73,7 +71,7 @@ pub struct RangeSelector {
 }
 
 impl RangeSelector {
-    /// Returns how the code that was read back differs from that of `range`; none where it does not.
+    /// Returns the mismatch of the code read back with that of `range`; `None` when they agree.
     pub fn mismatch(&self, range: &SupplyRange, read_back: u8) -> Option<RangeMismatch> {
         let name = self.names.get(&read_back).cloned();
         (read_back != range.code).then(|| RangeMismatch {
@@ -103,9 +101,14 @@ pub fn code_of(states: [bool; 2]) -> u8 {
 }
 
 impl SupplyRange {
-    /// Returns where its highest voltage is set.
+    /// Returns true for a range of the file, which two outputs select.
+    pub fn is_selected(&self) -> bool {
+        self.max_current.is_some()
+    }
+
+    /// Returns the setting that limits the voltage.
     fn limits_volts(&self) -> String {
-        match self.is_selected {
+        match self.is_selected() {
             true => format!("rig.toml supply_range.{}.max_v", self.name),
             false => format!("the full scale of module {}", self.name),
         }
@@ -120,7 +123,7 @@ impl SupplyDemand {
     /// Returns the smallest range that gives voltage and current; panics for a rig without sources.
     ///
     /// # Errors
-    /// Names the key that asks too much, and the limit of the rig.
+    /// Names the key that needs too much, and the limit of the rig.
     pub fn range<'a>(&self, wiring: &'a Wiring) -> Result<&'a SupplyRange, Fault> {
         let enough = |range: &&SupplyRange| self.volts <= range.max;
         let mut ranges = wiring.supply_ranges.iter().filter(enough);
@@ -173,7 +176,7 @@ impl Wiring {
         ranged
     }
 
-    /// Returns the points that select the range of the supply; none on a rig with one range.
+    /// Returns the points that select the range of the supply; `None` on a rig without ranges.
     pub fn range_selector(&self) -> Option<RangeSelector> {
         let [low, high] = SELECT.map(|name| self.digital_output(name));
         let [low_set, high_set] = READ_BACK.map(|name| self.digital_input(name));
@@ -186,7 +189,7 @@ impl Wiring {
     }
 }
 
-/// Resolves the ranges of the file, smallest first; without any, the one that the sources give by themselves.
+/// Resolves the ranges of the file, smallest first; without any, the range of the strongest source at factor 1.
 pub(super) fn resolve_ranges(
     settings: &RigSettings,
     modules: &[Module],
@@ -210,7 +213,6 @@ pub(super) fn resolve_ranges(
             factor: 1.0,
             max,
             max_current: None,
-            is_selected: false,
         }]);
     }
     let each = settings.supply_range.iter();
@@ -256,7 +258,6 @@ fn resolve_range(
         factor: range.factor,
         max: Volt(range.max_v),
         max_current: Some(Ampere(range.max_ma * 1e-3)),
-        is_selected: true,
     })
 }
 

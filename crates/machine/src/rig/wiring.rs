@@ -10,10 +10,10 @@ use super::point::{
     Quantity, Switch, Thermometer,
 };
 use super::settings::{BusSettings, SafetySettings};
+use super::stroke::StrokeLimits;
 use super::supply::SupplyRange;
 use dcon::{Address, Channel, DataFormat, SlewCode, TypeCode};
 use std::collections::BTreeSet;
-use units::Span;
 
 /// Index of a line in [`Wiring::lines`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -100,25 +100,6 @@ pub struct AnalogTerminal {
     pub gain: f64,
 }
 
-/// Longest times of the strokes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct StrokeLimits {
-    /// Escapement.
-    pub escapement: Span,
-    /// Feed pusher.
-    pub pusher: Span,
-    /// Both jaws of the nest.
-    pub clamp: Span,
-    /// Probe lift.
-    pub probe_lift: Span,
-    /// Sort z.
-    pub sort_z: Span,
-    /// Gripper.
-    pub gripper: Span,
-    /// Longest travel of the sort axis.
-    pub axis: Span,
-}
-
 /// The resolved and checked rig; constant while the program runs.
 #[derive(Debug, Clone)]
 pub struct Wiring {
@@ -130,13 +111,13 @@ pub struct Wiring {
     pub bus: BusSettings,
     /// Demands of the plant on the emergency stop.
     pub safety: SafetySettings,
-    /// Longest strokes.
+    /// Longest time of each stroke.
     pub strokes: StrokeLimits,
     /// Points of the sort axis and the bins at them.
     pub axis: AxisTable,
     /// Ranges of the supply, smallest first; empty without a source.
     pub supply_ranges: Vec<SupplyRange>,
-    /// Range that the gains hold for; none for those of the file, at factor 1.
+    /// Range for which the gains hold; `None` for the gains of the file, at factor 1.
     pub supply_range: Option<SupplyRange>,
     /// Inputs of the machine, then of the fixtures, then beams.
     pub(super) digital_in: Vec<(String, Terminal)>,

@@ -44,17 +44,10 @@ impl Activity {
 
     /// Returns the stage of the test: the key of its text in the family `stage`.
     pub fn stage(self) -> Option<&'static str> {
-        match self {
-            Self::Testing(stage) => Some(stage),
-            Self::Ended
-            | Self::WaitingForSensors
-            | Self::Homing
-            | Self::Discharging
-            | Self::Calibrating
-            | Self::Running
-            | Self::ReferenceParts
-            | Self::Resting(_) => None,
-        }
+        let Self::Testing(stage) = self else {
+            return None;
+        };
+        Some(stage)
     }
 
     /// Returns the words for a view: the code with blanks, followed by the stage.

@@ -14,28 +14,15 @@ use super::catalogue::{ClearedBy, Entry, PER_PART, Reaction};
 use super::trouble::Alarm;
 use units::RigTime;
 
-/// State of a listed alarm.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Condition {
-    /// The cause is present, no person has acknowledged it.
-    Unacknowledged,
-    /// The cause is present, a person has acknowledged it.
-    Acknowledged,
-    /// The cause went away before the acknowledgement.
-    Returned,
-}
-
-impl Condition {
-    /// Every condition.
-    pub const ALL: [Self; 3] = [Self::Unacknowledged, Self::Acknowledged, Self::Returned];
-
-    /// Returns the name in files and views.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Unacknowledged => "unacknowledged",
-            Self::Acknowledged => "acknowledged",
-            Self::Returned => "returned",
-        }
+named! {
+    /// State of a listed alarm.
+    Condition {
+        /// The cause is present, no person has acknowledged it.
+        Unacknowledged = "unacknowledged",
+        /// The cause is present, a person has acknowledged it.
+        Acknowledged = "acknowledged",
+        /// The cause went away before the acknowledgement.
+        Returned = "returned",
     }
 }
 

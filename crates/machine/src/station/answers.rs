@@ -1,6 +1,8 @@
 //! Answers to orders: the station performs an order, or refuses it with the reason.
 
 use super::Station;
+use super::annunciator::ListedAlarm;
+use super::catalogue::Reaction;
 use super::orders::{Order, Refused, shelf_minutes};
 use super::packml::{self, Command, Mode, On, State};
 use super::trouble::Alarm;
@@ -95,19 +97,9 @@ impl Station {
             return Err(Refused::WrongState(command, self.machine.state));
         }
         match command {
-            Command::Reset | Command::Clear => match self.cause() {
-                Some(cause) => Err(Refused::CauseRemains(Box::new(cause.alarm.clone()))),
-                None => Ok(()),
-            },
+            Command::Reset | Command::Clear => gone(self.alarms.annunciator.still_sensed()),
             Command::Start => self.may_start(),
-            Command::Unsuspend => match self
-                .alarms
-                .annunciator
-                .stopping(super::catalogue::Reaction::Suspend)
-            {
-                Some(cause) => Err(Refused::CauseRemains(Box::new(cause.alarm.clone()))),
-                None => Ok(()),
-            },
+            Command::Unsuspend => gone(self.alarms.annunciator.stopping(Reaction::Suspend)),
             Command::Stop
             | Command::Hold
             | Command::Unhold
@@ -244,5 +236,13 @@ impl Station {
             | Command::Complete => {}
         }
         self.enter(command, now, output);
+    }
+}
+
+/// Checks that no alarm remains.
+fn gone(cause: Option<&ListedAlarm>) -> Result<(), Refused> {
+    match cause {
+        Some(cause) => Err(Refused::CauseRemains(Box::new(cause.alarm.clone()))),
+        None => Ok(()),
     }
 }

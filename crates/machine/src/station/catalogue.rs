@@ -2,8 +2,8 @@
 //!
 //! The catalogue of texts holds cause, consequence and action as attributes of the code.
 
-use crate::handling::moves::ActuatorKey;
 use crate::handling::wear::Wearing;
+use crate::rig::stroke::ActuatorKey;
 use std::fmt;
 use texts::{Args, Lang, Message};
 
@@ -84,7 +84,11 @@ macro_rules! each {
         vec![AlarmCode::$code]
     };
     ($code:ident $subject:ty) => {
-        <$subject>::ALL.map(AlarmCode::$code).to_vec()
+        <$subject>::ALL
+            .iter()
+            .copied()
+            .map(AlarmCode::$code)
+            .collect()
     };
 }
 
@@ -165,7 +169,7 @@ codes! {
     CalibrationInvalid = "calibration_invalid", Abort, Operator;
 }
 
-/// Alarms after which the station tests nothing before a new calibration.
+/// Alarms after which the station tests no part before a new calibration.
 pub const NEEDS_CALIBRATION: [AlarmCode; 2] =
     [AlarmCode::CalibrationFailed, AlarmCode::CalibrationOverdue];
 

@@ -20,7 +20,6 @@ use crate::handling::ledger::Kind;
 use crate::handling::output::Judged;
 use crate::handling::wear::{Uses, Wearing};
 use serde::Deserialize;
-use std::collections::VecDeque;
 use units::{Ohm, RigTime, Span};
 
 /// Parts judged before the reject-rate limit applies to a lot of unknown size.
@@ -138,34 +137,20 @@ impl Gates {
 impl Station {
     /// Plans a reference part next; only reference parts are judged until one agrees with its certificate.
     pub(super) fn begin_check(&mut self) {
-        let next: VecDeque<String> = self
-            .plan
-            .reference_serials
-            .first()
-            .cloned()
-            .into_iter()
-            .collect();
-        self.lot.reference_planned +=
-            next.len().saturating_sub(self.lot.reference_left.len()) as u64;
-        self.lot.gates.checking = !next.is_empty();
-        self.lot.reference_left = next;
+        let serials = &self.plan.reference_serials;
+        self.lot.plan_references(&serials[..serials.len().min(1)]);
+        self.lot.gates.checking = !serials.is_empty();
     }
 
     /// Begins a reference check that is due; raises an alarm for an expired calibration.
     pub(super) fn begin_due_check(&mut self, now: RigTime, output: &mut TurnOutput) {
         let executes = self.machine.state == State::Execute;
         assert!(executes, "a reference check outside Execute");
-        let at_us = self.plan.epoch_us + i64::try_from(now.0).unwrap_or(i64::MAX);
-        if !self.is_calibrating()
-            && self
-                .device
-                .due_at_us()
-                .is_some_and(|due_us| due_us <= at_us)
-        {
-            return output
-                .notes
-                .trouble
-                .push(AlarmCode::CalibrationOverdue.into());
+        let at_us = self.plan.wall_clock_us(now);
+        let overdue = self.device.due_at_us().is_some_and(|due| due <= at_us);
+        if overdue && !self.is_calibrating() {
+            let trouble = &mut output.notes.trouble;
+            return trouble.push(AlarmCode::CalibrationOverdue.into());
         }
         let none = self.plan.reference_serials.is_empty();
         if none || self.lot.gates.checking || self.is_calibrating() || !self.expects_more() {

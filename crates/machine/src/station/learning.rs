@@ -10,7 +10,6 @@ use crate::dut::{Calibration, Verdict};
 use crate::handling::Place;
 use crate::handling::ledger::Kind;
 use crate::instrument::act::Runner;
-use std::collections::VecDeque;
 use units::RigTime;
 
 impl Station {
@@ -21,7 +20,7 @@ impl Station {
         runner: &Runner,
     ) -> Result<(), CalibrationFault> {
         let made = Made {
-            at_us: self.plan.epoch_us + i64::try_from(now.0).unwrap_or(i64::MAX),
+            at_us: self.plan.wall_clock_us(now),
             valid_us: self.plan.valid_us,
             simulated: self.plan.simulated,
         };
@@ -32,10 +31,7 @@ impl Station {
     pub(super) fn recalibrate(&mut self) {
         self.plan.calibrated = false;
         self.referenced = false;
-        let all: VecDeque<String> = self.plan.reference_serials.iter().cloned().collect();
-        self.lot.reference_planned +=
-            all.len().saturating_sub(self.lot.reference_left.len()) as u64;
-        self.lot.reference_left = all;
+        self.lot.plan_references(&self.plan.reference_serials);
         self.device.forget_calibration();
     }
 

@@ -3,7 +3,7 @@
 //! `Station::step(now, inputs) -> TurnOutput` is a function of its state and arguments: no clock, no I/O, no `async`. The
 //! caller may call it at any time; the states hold the deadlines.
 //!
-//! The outer machine is [`packml`]; `states` performs each state, `answers` answers orders.
+//! The outer machine is [`packml`]; `states` performs its states, `answers` answers orders.
 //! 1. `Resetting`: [`crate::handling::recovery`] brings every actuator to its rest end and discharges what is found inside;
 //! 2. `Starting`: without a valid calibration probes up in the empty nest, measurements of the references;
 //! 3. `Execute`: reference parts when there is no calibration, then the lot behind its [`gates`], through the
@@ -31,7 +31,9 @@ pub mod orders;
 pub mod packml;
 mod panel;
 mod produce;
+mod resetting;
 mod safety;
+mod starting;
 mod states;
 mod timeouts;
 pub mod trouble;
@@ -42,7 +44,6 @@ use crate::guard::{Motion, Situation};
 use crate::handling::inside::Inside;
 use crate::handling::wear::Uses;
 use crate::handling::{Feeder, Ledger, Mechanism, Move};
-use crate::instrument::act::Runner;
 use crate::rig::axis::AxisTable;
 use crate::rig::image::Image;
 pub use activity::Activity;
@@ -53,6 +54,7 @@ use line::Line;
 use machine::Machine;
 use packml::{Mode, State};
 use panel::Panel;
+use starting::Start;
 use std::collections::VecDeque;
 use timeouts::Timeouts;
 use turn::{Inputs, TurnOutput};
@@ -86,16 +88,11 @@ pub struct Plan {
     pub left: Inside,
 }
 
-/// Step of `Starting`.
-#[derive(Debug)]
-enum Start {
-    /// Before the first motion.
-    Begin,
-    /// Probes rise in the empty nest.
-    Up,
-    References(Box<Runner>),
-    /// Probes go down again.
-    Down,
+impl Plan {
+    /// Returns the wall clock at `now`, microseconds since 1970 UTC.
+    fn wall_clock_us(&self, now: RigTime) -> i64 {
+        self.epoch_us + i64::try_from(now.0).unwrap_or(i64::MAX)
+    }
 }
 
 /// State of the whole station.
@@ -125,6 +122,13 @@ struct LotControl {
 }
 
 impl LotControl {
+    /// Plans these reference parts next, in place of those that were planned.
+    fn plan_references(&mut self, serials: &[String]) {
+        let more = serials.len().saturating_sub(self.reference_left.len());
+        self.reference_planned += more as u64;
+        self.reference_left = serials.iter().cloned().collect();
+    }
+
     /// Panics when an invariant of the lot is broken.
     fn check(&self) {
         let left = self.reference_left.len() as u64;
@@ -151,19 +155,14 @@ struct Alarms {
 impl Station {
     /// Returns a station before the first reading of its sensors.
     pub fn new(plan: Plan, device: Device, table: AxisTable, mechanism: Mechanism) -> Self {
-        let reference_left = if plan.calibrated {
-            VecDeque::new()
-        } else {
-            plan.reference_serials.iter().cloned().collect()
-        };
         let ledger = Ledger::after(plan.left);
         let mut station = Self {
             machine: Machine::new(plan.between_lots.unwrap_or(State::Stopped)),
             line: Line::new(Feeder::new(table), ledger, mechanism),
             lot: LotControl {
                 gates: Gates::default(),
-                reference_planned: reference_left.len() as u64,
-                reference_left,
+                reference_planned: 0,
+                reference_left: VecDeque::new(),
                 began: false,
             },
             alarms: Alarms::default(),
@@ -172,7 +171,9 @@ impl Station {
             start: Start::Begin,
             referenced: false,
         };
-        if station.plan.calibrated && station.plan.lot.reference_check.at_start {
+        if !station.plan.calibrated {
+            station.lot.plan_references(&station.plan.reference_serials);
+        } else if station.plan.lot.reference_check.at_start {
             station.begin_check();
         }
         station
@@ -282,14 +283,7 @@ impl Station {
         }
         self.line.postpone(now, &mut output);
         self.alarms.annunciator.unshelve(now);
-        output.record.alarms_changed |= self.alarms.annunciator.take_changed();
-        let stack = self.alarms.lamps.show(
-            now,
-            self.machine.state,
-            self.alarms.annunciator.listed(),
-            output.rig.safe,
-        );
-        output.rig.outputs.extend(stack);
+        self.show(now, &mut output);
         self.line.check();
         self.lot.check();
         output.check(now, ordered);

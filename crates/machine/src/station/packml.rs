@@ -8,31 +8,7 @@
 //! - A reset starts and acknowledges nothing; an acknowledgement resets nothing.
 //! - Files hold the names, never numbers.
 
-/// Declares an enum with the names that screens, orders and files use.
-macro_rules! names {
-    ($(#[$doc:meta])* $kind:ident { $($(#[$line:meta])* $variant:ident = $name:literal,)+ }) => {
-        $(#[$doc])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        pub enum $kind { $($(#[$line])* $variant,)+ }
-
-        impl $kind {
-            /// Every variant, in the order of declaration.
-            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
-
-            /// Returns the name in screens, orders and files.
-            pub const fn name(self) -> &'static str {
-                match self { $(Self::$variant => $name),+ }
-            }
-
-            /// Returns the variant of this name.
-            pub fn from_name(name: &str) -> Option<Self> {
-                Self::ALL.iter().copied().find(|one| one.name() == name)
-            }
-        }
-    };
-}
-
-names! {
+named! {
     /// State of the outer machine.
     State {
         /// Powered, outputs safe, every position unknown.
@@ -72,7 +48,7 @@ names! {
     }
 }
 
-names! {
+named! {
     /// Commands that a person or another machine may give.
     Command {
         /// Homes and empties the machine.
@@ -98,7 +74,7 @@ names! {
     }
 }
 
-names! {
+named! {
     /// Mode of use of the machine.
     Mode {
         /// Runs lots.

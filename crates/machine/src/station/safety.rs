@@ -1,7 +1,6 @@
 //! Checks of every turn in any state, and reactions to alarms.
 
 use super::Station;
-use super::annunciator::ListedAlarm;
 use super::catalogue::{self, AlarmCode, ClearedBy, Reaction};
 use super::packml::{self, Command, On, State};
 use super::trouble::Alarm;
@@ -22,6 +21,12 @@ pub(super) const FIRST_SCAN: Span = Span::ms(3000);
 /// Dark time of a beam after which its bin counts as full; a falling part darkens it for 11 ms.
 const FULL: Span = Span::ms(500);
 
+/// Safety inputs, each with the alarm of its open contact.
+const SAFETY_INPUTS: [(DigitalIn, AlarmCode); 3] = [
+    (DigitalIn::EmergencyStopOk, AlarmCode::EmergencyStop),
+    (DigitalIn::DoorClosed, AlarmCode::DoorOpen),
+    (DigitalIn::AirOk, AlarmCode::AirLost),
+];
 /// Longest time from the closing of the emergency-stop chain to full air pressure.
 const PRESSURE_RETURNS: Span = Span::ms(2000);
 
@@ -77,14 +82,9 @@ impl Station {
 
     /// Returns the alarms of the safety inputs: of an open one, and after the first scan of an unread one.
     fn safety(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
-        let inputs = [
-            (DigitalIn::EmergencyStopOk, AlarmCode::EmergencyStop),
-            (DigitalIn::DoorClosed, AlarmCode::DoorOpen),
-            (DigitalIn::AirOk, AlarmCode::AirLost),
-        ];
         let late = now.since(self.machine.began.unwrap_or(now)) > FIRST_SCAN;
         let (mut alarms, mut unread) = (Vec::new(), Vec::new());
-        for (point, code) in inputs {
+        for (point, code) in SAFETY_INPUTS {
             let seen = match point {
                 DigitalIn::EmergencyStopOk => image.emergency_stop_ok(now),
                 other => image.input(other, now, SENSOR_AGE),
@@ -166,6 +166,26 @@ impl Station {
         }
         output.notes.trouble.push(Alarm::refused(movement, refusal));
         self.raise_all(now, output);
+        self.show(now, output);
+    }
+
+    /// Lists the alarms of this turn and reacts to them; `output` keeps the new ones.
+    pub(super) fn raise_all(&mut self, now: RigTime, output: &mut TurnOutput) {
+        for alarm in std::mem::take(&mut output.notes.trouble) {
+            self.raise(alarm.clone(), now, output);
+            self.react(&alarm, now, output);
+        }
+    }
+
+    /// Lists an alarm; `output` keeps a new one.
+    pub(super) fn raise(&mut self, alarm: Alarm, now: RigTime, output: &mut TurnOutput) {
+        if self.alarms.annunciator.raise(&alarm, now) {
+            output.record.alarms.push(alarm);
+        }
+    }
+
+    /// Shows state and alarms on the stack light; notes a change of the list of alarms.
+    pub(super) fn show(&mut self, now: RigTime, output: &mut TurnOutput) {
         let listed = self.alarms.annunciator.listed();
         let stack = self
             .alarms
@@ -173,16 +193,6 @@ impl Station {
             .show(now, self.machine.state, listed, output.rig.safe);
         output.rig.outputs.extend(stack);
         output.record.alarms_changed |= self.alarms.annunciator.take_changed();
-    }
-
-    /// Lists the alarms of this turn and reacts to them; `output` keeps the new ones.
-    pub(super) fn raise_all(&mut self, now: RigTime, output: &mut TurnOutput) {
-        for alarm in std::mem::take(&mut output.notes.trouble) {
-            if self.alarms.annunciator.raise(&alarm, now) {
-                output.record.alarms.push(alarm.clone());
-            }
-            self.react(&alarm, now, output);
-        }
     }
 
     fn react(&mut self, alarm: &Alarm, now: RigTime, output: &mut TurnOutput) {
@@ -246,10 +256,7 @@ impl Station {
             if part.interrupted.is_some() && part.bin == Some(Bin::RETEST) {
                 continue;
             }
-            let why = part
-                .interrupted
-                .get_or_insert_with(|| why.to_owned())
-                .clone();
+            let why = part.interrupt(why);
             let ordinal = part.ordinal;
             if part.bin.replace(Bin::RETEST).is_some() {
                 parts.interrupted.push(Interrupted { ordinal, why });
@@ -270,20 +277,10 @@ impl Station {
         let all = self.line.ledger.held_mut().all(to_retest);
         assert!(all, "an interrupted part goes elsewhere");
     }
-
-    /// Returns the alarm whose sensor still shows its cause; it forbids clear and reset.
-    pub(super) fn cause(&self) -> Option<&ListedAlarm> {
-        self.alarms.annunciator.still_sensed()
-    }
 }
 
 /// Returns true when every safety input has a sample later than `since`.
 pub(super) fn safety_was_read(image: &Image, since: RigTime) -> bool {
-    let inputs = [
-        DigitalIn::EmergencyStopOk,
-        DigitalIn::DoorClosed,
-        DigitalIn::AirOk,
-    ];
-    let read = |point: &DigitalIn| image.input_at(*point).is_some_and(|at| at > since);
-    inputs.iter().all(read)
+    let read = |(point, _)| image.input_at(point).is_some_and(|at| at > since);
+    SAFETY_INPUTS.into_iter().all(read)
 }

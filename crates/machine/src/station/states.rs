@@ -1,24 +1,19 @@
 //! Actions of each state of the outer machine in a turn, and its end.
 
+use super::Station;
 use super::catalogue::{AlarmCode, Reaction};
 use super::packml::{self, Command, On, State};
 use super::safety::{FIRST_SCAN, safety_was_read};
+use super::starting::Start;
 use super::trouble::Alarm;
 use super::turn::{Ending, Inputs, TurnOutput};
-use super::{Start, Station};
+use crate::handling::Place;
 use crate::handling::feeder::Permits;
-use crate::handling::output::{Interrupted, Judged, NestJob};
 use crate::handling::recovery::Recovery;
-use crate::handling::{Move, NestId, Place};
-use crate::instrument::act::{Doing, Runner};
-use crate::rig::bin::Bin;
-use texts::Message;
 use units::{RigTime, Span};
 
 /// Time within which outputs must confirm their safe value; after it the abort continues with an alarm.
 const SAFE_WITHIN: Span = Span::ms(2000);
-/// Reason for a part that a reset finds inside without an earlier interruption.
-const BY_A_RESET: &str = "reset";
 /// Time after which an unattended suspension ends the run.
 const ALONE: Span = Span::ms(60_000);
 
@@ -82,10 +77,8 @@ impl Station {
         if let Some(bin) = over {
             self.line.ledger.lose(Place::Falling);
             let alarm = Alarm::beam_unread(bin);
-            if self.alarms.annunciator.raise(&alarm, now) {
-                output.record.alarms.push(alarm);
-                output.record.alarms_changed |= self.alarms.annunciator.take_changed();
-            }
+            self.raise(alarm, now, output);
+            output.record.alarms_changed |= self.alarms.annunciator.take_changed();
         }
         assert!(
             self.line.ledger.fall().is_none(),
@@ -104,7 +97,7 @@ impl Station {
     }
 
     /// Leaves a state that is complete.
-    fn done(&mut self, now: RigTime, output: &mut TurnOutput) {
+    pub(super) fn done(&mut self, now: RigTime, output: &mut TurnOutput) {
         if let Some(to) = self.machine.follow(On::Done, now) {
             self.entered(to, now, output);
         }
@@ -196,151 +189,14 @@ impl Station {
         }
     }
 
-    fn reset(&mut self, now: RigTime, inputs: Inputs, output: &mut TurnOutput) {
-        if !self.alarms.sensed {
-            return;
-        }
-        if self.line.homed {
-            return self.finish(now, inputs, output, false);
-        }
-        if self.line.recovery.drive_reset(now) {
-            self.line.mechanism.drive_reset(now);
-        }
-        let reference = &mut self.lot.reference_left;
-        let (feeder, recovery, mut turn) = self.line.at(now, &inputs, output, reference, false);
-        let home = recovery.step(&mut turn, feeder.is_releasing());
-        output.notes.take_over();
-        if home {
-            let moves = self.line.mechanism.moving().next();
-            assert_eq!(moves, None, "home while an actuator moves");
-            self.line.homed = true;
-            self.resume(now, output);
-        }
-    }
-
-    /// Resumes the sequence with the parts inside.
-    fn resume(&mut self, now: RigTime, output: &mut TurnOutput) {
-        self.line.feeder.resume(&self.line.ledger);
-        if self.lot.gates.is_checking() {
-            self.begin_check();
-        }
-        self.end_reference_run(output);
-        self.resume_gripped(now, output);
-        self.resume_nested(output);
-        output.rig.wake_at = Some(now);
-    }
-
-    /// Interrupts the part in the nest. A part with a bin was judged already and put back: it goes to retest, and its
-    /// row records the reason.
-    fn resume_nested(&mut self, output: &mut TurnOutput) {
-        let Some(part) = self.line.ledger.part_mut(Place::NEST) else {
-            return;
-        };
-        let why = part
-            .interrupted
-            .get_or_insert_with(|| BY_A_RESET.into())
-            .clone();
-        if part.bin.is_some_and(|bin| bin != Bin::RETEST) {
-            part.bin = Some(Bin::RETEST);
-            let ordinal = part.ordinal;
-            let interrupted = &mut output.record.parts.interrupted;
-            interrupted.push(Interrupted { ordinal, why });
-        }
-    }
-
-    /// Sends the part in the gripper to retest; its row records the reason.
-    fn resume_gripped(&mut self, now: RigTime, output: &mut TurnOutput) {
-        let Some(part) = self.line.ledger.part_mut(Place::Gripper) else {
-            return;
-        };
-        let is_recorded = part.interrupted.is_some();
-        let why = part
-            .interrupted
-            .get_or_insert_with(|| BY_A_RESET.into())
-            .clone();
-        if part.bin.replace(Bin::RETEST).is_none() {
-            let judged = Judged::interrupted(part.clone(), &why, now);
-            output.record.parts.judged.push(judged);
-        } else if !is_recorded {
-            let ordinal = part.ordinal;
-            let interrupted = &mut output.record.parts.interrupted;
-            interrupted.push(Interrupted { ordinal, why });
-        }
-    }
-
-    fn begin(&mut self, now: RigTime, inputs: &Inputs, output: &mut TurnOutput) {
-        if self.plan.calibrated || self.referenced {
-            return self.done(now, output);
-        }
-        match std::mem::replace(&mut self.start, Start::Begin) {
-            Start::Begin => {
-                output.rig.motions.push(Move::ProbesUp);
-                self.start = Start::Up;
-            }
-            Start::Up => {
-                let up = self
-                    .line
-                    .mechanism
-                    .has_arrived(Move::ProbesUp, now, inputs.image);
-                self.start = if up {
-                    let acts = self.device.reference_acts();
-                    Start::References(Box::new(Runner::new(acts, now)))
-                } else {
-                    Start::Up
-                };
-                output.rig.wake_at = up.then_some(now);
-            }
-            Start::References(runner) => self.measure(now, inputs, runner, output),
-            Start::Down => {
-                if self
-                    .line
-                    .mechanism
-                    .has_arrived(Move::ProbesDown, now, inputs.image)
-                {
-                    self.referenced = true;
-                    self.done(now, output);
-                } else {
-                    self.start = Start::Down;
-                }
-            }
-        }
-    }
-
-    fn measure(
+    /// Finishes the parts inside, with `push` also the part in the pocket.
+    pub(super) fn finish(
         &mut self,
         now: RigTime,
-        inputs: &Inputs,
-        mut runner: Box<Runner>,
+        inputs: Inputs,
         output: &mut TurnOutput,
+        push: bool,
     ) {
-        let done = inputs.job.as_ref().map(|job| &job.done);
-        match runner.step(now, done, inputs.image) {
-            Doing::Job(job) => {
-                let nest = NestId::FIRST;
-                output.rig.job = Some(NestJob { nest, job });
-            }
-            Doing::Wait(until) => output.rig.wake_at = Some(until),
-            Doing::Busy => {}
-            Doing::Trouble(why) => {
-                let fault = Message::new("fault", "line").with("detail", why);
-                output.notes.trouble.push(Alarm::calibration(&fault));
-            }
-            Doing::Done => {
-                if let Err(why) = self.conclude_references(now, &runner) {
-                    let alarm = Alarm::calibration(&why.message());
-                    output.notes.trouble.push(alarm);
-                    return;
-                }
-                output.rig.motions.push(Move::ProbesDown);
-                self.start = Start::Down;
-                return;
-            }
-        }
-        self.start = Start::References(runner);
-    }
-
-    /// Finishes the parts inside, with `push` also the part in the pocket.
-    fn finish(&mut self, now: RigTime, inputs: Inputs, output: &mut TurnOutput, push: bool) {
         let (state, recorded) = (self.machine.state, inputs.recorded);
         let permits = Permits {
             release: false,

@@ -41,25 +41,15 @@ pub struct Checked {
     pub text: String,
 }
 
-/// How a run ends.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Ending {
-    /// Every part was judged and binned.
-    Complete,
-    /// The operator stopped it after the parts inside.
-    Stopped,
-    /// An alarm stopped it.
-    Alarm,
-}
-
-impl Ending {
-    /// Returns the name in the summary of a run.
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Complete => "complete",
-            Self::Stopped => "stopped",
-            Self::Alarm => "alarm",
-        }
+named! {
+    /// How a run ends, by the name in its summary.
+    Ending {
+        /// Every part was judged and binned.
+        Complete = "complete",
+        /// The operator stopped it after the parts inside.
+        Stopped = "stopped",
+        /// An alarm stopped it.
+        Alarm = "alarm",
     }
 }
 

@@ -12,6 +12,7 @@ use serde::Deserialize;
 use super::probes::{Change, Pins, Supply};
 use super::specimen::{ProbeInterface, REFERENCE_C};
 use crate::truth::PartTruth;
+use crate::world::signal::vocabulary;
 use crate::world::table::table;
 pub use lot::Lot;
 
@@ -23,32 +24,23 @@ table!(
     }
 );
 
-/// Defect of a dummy.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Defect {
-    /// No connection between the pins.
-    Open,
-    /// Resistance of a short piece of wire.
-    Short,
-    /// Another value of the resistor series.
-    WrongValue,
-    /// Misoriented in the nest.
-    Misoriented,
+vocabulary! {
+    /// Defect of a dummy, with its name in the truth file.
+    Defect {
+        /// No connection between the pins.
+        Open = "open",
+        /// Resistance of a short piece of wire.
+        Short = "short",
+        /// Another value of the resistor series.
+        WrongValue = "wrong_value",
+        /// Misoriented in the nest.
+        Misoriented = "turned",
+    }
 }
 
 impl Defect {
     /// Defects that a lot draws; only a fault makes a dummy misoriented.
     pub const OF_A_LOT: &'static [Self] = &[Self::Open, Self::Short, Self::WrongValue];
-
-    /// Returns the name in the truth file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Open => "open",
-            Self::Short => "short",
-            Self::WrongValue => "wrong_value",
-            Self::Misoriented => "turned",
-        }
-    }
 }
 
 /// A dummy on the probes.

@@ -1,6 +1,7 @@
 //! Strokes that make bodies crash, and strokes that only seem to.
 
 use super::hand::{Hand, options};
+use crate::truth::WorldRecord;
 
 /// Asserts that these two bodies have crashed.
 fn assert_touched(hand: &Hand, one: &str, other: &str) {

@@ -4,6 +4,7 @@ use super::hand::{Hand, options};
 use super::resistor::{dummies, folder};
 use super::*;
 use crate::journal::{Entry, JournaledWorld};
+use crate::truth::Overdrive;
 
 /// Code, factor, volts and milliampere of each range in `config/rig.toml`.
 const RANGES: [(u8, f64, f64, f64); 4] = [

@@ -36,15 +36,6 @@ pub(super) const DIGITAL_IN: &[Key] = keys! {
 pub(super) const ACTUATOR: &[Key] = keys! {
     key("timeout_ms", above_zero(60_000.0, "ms"), "station", "longest stroke; a longer one raises an alarm");
 };
-pub(super) const ACTUATORS: &[&str] = &[
-    "escapement",
-    "pusher",
-    "clamp",
-    "probe_lift",
-    "sort_z",
-    "gripper",
-    "axis",
-];
 
 pub(super) const STATION: &[Key] = keys! {
     key("point", whole(0, 7, ""), "rig", "number in the point table of the slide");

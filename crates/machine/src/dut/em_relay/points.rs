@@ -6,13 +6,13 @@
 use crate::instrument::act::Word;
 use crate::rig::point::{
     AnalogInput, AnalogOutput, DigitalInput, DigitalOutput, Fixture, GatedCounter, MissingPoint,
-    Quantity, Switch, Thermometer, points,
+    Quantity, Switch, Thermometer,
 };
 use crate::rig::supply::{READ_BACK, RangeSelector, SELECT};
 use crate::rig::wiring::Wiring;
 use std::sync::Arc;
 
-points! {
+named! {
     /// Inputs from the interface board; `true` means that the named condition holds, whatever the polarity of the wire.
     DigitalIn {
         KelvinCoilA = "kelvin_coil_a",
@@ -29,7 +29,7 @@ points! {
     }
 }
 
-points! {
+named! {
     /// Outputs to the interface board. None of them moves anything.
     DigitalOut {
         CoilDrive = "coil_drive",
@@ -46,7 +46,7 @@ points! {
     }
 }
 
-points! {
+named! {
     /// Analog inputs that a test or its calibration reads.
     AnalogIn {
         CoilCurrent = "coil_current",
@@ -73,7 +73,7 @@ impl AnalogIn {
     }
 }
 
-points! {
+named! {
     /// The three outputs whose sum, amplified, is the coil supply.
     AnalogOut {
         SupplyLevel = "supply_level",
@@ -82,7 +82,7 @@ points! {
     }
 }
 
-points! {
+named! {
     /// Gated counters on the reference clock.
     Counter {
         Gate0 = "gate_0",

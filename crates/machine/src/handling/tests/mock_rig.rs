@@ -11,6 +11,7 @@ use crate::handling::trouble::Trouble;
 use crate::handling::turn::Turn;
 use crate::rig::image::Image;
 use crate::rig::point::{AnalogInput, DigitalIn, DigitalInput, GatedCounter, Point};
+use crate::rig::stroke::ActuatorKey;
 use crate::rig::wiring::{ModuleId, Wiring};
 use crate::station::trouble::Alarm;
 use dcon::{Bits, Command, Reply};
@@ -283,18 +284,9 @@ pub fn mechanism(wiring: &Wiring) -> Mechanism {
             .map(|at| (at, wiring.axis.point(at).x_mm))
             .collect(),
     };
-    let keys = [
-        "escapement",
-        "pusher",
-        "clamp",
-        "probe_lift",
-        "sort_z",
-        "gripper",
-        "axis",
-    ];
     let part = PartSize {
         body_mm: [22.5, 16.5, 16.5],
         pin_length_mm: 3.5,
     };
-    Mechanism::new(strokes, keys.map(|key| (key, TIMEOUT)).to_vec(), part)
+    Mechanism::new(strokes, [TIMEOUT; ActuatorKey::COUNT], part)
 }

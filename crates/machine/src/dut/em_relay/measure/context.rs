@@ -172,7 +172,7 @@ impl Context {
     /// Returns the code of the range to select; none on a rig with one range.
     pub fn range_code(&self) -> Option<u8> {
         let range = self.range.as_ref();
-        range.filter(|it| it.is_selected).map(|it| it.code)
+        range.filter(|it| it.is_selected()).map(|it| it.code)
     }
 
     /// Returns how the range that was read back differs from the selected one; none where it does not, or where no range

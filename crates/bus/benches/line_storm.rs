@@ -1,10 +1,10 @@
-//! The storm of line faults in full: `cargo bench --bench line_storm [-- TRANSACTIONS [SEED] [FAULT=VALUE]...]`.
+//! The storm of line faults in full: `cargo bench -p bus --bench line_storm [-- TRANSACTIONS [SEED] [FAULT=VALUE]...]`.
 //!
-//! Prints what the judge found, and beside it what has to be expected: two modules at one address make, now and then, a
-//! reply whose checksum is good. Ends with status 1 when anything false was believed. Without faults by name every
-//! fault rages at 1 %.
+//! Prints the counts of the judge and the expected number of wrong readings: two modules that reply at once produce, with
+//! a small probability, a frame whose checksum is right. Ends with status 1 when the line accepts a wrong reading.
+//! Without faults by name every fault has a probability of 1 %.
 
-#[path = "../tests/line/storm/rage.rs"]
+#[path = "../../../tests/line/storm/rage.rs"]
 mod rage;
 
 use dcon::{Address, AnalogIn, Channel, DataFormat, InputForm, TypeCode};
@@ -12,14 +12,14 @@ use rage::{EVERY_FAULT, Weather, rage};
 use rigsim::fault::LineFaults;
 use std::process::ExitCode;
 
-/// The bar: that many transactions without a lie.
+/// Transactions that must pass without a wrong reading.
 const TRANSACTIONS: u64 = 1_000_000;
-/// Clashes drawn to see how many pass for a reply.
+/// Draws of two replies at once, for the share that passes for one reply.
 const CLASHES: u32 = 4_000_000;
-/// Share of the transactions that ask for all inputs at once.
+/// Share of the transactions that read all inputs at once.
 const LISTS: f64 = 1.0 / 20.0;
 const FORM: InputForm = InputForm::eight(DataFormat::Hex, TypeCode(0x08));
-/// Faults that a host sees by the damage.
+/// Faults whose damage a host detects.
 const SEEN: [&str; 5] = ["truncate", "flip", "noise", "garble", "clash"];
 
 fn main() -> ExitCode {
@@ -34,13 +34,13 @@ fn main() -> ExitCode {
     let seed = numbers.get(1).copied().unwrap_or(1);
     let weather = rage(seed, transactions, &faults);
     println!("line_storm: seed {seed}, {}", faults.join(" "));
-    tell(&weather);
-    expected(weather.transactions as f64, &faults);
+    print_counts(&weather);
+    print_expected(weather.transactions as f64, &faults);
     weather.examples.iter().for_each(|lie| println!("{lie}"));
     ExitCode::from(u8::from(!weather.is_honest()))
 }
 
-fn tell(weather: &Weather) {
+fn print_counts(weather: &Weather) {
     let row = |name: &str, count: u64, bar: &str| println!("{name:<38} {count:>9}  {bar}");
     row("transactions", weather.transactions, "");
     row("believed", weather.believed, "");
@@ -60,9 +60,10 @@ fn tell(weather: &Weather) {
     );
 }
 
-/// What a host cannot tell: n transactions, a share c clashing, of which p pass; it sees a share d damaged. Of all
-/// inputs at once a share q passes within the noise of their neighbours in time.
-fn expected(n: f64, faults: &[&str]) {
+/// Prints the number of wrong readings that no host can detect, among n transactions. c: share of two replies at once; p:
+/// share of these that passes for another value; d: share of damage that the host detects; q: share of reads of all
+/// inputs at once that passes within the noise of the reads before and after.
+fn print_expected(n: f64, faults: &[&str]) {
     let channel = Channel::new(0).expect("0 is a channel");
     let (p, _) = passing(
         AnalogIn::ReadOne {
@@ -104,7 +105,7 @@ fn expected(n: f64, faults: &[&str]) {
     println!("  to be expected in all {times:.4}");
 }
 
-/// Probability of a fault that is asked for once; 0 of one that is not.
+/// Returns the probability of a fault in the list; 0 for a fault that the list lacks.
 fn chance(faults: &[&str], name: &str) -> f64 {
     let values = faults.iter().filter_map(|fault| fault.split_once('='));
     let mut own = values.filter(|(known, _)| *known == name);
@@ -112,10 +113,10 @@ fn chance(faults: &[&str], name: &str) -> f64 {
     value.unwrap_or(0.0)
 }
 
-/// Shares of clashing replies of so many digits that are read as another value, and as one that is believed between two
-/// that are whole.
-fn passing(asked: AnalogIn, digits: usize) -> (f64, f64) {
-    let command = asked.to(Address(1));
+/// Returns two shares of the replies of `digits` digits that overlap with a second one: those that decode as another
+/// value, and those among them that the line accepts between two intact replies.
+fn passing(read: AnalogIn, digits: usize) -> (f64, f64) {
+    let command = read.to(Address(1));
     let mut faults = LineFaults::none(1);
     faults.add("clash", Some("1")).expect("a known fault");
     let (mut other, mut close) = (0u32, 0u32);

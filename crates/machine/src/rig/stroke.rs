@@ -1,0 +1,46 @@
+//! Actuators by their keys in `config/rig.toml`, and the longest time of each stroke.
+
+use super::fault::Fault;
+use super::settings::ActuatorSettings;
+use std::collections::BTreeMap;
+use units::Span;
+
+named! {
+    /// Actuator of a time-out, a retry or an alarm; both jaws are one clamp.
+    ActuatorKey {
+        /// Escapement between track and pocket.
+        Escapement = "escapement",
+        /// Pusher from the pocket to the nest.
+        Pusher = "pusher",
+        /// Both jaws.
+        Clamp = "clamp",
+        /// Lift of the probes.
+        ProbeLift = "probe_lift",
+        /// Gripper up and down.
+        SortZ = "sort_z",
+        /// Fingers.
+        Gripper = "gripper",
+        /// Sort axis.
+        Axis = "axis",
+    }
+}
+
+/// Longest time of each stroke, in the order of [`ActuatorKey::ALL`].
+pub type StrokeLimits = [Span; ActuatorKey::COUNT];
+
+pub(super) fn resolve_strokes(
+    actuators: &BTreeMap<String, ActuatorSettings>,
+) -> Result<StrokeLimits, Fault> {
+    let mut limits = StrokeLimits::default();
+    for (limit, name) in limits.iter_mut().zip(ActuatorKey::NAMES) {
+        let Some(settings) = actuators.get(*name) else {
+            return Err(Fault::new(
+                format!("actuator.{name}"),
+                "nothing",
+                "a time-out",
+            ));
+        };
+        *limit = Span::seconds(settings.timeout_ms / 1000.0);
+    }
+    Ok(limits)
+}

@@ -1,0 +1,91 @@
+//! The state `Starting`: without a calibration the probes rise in the empty nest and the references are measured.
+
+use super::Station;
+use super::trouble::Alarm;
+use super::turn::{Inputs, TurnOutput};
+use crate::handling::output::NestJob;
+use crate::handling::{Move, NestId};
+use crate::instrument::act::{Doing, Runner};
+use texts::Message;
+use units::RigTime;
+
+/// Step of `Starting`.
+#[derive(Debug)]
+pub(super) enum Start {
+    /// Before the first motion.
+    Begin,
+    /// Probes rise in the empty nest.
+    Up,
+    References(Box<Runner>),
+    /// Probes go down again.
+    Down,
+}
+
+impl Station {
+    /// Performs a turn of `Starting`.
+    pub(super) fn begin(&mut self, now: RigTime, inputs: &Inputs, output: &mut TurnOutput) {
+        if self.plan.calibrated || self.referenced {
+            return self.done(now, output);
+        }
+        match std::mem::replace(&mut self.start, Start::Begin) {
+            Start::Begin => {
+                output.rig.motions.push(Move::ProbesUp);
+                self.start = Start::Up;
+            }
+            Start::Up => {
+                let up = self.has_arrived(Move::ProbesUp, now, inputs);
+                self.start = if up {
+                    let acts = self.device.reference_acts();
+                    Start::References(Box::new(Runner::new(acts, now)))
+                } else {
+                    Start::Up
+                };
+                output.rig.wake_at = up.then_some(now);
+            }
+            Start::References(runner) => self.measure(now, inputs, runner, output),
+            Start::Down if self.has_arrived(Move::ProbesDown, now, inputs) => {
+                self.referenced = true;
+                self.done(now, output);
+            }
+            Start::Down => self.start = Start::Down,
+        }
+    }
+
+    fn has_arrived(&self, movement: Move, now: RigTime, inputs: &Inputs) -> bool {
+        let mechanism = &self.line.mechanism;
+        mechanism.has_arrived(movement, now, inputs.image)
+    }
+
+    fn measure(
+        &mut self,
+        now: RigTime,
+        inputs: &Inputs,
+        mut runner: Box<Runner>,
+        output: &mut TurnOutput,
+    ) {
+        let done = inputs.job.as_ref().map(|job| &job.done);
+        match runner.step(now, done, inputs.image) {
+            Doing::Job(job) => {
+                let nest = NestId::FIRST;
+                output.rig.job = Some(NestJob { nest, job });
+            }
+            Doing::Wait(until) => output.rig.wake_at = Some(until),
+            Doing::Busy => {}
+            Doing::Trouble(why) => {
+                let fault = Message::new("fault", "line").with("detail", why);
+                output.notes.trouble.push(Alarm::calibration(&fault));
+            }
+            Doing::Done => {
+                if let Err(why) = self.conclude_references(now, &runner) {
+                    let alarm = Alarm::calibration(&why.message());
+                    output.notes.trouble.push(alarm);
+                    return;
+                }
+                output.rig.motions.push(Move::ProbesDown);
+                self.start = Start::Down;
+                return;
+            }
+        }
+        self.start = Start::References(runner);
+    }
+}

@@ -1,0 +1,71 @@
+//! Facts of the world for the record, and its faults at run time.
+
+use super::World;
+use super::fault::{Fault, Kind};
+use super::magazine::Magazine;
+use crate::config::read_world;
+use crate::error::SimError;
+use crate::truth::{BodyTruth, Overdrive, WorldRecord};
+use crate::world::WorldOptions;
+
+impl WorldRecord for World {
+    fn truth(&self) -> Vec<serde_json::Value> {
+        let truths = self.mechanism.places.truth();
+        truths
+            .into_iter()
+            .filter_map(|t| serde_json::to_value(t).ok())
+            .collect()
+    }
+
+    fn bodies(&self) -> Vec<BodyTruth> {
+        self.mechanism.bodies()
+    }
+
+    fn cancel_faults(&mut self) {
+        self.mechanism.cancel_faults();
+    }
+
+    fn motion_starts(&self) -> Vec<(u64, &'static str)> {
+        self.mechanism.motion_starts().collect()
+    }
+
+    fn crashes(&self) -> Vec<String> {
+        self.mechanism.crashes().to_vec()
+    }
+
+    fn overdrives(&self) -> &[Overdrive] {
+        self.board.overdrives()
+    }
+
+    fn inject(&mut self, name: &str, value: Option<f64>) -> Result<(), SimError> {
+        let Some(fault) = Fault::from_name(name) else {
+            return Err(SimError::UnknownFault { name: name.into() });
+        };
+        let wrong = |expected: &str| SimError::FaultValue {
+            name: name.into(),
+            found: value.map_or_else(|| "nothing".into(), |value| value.to_string()),
+            expected: expected.into(),
+        };
+        match (fault.kind(), value) {
+            (Kind::Timed, None) => self.mechanism.inject(fault, self.now_us),
+            (Kind::Timed, Some(_)) => return Err(wrong("no value, since the fault strikes now")),
+            (Kind::OfPart, Some(part)) => self.mechanism.add_part_fault(fault, part),
+            (Kind::OfPart, None) => return Err(wrong("the number of a part")),
+            (Kind::OfStart, _) => {
+                return Err(wrong(
+                    "a fault that a running rig accepts; this one applies only to the start",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn refill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
+        let table = read_world(&options.config_dir, options.world_file.as_deref())?;
+        let (track, ambient) = (self.environment.track_c, self.environment.ambient_c);
+        self.mechanism
+            .refill(|faults| Magazine::load(options, &table, faults, track, ambient))?;
+        self.mechanism_changed();
+        Ok(())
+    }
+}
