@@ -4,6 +4,7 @@
 mod fixture;
 mod plant;
 mod revision;
+mod wrong_recipes;
 
 use super::check::File;
 use super::error::ConfigError;

@@ -19,6 +19,9 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use units::Celsius;
 
+/// Highest coil voltage of a relay of this class in multiples of the nominal one.
+const HIGHEST_RAMP: f64 = 1.3;
+
 /// The sections `[part]` and `[test]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RelayRecipe {
@@ -69,7 +72,8 @@ impl KindRecipe for RelayRecipe {
         made_up::made_up(self)
     }
 
-    /// Checks that pre-bias and expected thresholds lie in their order below the nominal voltage.
+    /// Checks that pre-bias and expected thresholds lie in their order below the nominal voltage, and that the coarse ramp ends
+    /// at a voltage that the coil bears.
     ///
     /// # Errors
     /// Names the first key that does not.
@@ -100,6 +104,17 @@ impl KindRecipe for RelayRecipe {
                 let expected = format!("less than {high}, {high_v} V");
                 return Err(Fault::new(format!("test.{low}"), low_v, expected));
             }
+        }
+        let most_v = HIGHEST_RAMP * self.part.nominal_v - test.prebias_v;
+        if test.coarse_span_v > most_v {
+            let expected = format!(
+                "at most {most_v:.2} V: the ramp from test.prebias_v ends at {HIGHEST_RAMP} times nominal_v, which a coil bears"
+            );
+            return Err(Fault::new(
+                "test.coarse_span_v",
+                test.coarse_span_v,
+                expected,
+            ));
         }
         Ok(())
     }
