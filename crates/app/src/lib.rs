@@ -40,6 +40,8 @@ pub mod source;
 pub mod story;
 pub mod traces;
 #[cfg(feature = "sim")]
+pub mod truth_file;
+#[cfg(feature = "sim")]
 mod wire_ports;
 
 use admission::admit;

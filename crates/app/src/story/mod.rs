@@ -68,14 +68,14 @@ pub fn run(
         let mut both = (onlooker, outer);
         let exit = runner.run(OrderQueue::from(asked), &mut both).await?;
         drop(both);
-        let told = playing.await.ok();
-        let played = match &told {
-            Some(told) if told.complete => Exit::Done,
+        let report = playing.await.ok();
+        let played = match &report {
+            Some(report) if report.complete => Exit::Done,
             Some(_) => Exit::AnswerIsNo,
             None => Exit::Trouble(Cause::script()),
         };
         // Alarms belong to the story; a failure of the program does not.
         let own = exit.cause().is_some_and(Cause::is_program_failure);
-        Ok((told, if own { exit } else { played }))
+        Ok((report, if own { exit } else { played }))
     })
 }
