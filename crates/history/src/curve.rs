@@ -125,7 +125,7 @@ pub(super) fn insert(tx: &Transaction<'_>, part: i64, it: &CurveRecord) -> rusql
     let Some((begin_us, _)) = it.samples.first() else {
         return Ok(());
     };
-    assert!(it.step > 0.0, "{} in steps of nothing", it.signal);
+    assert!(it.step > 0.0, "{}: a step of 0", it.signal);
     tx.prepare_cached(
         "INSERT INTO curve (part_id, signal, unit, step, begin_us, samples, packed)
          VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",

@@ -320,11 +320,11 @@ fn the_book_of_lots_counts_over_runs_and_leaves_out_what_was_imported() {
         .import(&lot("C"), vec![part("C", 1, "pass", 7.0)])
         .unwrap();
     let book = file.archive().lot_book(10, 0).unwrap();
-    let told: Vec<_> = book
+    let counted: Vec<_> = book
         .iter()
         .map(|it| (it.lot.as_str(), it.runs, it.counts.parts, it.opened.0))
         .collect();
-    assert_eq!(told, [("A", 2, 4, 3), ("B", 1, 2, 2)]);
+    assert_eq!(counted, [("A", 2, 4, 3), ("B", 1, 2, 2)]);
     assert_eq!(file.archive().lot_book(1, 1).unwrap()[0].lot, "B");
 }
 

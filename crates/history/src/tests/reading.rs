@@ -2,6 +2,14 @@
 
 use super::*;
 
+fn parse_import(
+    text: &str,
+    maps: &[(String, String)],
+    parameters: &[String],
+) -> std::result::Result<Vec<ImportRow>, ImportError> {
+    parse_records(&csv::read(text)?, maps, parameters)
+}
+
 fn seqs(archive: &Archive, filter: &Filter) -> Vec<u64> {
     archive
         .query(filter)

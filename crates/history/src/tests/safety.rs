@@ -9,7 +9,7 @@ fn a_file_of_another_program_is_refused_and_left_untouched() {
         .execute_batch("CREATE TABLE invoices (id INTEGER)")
         .unwrap();
     let before = std::fs::read(&file.path).unwrap();
-    let refusal = Store::open(&file.path, &identity()).unwrap_err();
+    let refusal = Store::open(&file.path).unwrap_err();
     assert!(matches!(refusal, HistoryError::Foreign { .. }), "{refusal}");
     assert!(matches!(
         Archive::open(&file.path),
@@ -23,7 +23,7 @@ fn a_file_that_is_no_database_is_refused_and_left_untouched() {
     let file = File::new();
     let text = "this is a letter, not a database\n".repeat(100);
     std::fs::write(&file.path, &text).unwrap();
-    let refusal = Store::open(&file.path, &identity()).unwrap_err();
+    let refusal = Store::open(&file.path).unwrap_err();
     assert!(
         refusal.to_string().contains("no SQLite database"),
         "{refusal}"
@@ -38,7 +38,7 @@ fn a_newer_schema_is_refused_with_both_numbers() {
     file.by_hand()
         .pragma_update(None, "user_version", SCHEMA + 1)
         .unwrap();
-    let refusal = Store::open(&file.path, &identity()).unwrap_err();
+    let refusal = Store::open(&file.path).unwrap_err();
     assert!(matches!(refusal, HistoryError::Newer { found, known, .. } if found == known + 1));
     assert!(matches!(
         Archive::open(&file.path),
