@@ -26,7 +26,7 @@ async fn reset(orders: &mpsc::Sender<OrderRequest>) {
 
 #[test]
 fn a_part_found_between_lots_gets_its_own_lot() {
-    let mut nobody = ();
+    let mut ignored = ();
     let folder = tempfile::tempdir().unwrap();
     let (config, db) = (Path::new("../../config"), folder.path().join("history.db"));
     let plant = Plant::load(config).unwrap();
@@ -64,7 +64,7 @@ fn a_part_found_between_lots_gets_its_own_lot() {
         let mut seen = first.view.subscribe();
         let testing = |view: &View| view.judged == 1 && view.state.starts_with("testing");
         tokio::select! {
-            _ = run.run(OrderQueue::from(asked), &mut nobody) => panic!("it ended"),
+            _ = run.run(OrderQueue::from(asked), &mut ignored) => panic!("it ended"),
             () = until(&mut seen, testing) => {}
         }
     });
@@ -98,7 +98,7 @@ fn a_part_found_between_lots_gets_its_own_lot() {
             std::future::pending::<()>().await;
         };
         tokio::select! {
-            exit = run.run(OrderQueue::from(asked), &mut nobody) => exit.unwrap(),
+            exit = run.run(OrderQueue::from(asked), &mut ignored) => exit.unwrap(),
             () = person => unreachable!(),
         }
     });
