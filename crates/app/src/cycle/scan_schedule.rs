@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn a_misplaced_actuator_makes_each_reset_status_due_at_once() {
+    fn a_misplaced_actuator_makes_reset_statuses_due_at_once() {
         let resets = vec![reset(0x13), reset(0x14)];
         let mut scan_schedule = ScanSchedule::new(Some(poll(0x11)), vec![poll(0x12)], resets);
         scan_schedule.require_resets();

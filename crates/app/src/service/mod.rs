@@ -30,7 +30,7 @@ use super::order_queue::OrderQueue;
 use super::source::RigSource;
 use super::{links, lot_decision};
 #[cfg(feature = "sim")]
-use super::{simulated, simulated::LiveRig, source::Simulated};
+use super::{simulated, simulated::LiveRig};
 use anyhow::{Context, bail};
 use config::{Plant, load_recipe, recipe_names};
 use history::{Decision, Store};
@@ -200,12 +200,9 @@ impl Service {
                     simulated::load(&live.rig, &self.plant, source, order)?;
                 }
                 let now_us = i64::try_from(live.rig.now_us()).unwrap_or(i64::MAX);
-                return Ok(RigSource::Simulated(Simulated {
-                    live: Some(Box::new(LiveRig {
-                        epoch_us: live.epoch_us + now_us,
-                        ..LiveRig::clone(live)
-                    })),
-                    ..source.clone()
+                return Ok(source.clone().on(LiveRig {
+                    epoch_us: live.epoch_us + now_us,
+                    ..LiveRig::clone(live)
                 }));
             }
         }
@@ -221,15 +218,8 @@ fn with_live_rig(source: RigSource, plant: &Plant, order: &LotOrder) -> anyhow::
         RigSource::Serial(given) => RigSource::Serial(given),
         #[cfg(feature = "sim")]
         RigSource::Simulated(source) => {
-            let live = LiveRig {
-                rig: simulated::build_empty(plant, &source, order)?,
-                epoch_us: jiff::Timestamp::now().as_microsecond(),
-                calibration: None,
-            };
-            RigSource::Simulated(Simulated {
-                live: Some(Box::new(live)),
-                ..source
-            })
+            let rig = simulated::build_empty(plant, &source, order)?;
+            source.on(LiveRig::new(rig))
         }
     })
 }

@@ -4,6 +4,7 @@
 
 use super::*;
 use crate::runtime;
+use crate::source::Simulated;
 use machine::view::{By, Order, View};
 use std::sync::atomic::Ordering;
 use tokio::sync::{oneshot, watch};
@@ -41,14 +42,9 @@ fn a_part_found_between_lots_gets_its_own_lot() {
     };
     let rig = simulated::build(&plant, &drawn, &lot).unwrap();
     let source = || {
-        let live = LiveRig {
-            rig: rig.clone(),
+        drawn.clone().on(LiveRig {
             epoch_us: i64::try_from(rig.now_us()).unwrap(),
-            calibration: None,
-        };
-        RigSource::Simulated(Simulated {
-            live: Some(Box::new(live)),
-            ..drawn.clone()
+            ..LiveRig::new(rig.clone())
         })
     };
 

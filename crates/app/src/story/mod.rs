@@ -18,7 +18,7 @@ use super::lot::{LotContext, LotRunner, Purpose, Subscriber};
 use super::order::{Files, LotOrder};
 use super::order_queue::OrderQueue;
 use super::simulated::{self, LiveRig};
-use super::source::{RigSource, Simulated};
+use super::source::Simulated;
 use bus::Pace;
 use config::Plant;
 use play::Player;
@@ -43,14 +43,7 @@ pub fn run(
     let plant = Plant::load(&files.config)?;
     let recipe = admit(&files.db, &plant, order, Purpose::Lot)?;
     let live = simulated::build(&plant, &rig, order)?;
-    let source = RigSource::Simulated(Simulated {
-        live: Some(Box::new(LiveRig {
-            rig: live.clone(),
-            epoch_us: jiff::Timestamp::now().as_microsecond(),
-            calibration: None,
-        })),
-        ..rig
-    });
+    let source = rig.on(LiveRig::new(live.clone()));
     let controls = Controls::new(true);
     let runner = LotRunner {
         db: &files.db,
