@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn a_path_that_no_recipe_has_is_refused_by_name() {
+    fn an_unknown_path_is_refused_by_name() {
         for (path, expected) in [
             (
                 "limits.operate_voltage_v.hihg",

@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_of_several_kinds_holds_the_keys_of_one() {
+    fn a_file_has_the_keys_of_one_kind() {
         const ONE: Key = key("kind", Form::Choice(&["one"]), "x", "x");
         const OTHER: Key = key("kind", Form::Choice(&["other"]), "x", "x");
         let only = of_kinds("x.toml", &[[ONE]]);

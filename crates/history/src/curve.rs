@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_come_back_to_the_microsecond_and_to_half_a_step() {
+    fn samples_keep_the_microsecond_and_half_a_step() {
         let samples = [
             (1_700_000_000_000_000, Some(0.0)),
             (1_700_000_000_000_000, None),
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_blob_that_is_cut_or_grown_is_no_curve() {
+    fn a_blob_of_another_length_is_no_curve() {
         let bytes = packed(&curve(&[(0, Some(1.0)), (5_000, Some(1.5)), (9_000, None)]));
         assert!(unpacked(&bytes, 3, 1e-4).is_some());
         for length in 0..bytes.len() {

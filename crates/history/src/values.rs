@@ -108,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_come_in_order_of_their_parts_whether_these_are_close_or_far_apart() {
+    fn values_come_in_order_of_their_parts() {
         let close = vec![(7, 3.0), (5, 1.0), (9, 4.0), (6, 2.0)];
         let far = vec![(i64::MAX, 4.0), (5, 2.0), (i64::MIN, 1.0), (1 << 40, 3.0)];
         for found in [close, far] {
