@@ -19,6 +19,8 @@ mod recorder;
 mod rows;
 mod screen;
 mod summary;
+#[cfg(all(test, feature = "sim"))]
+mod tests;
 
 pub use assemble::mimic;
 pub use context::{FOUND_LOT, LotContext, Purpose};
