@@ -1,6 +1,7 @@
 //! True values of each specimen, the path of its body, crashes and overdrives: the record that judges the controller.
 
 use serde::Serialize;
+use std::fmt;
 
 use crate::error::SimError;
 use crate::world::WorldOptions;
@@ -104,6 +105,17 @@ pub struct Overdrive {
     pub range: u8,
     /// Voltage of the supply without load, V.
     pub supply_v: f64,
+}
+
+impl fmt::Display for Overdrive {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (s, volts) = (self.t_us as f64 / 1e6, self.supply_v);
+        let (range, commanded) = (self.range, self.commanded);
+        write!(
+            f,
+            "{volts:.2} V at {s:.3} s, supply range {range} in place of {commanded}"
+        )
+    }
 }
 
 /// Location of a body between magazine and bin.

@@ -7,7 +7,7 @@ use super::person;
 use anyhow::ensure;
 use app::alarm_order;
 use app::exit::Exit;
-use history::{Identity, Moment, Store, UnacknowledgedAlarm};
+use history::{Moment, Store, UnacknowledgedAlarm};
 use machine::station::orders::shelf_minutes;
 use machine::view::Order;
 use serde_json::json;
@@ -67,7 +67,7 @@ enum Action {
 
 /// Runs the command.
 pub fn run(db: &Path, args: &AlarmArgs) -> anyhow::Result<Exit> {
-    let mut store = Store::open(db, &Identity::of_this_program())?;
+    let mut store = Store::open(db)?;
     let (order, by) = match &args.action {
         Action::List { json } => {
             list(&store.unacknowledged_alarms(args.sim)?, *json)?;

@@ -43,7 +43,7 @@ pub struct CheckArgs {
 /// Runs the command and returns [`Exit::Done`] or [`Exit::AnswerIsNo`].
 ///
 /// # Errors
-/// Bad input; the caller reports the chain and exits with 2. Nothing has been written then.
+/// Fails on bad input before any output; the caller reports the chain and exits with 2.
 pub fn run(args: CheckArgs) -> anyhow::Result<Exit> {
     if !(args.range >= 0.0 && args.range.is_finite()) {
         bail!(

@@ -2,6 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use history::csv;
+use history::report::significant;
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -156,7 +157,7 @@ pub(super) struct Table {
     page: Vec<Vec<String>>,
 }
 
-/// Rows of a page.
+/// Rows that share their column widths.
 const PAGE: usize = 500;
 
 impl Table {
@@ -211,19 +212,10 @@ pub(super) fn figure(value: Option<f64>) -> String {
     let Some(value) = value else {
         return String::new();
     };
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    let before = value.abs().log10().floor();
-    if !(-5.0..9.0).contains(&before) {
-        return format!("{value:.5e}");
-    }
-    let decimals = (5.0 - before).max(0.0) as usize;
-    let text = format!("{value:.decimals$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
+    let is_plain = value == 0.0 || (-5.0..9.0).contains(&value.abs().log10().floor());
+    match is_plain {
+        true => significant(value, 6),
+        false => format!("{value:.5e}"),
     }
 }
 

@@ -2,11 +2,11 @@
 
 use anyhow::Context;
 use app::exit::Exit;
+use app::truth_file::TruthFile;
+use rigsim::Options;
 use rigsim::fault::FaultInfo;
 use rigsim::pty::{self, Rates};
-use rigsim::{Options, SharedRig};
 use serde_json::{Value, json};
-use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -144,47 +144,4 @@ fn wait(mut meanwhile: impl FnMut() -> anyhow::Result<()>) -> anyhow::Result<()>
             }
         }
     })
-}
-
-/// The file of `--truth`: a row per part, in the order of landing. Each write leaves whole rows.
-struct TruthFile<'a> {
-    path: &'a Path,
-    file: std::fs::File,
-    /// `seq` of the parts in the file.
-    written: BTreeSet<u64>,
-}
-
-impl<'a> TruthFile<'a> {
-    fn create(path: &'a Path) -> anyhow::Result<Self> {
-        let file =
-            std::fs::File::create(path).with_context(|| format!("--truth {}", path.display()))?;
-        Ok(Self {
-            path,
-            file,
-            written: BTreeSet::new(),
-        })
-    }
-
-    fn write_landed(&mut self, rig: &SharedRig) -> anyhow::Result<()> {
-        self.write(rig, |part| !part["landed_in"].is_null())
-    }
-
-    fn write_rest(&mut self, rig: &SharedRig) -> anyhow::Result<()> {
-        self.write(rig, |_| true)
-    }
-
-    fn write(&mut self, rig: &SharedRig, wanted: impl Fn(&Value) -> bool) -> anyhow::Result<()> {
-        let mut rows = String::new();
-        for part in rig.truth().into_iter().filter(|part| wanted(part)) {
-            if part["seq"]
-                .as_u64()
-                .is_some_and(|seq| self.written.insert(seq))
-            {
-                rows.push_str(&format!("{part}\n"));
-            }
-        }
-        self.file
-            .write_all(rows.as_bytes())
-            .with_context(|| format!("--truth {}", self.path.display()))
-    }
 }

@@ -8,9 +8,10 @@ use app::exit::Exit;
 use app::order::{Files, LotOrder};
 use app::source::Simulated;
 use app::story::{self, script};
+use app::truth_file::TruthFile;
 use std::fs::File;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// A script to play.
 #[derive(Debug, clap::Args)]
@@ -54,11 +55,11 @@ pub fn run(files: &Files, args: &StoryArgs) -> anyhow::Result<Exit> {
     let script = script::parse(&text).with_context(named)?;
     let journal = args
         .journal
-        .as_deref()
-        .map(|path| created("--journal", path));
+        .as_ref()
+        .map(|path| File::create(path).with_context(|| format!("--journal {}", path.display())));
     let journal = journal.transpose()?;
     if let Some(path) = &args.truth {
-        created("--truth", path)?;
+        TruthFile::create(path)?;
     }
     let lot = args.script.file_stem().unwrap_or_default();
     let order = LotOrder {
@@ -72,20 +73,16 @@ pub fn run(files: &Files, args: &StoryArgs) -> anyhow::Result<Exit> {
         truth: args.truth.clone(),
         ..Simulated::with_seed(args.seed)
     };
-    let (told, exit) = story::run(
+    let (report, exit) = story::run(
         files,
         rig,
         &order,
         (script, journal),
         &mut Terminal::quiet(),
     )?;
-    if let Some(told) = told {
+    if let Some(report) = report {
         // A closed pipe is no error.
-        std::io::stdout().write_all(told.text.as_bytes()).ok();
+        std::io::stdout().write_all(report.text.as_bytes()).ok();
     }
     Ok(exit)
-}
-
-fn created(option: &str, path: &Path) -> anyhow::Result<File> {
-    File::create(path).with_context(|| format!("{option} {}", path.display()))
 }

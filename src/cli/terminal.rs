@@ -14,7 +14,7 @@ use texts::Lang;
 /// Output on stdout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rows {
-    /// Nothing.
+    /// No output.
     None,
     /// A table when the run is over.
     Table,

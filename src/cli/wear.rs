@@ -3,7 +3,7 @@
 use super::output::Output;
 use super::person;
 use app::exit::Exit;
-use history::{Identity, Store, Wear};
+use history::{Store, Wear};
 use serde_json::json;
 use std::path::Path;
 
@@ -44,7 +44,7 @@ enum Action {
 
 /// Runs the command.
 pub fn run(db: &Path, args: &WearArgs) -> anyhow::Result<Exit> {
-    let mut store = Store::open(db, &Identity::of_this_program())?;
+    let mut store = Store::open(db)?;
     match &args.action {
         Action::List { json } => list(&store, args.sim, *json)?,
         Action::Replaced { name, by } => {

@@ -7,7 +7,7 @@ use super::order::LotOrder;
 use super::source::RigSource;
 use config::{ConfigError, Plant, load_recipe};
 use history::{
-    AlarmRecord, Archive, HistoryError, Identity, LOT_NAME, LotRecord, LotState, LotStatus, Row,
+    AlarmRecord, Archive, HistoryError, LOT_NAME, LotRecord, LotState, LotStatus, Row,
     RunEndRecord, Store, is_lot_name,
 };
 use machine::dut::Recipe;
@@ -163,7 +163,7 @@ pub fn calibration_refusal(
 /// # Errors
 /// Fails when the history cannot be written.
 pub fn refuse(db: &Path, recipe: &Recipe, order: &LotOrder, cause: &Cause) -> anyhow::Result<()> {
-    let mut store = Store::open(db, &Identity::of_this_program())?;
+    let mut store = Store::open(db)?;
     let now_us = jiff::Timestamp::now().as_microsecond();
     store.begin_lot(&LotRecord {
         lot: order.lot.clone(),

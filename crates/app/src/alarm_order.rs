@@ -1,5 +1,4 @@
-//! A person acknowledges or shelves alarms of runs that have ended: an order like those of a screen, in the audit with the
-//! name.
+//! Acknowledges or shelves alarms of ended runs on the order of a person, and records the order with the name in the audit.
 
 use anyhow::bail;
 use history::{AlarmChange, AlarmChangeRecord, OrderRecord, Row, Store};
@@ -10,7 +9,7 @@ use serde_json::json;
 /// Writes an order about alarms, and the change that it makes to them.
 ///
 /// # Errors
-/// No unacknowledged alarm has this code, or the history cannot be written.
+/// Fails when no unacknowledged alarm has this code, or the history cannot be written.
 pub fn write(store: &mut Store, simulated: bool, order: &Order, by: &By) -> anyhow::Result<()> {
     let left = store.unacknowledged_alarms(simulated)?;
     let code = order.alarm.as_ref();

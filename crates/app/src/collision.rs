@@ -18,7 +18,7 @@ pub struct MoveAnswer<'a> {
     pub t_stop: Option<f64>,
     /// Element that sets `t_stop`.
     pub blocker: Option<&'a str>,
-    /// Least distance over the whole move; `None` beyond the range of the question.
+    /// Least distance over the whole move; `None` beyond the range of the search.
     pub clearance_mm: Option<f64>,
     /// Point of the contact, mm.
     pub at: Option<[f64; 3]>,
@@ -26,7 +26,7 @@ pub struct MoveAnswer<'a> {
     pub normal: Option<[f64; 3]>,
 }
 
-/// A scene ready for questions.
+/// A loaded scene with its movers.
 pub struct LoadedScene {
     scene: Scene,
     model: Model,
@@ -38,7 +38,7 @@ impl LoadedScene {
     /// Loads a scene file, TOML or JSON by its extension.
     ///
     /// # Errors
-    /// Names the file and the path of the field.
+    /// Fails on an invalid file; the error names the file and the path of the field.
     pub fn load(path: &Path) -> anyhow::Result<Self> {
         let scene = load_scene(path)?;
         let (model, keys) = built(&scene)?;
@@ -57,7 +57,7 @@ impl LoadedScene {
     /// Reads moves, one JSON object per line.
     ///
     /// # Errors
-    /// Names the line and the path of the field.
+    /// Fails on an invalid move; the error names the line and the path of the field.
     pub fn moves(&self, text: &str) -> anyhow::Result<Vec<MoveOrder>> {
         Ok(read_moves(text, &self.scene)?)
     }

@@ -10,7 +10,6 @@
 mod commission;
 mod event;
 mod jog_preview;
-pub mod mimic;
 mod open_job;
 mod orders;
 mod profile;
@@ -34,7 +33,7 @@ use machine::instrument::act::{Job, JobDone};
 use machine::rig::drive::Outputs;
 use machine::rig::image::Image;
 use machine::rig::level::Correction;
-use machine::rig::point::DigitalIn;
+use machine::rig::point::{DigitalIn, DigitalOutput};
 use machine::rig::wiring::{LineId, Wiring};
 use machine::station::Station;
 use machine::station::catalogue::AlarmCode;
@@ -208,7 +207,7 @@ impl Cycle {
                 "line {line}, {}: {} has restarted, its outputs fell to their power-on value",
                 module.address, module.name
             );
-            self.bus_alarm.get_or_insert(Alarm::bus(&text));
+            self.note_bus_trouble(&text);
         }
         self.traffic.note_time(now);
     }
@@ -262,7 +261,7 @@ impl Cycle {
                     }
                 } else {
                     self.finish_job(job, answer.answered_at, Some(trouble.clone()));
-                    self.bus_alarm.get_or_insert(Alarm::bus(&trouble));
+                    self.note_bus_trouble(&trouble);
                 }
             }
             (Purpose::Job, trouble) => {
@@ -271,7 +270,7 @@ impl Cycle {
                     false => trouble,
                 };
                 if let Some(trouble) = trouble.as_ref().filter(|_| !refused && !is_status) {
-                    self.bus_alarm.get_or_insert(Alarm::bus(trouble));
+                    self.note_bus_trouble(trouble);
                 }
                 self.finish_job(true, answer.answered_at, trouble);
             }
@@ -280,13 +279,12 @@ impl Cycle {
                     self.lost_status = Some(trouble.clone());
                 }
                 if let Some(times) = self.timeouts.scan_failed(line, &answer.command) {
-                    self.bus_alarm
-                        .get_or_insert(Alarm::bus(&format!("{trouble}, {times} times in a row")));
+                    self.note_bus_trouble(&format!("{trouble}, {times} times in a row"));
                 }
             }
             (Purpose::Scan, None) => self.timeouts.scan_answered(line, &answer.command),
             (Purpose::Check, Some(trouble)) => {
-                self.bus_alarm.get_or_insert(Alarm::bus(&trouble));
+                self.note_bus_trouble(&trouble);
             }
             (Purpose::Check | Purpose::Heartbeat, _) => {}
         }
@@ -369,9 +367,7 @@ impl Cycle {
             }
         }
         for (point, on) in output.rig.outputs.drain(..) {
-            if let Err(needs) = self.outputs.set(point, on) {
-                self.bus_alarm.get_or_insert(Alarm::bus(&needs.to_string()));
-            }
+            self.set_output(point, on);
         }
         self.traffic.check_restarts(output.rig.restart_check);
         self.traffic
@@ -401,6 +397,17 @@ impl Cycle {
         self.traffic.dispatch(now);
     }
 
+    fn set_output(&mut self, point: impl Into<DigitalOutput>, on: bool) {
+        if let Err(needs) = self.outputs.set(point, on) {
+            self.note_bus_trouble(&needs.to_string());
+        }
+    }
+
+    /// Keeps the first bus trouble of the turn for the station.
+    fn note_bus_trouble(&mut self, detail: &str) {
+        self.bus_alarm.get_or_insert_with(|| Alarm::bus(detail));
+    }
+
     fn is_measuring(&self, line: LineId) -> bool {
         self.traffic.measuring_lines().contains(&line)
     }
@@ -411,17 +418,14 @@ impl Cycle {
         let commands = match job {
             Job::Set(outputs) => {
                 for (point, on) in outputs {
-                    if let Err(needs) = self.outputs.set(point, on) {
-                        self.bus_alarm.get_or_insert(Alarm::bus(&needs.to_string()));
-                    }
+                    self.set_output(point, on);
                 }
                 Vec::new()
             }
             Job::Level(outputs) => {
                 for (output, volts) in outputs {
                     if let Err(cannot) = self.outputs.set_supply(output, volts, Correction::NONE) {
-                        self.bus_alarm
-                            .get_or_insert(Alarm::bus(&cannot.to_string()));
+                        self.note_bus_trouble(&cannot.to_string());
                     }
                 }
                 Vec::new()

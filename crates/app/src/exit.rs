@@ -113,7 +113,7 @@ mod tests {
     use machine::station::catalogue::AlarmCode;
 
     #[test]
-    fn only_trouble_has_a_cause_and_every_end_its_status() {
+    fn only_trouble_has_a_cause() {
         let cause = Cause::from(&AlarmCode::PartNotArrived.into());
         assert_eq!(cause.code, "part_not_arrived");
         let trouble = Exit::Trouble(cause);

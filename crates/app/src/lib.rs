@@ -39,6 +39,8 @@ pub mod source;
 #[cfg(feature = "sim")]
 pub mod story;
 pub mod traces;
+#[cfg(feature = "sim")]
+pub mod truth_file;
 
 use admission::admit;
 use anyhow::Context;

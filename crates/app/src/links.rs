@@ -3,7 +3,7 @@
 use super::lot::LotContext;
 use super::source::{LinePort, RigSource};
 #[cfg(feature = "sim")]
-use super::{simulated, source::Simulated};
+use super::{simulated, source::Simulated, truth_file::TruthFile};
 use crate::cycle::LineEnds;
 use anyhow::anyhow;
 use bus::{LineLog, LineSettings, OpenPort, Pace};
@@ -44,7 +44,7 @@ impl Lines {
         Box::new(|| None)
     }
 
-    /// Writes the truth file of a simulated rig and logs collisions.
+    /// Writes the truth file of a simulated rig; logs collisions and overdriven coils.
     ///
     /// # Errors
     /// Fails when the file cannot be written.
@@ -55,12 +55,13 @@ impl Lines {
             RigSource::Simulated(simulated) => {
                 let Some(rig) = &self.rig else { return Ok(()) };
                 if let Some(path) = &simulated.truth {
-                    let lines: String = rig.truth().iter().map(|it| format!("{it}\n")).collect();
-                    std::fs::write(path, lines)
-                        .map_err(|error| anyhow!("--truth {}: {error}", path.display()))?;
+                    TruthFile::create(path)?.write_rest(rig)?;
                 }
                 for crash in rig.crashes() {
                     tracing::error!("bodies touched: {crash}");
+                }
+                for overdrive in rig.overdrives() {
+                    tracing::error!("coil overdriven: {overdrive}");
                 }
             }
         }

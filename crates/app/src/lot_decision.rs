@@ -1,7 +1,7 @@
 //! Writes a person's decision to hold, release or close a lot that is not under way; the audit keeps it with the name,
 //! like an order at a screen.
 
-use history::{Decision, HistoryError, Identity, LotStateRecord, OrderRecord, Row, Store};
+use history::{Decision, HistoryError, LotStateRecord, OrderRecord, Row, Store};
 use machine::view::{By, Order};
 use serde_json::json;
 use std::path::Path;
@@ -12,7 +12,7 @@ use std::path::Path;
 /// Fails when the history cannot be written.
 pub fn write(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<(), HistoryError> {
     let rows = [audit(order, by), state(order, by, decision)];
-    Store::open(db, &Identity::of_this_program())?.record(&rows)
+    Store::open(db)?.record(&rows)
 }
 
 /// Returns the audit row of an order outside a run.

@@ -17,6 +17,17 @@ pub struct LiveRig {
     pub calibration: Option<Calibration>,
 }
 
+impl LiveRig {
+    /// Returns a rig without calibration whose rig time zero is now.
+    pub fn new(rig: SharedRig) -> Self {
+        Self {
+            rig,
+            epoch_us: jiff::Timestamp::now().as_microsecond(),
+            calibration: None,
+        }
+    }
+}
+
 /// Returns the source's faults, and the one that loads reference parts as often as the lot's checks need them.
 fn faults(plant: &Plant, source: &Simulated) -> Vec<String> {
     let mut faults = source.faults.clone();

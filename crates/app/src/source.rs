@@ -67,6 +67,14 @@ impl Simulated {
             live: None,
         }
     }
+
+    /// Returns the source of a run on `live`, which the run neither builds nor drops.
+    pub fn on(self, live: LiveRig) -> RigSource {
+        RigSource::Simulated(Self {
+            live: Some(Box::new(live)),
+            ..self
+        })
+    }
 }
 
 impl RigSource {

@@ -4,7 +4,7 @@
 //! a [`Fault`].
 
 use super::error::ConfigError;
-use super::nearest::nearest;
+use super::nearest::{nearest, suggestion};
 use super::tree::{Node, Value};
 use machine::form::{Form, Key, Points, Range};
 use machine::rig::fault::Fault;
@@ -22,7 +22,7 @@ pub struct File {
 }
 
 impl File {
-    /// Fails for the first key that `keys` does not allow or that is missing.
+    /// Checks every key; fails for the first one that is missing or that `keys` does not allow.
     pub fn check(&self, keys: &[Key]) -> Result<(), ConfigError> {
         self.table("", &self.root, keys)
     }
@@ -49,10 +49,14 @@ impl File {
     }
 
     fn value_error(&self, path: &str, found: String, expected: String) -> ConfigError {
+        self.error_at(path, self.label(path), found, expected)
+    }
+
+    fn error_at(&self, path: &str, key: String, found: String, expected: String) -> ConfigError {
         ConfigError::Value {
             file: self.path.clone(),
             line: self.root.find(path).0.line,
-            key: self.label(path),
+            key,
             found,
             expected,
         }
@@ -186,41 +190,23 @@ impl File {
         count: usize,
         range: &Range,
     ) -> Result<(), ConfigError> {
-        match &node.value {
-            Value::List(items) if items.len() == count => {
-                self.list(path, node, &Form::Number(*range))
-            }
-            Value::List(_)
-            | Value::Text(_)
-            | Value::Whole(_)
-            | Value::Number(_)
-            | Value::Flag(_)
-            | Value::Date(_)
-            | Value::Table(_) => Err(self.value_error(
-                path,
-                node.describe(),
-                Form::Numbers(count, *range).expected(),
-            )),
+        if !matches!(&node.value, Value::List(items) if items.len() == count) {
+            let expected = Form::Numbers(count, *range).expected();
+            return Err(self.value_error(path, node.describe(), expected));
         }
+        self.list(path, node, &Form::Number(*range))
     }
 
     fn entries<'a>(&self, path: &str, node: &'a Node) -> Result<&'a [(String, Node)], ConfigError> {
-        match &node.value {
-            Value::Table(entries) => Ok(entries),
-            Value::Text(_)
-            | Value::Whole(_)
-            | Value::Number(_)
-            | Value::Flag(_)
-            | Value::Date(_)
-            | Value::List(_) => Err(self.value_error(path, node.describe(), "a table".to_owned())),
-        }
+        let Value::Table(entries) = &node.value else {
+            return Err(self.value_error(path, node.describe(), "a table".to_owned()));
+        };
+        Ok(entries)
     }
 
     fn unknown(&self, path: &str, name: &str, known: &[&str]) -> ConfigError {
-        let expected = match nearest(name, known) {
-            Some(near) => format!("\"{near}\"?"),
-            None => format!("one of {}", known.join(", ")),
-        };
+        let expected =
+            nearest(name, known).map_or_else(|| format!("one of {}", known.join(", ")), suggestion);
         self.value_error(&join(path, name), "an unknown key".to_owned(), expected)
     }
 
@@ -231,13 +217,7 @@ impl File {
         } else {
             self.label(&own)
         };
-        ConfigError::Value {
-            file: self.path.clone(),
-            line: self.root.find(path).0.line,
-            key,
-            found: "nothing".to_owned(),
-            expected: form.expected(),
-        }
+        self.error_at(path, key, "nothing".to_owned(), form.expected())
     }
 }
 

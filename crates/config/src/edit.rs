@@ -2,7 +2,7 @@
 
 use super::check::File;
 use super::error::ConfigError;
-use super::nearest::nearest;
+use super::nearest::{nearest, suggestion};
 use super::sheet::{Entry, Field, fields};
 use machine::rig::fault::Fault;
 use serde_json::Value as NewValue;
@@ -49,10 +49,7 @@ fn known<'a>(file: &File, fields: &'a [Field], path: &str) -> Result<&'a Field, 
     let found = fields.iter().find(|it| it.path == path);
     found.ok_or_else(|| {
         let paths: Vec<&str> = fields.iter().map(|it| it.path.as_str()).collect();
-        let expected = match nearest(path, &paths) {
-            Some(near) => format!("\"{near}\"?"),
-            None => "a key of a recipe".to_owned(),
-        };
+        let expected = nearest(path, &paths).map_or("a key of a recipe".to_owned(), suggestion);
         let path: String = path.chars().take(100).collect();
         file.locate(&Fault::new(path, "an unknown key", expected))
     })
@@ -191,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn a_path_that_no_recipe_has_is_refused_by_name() {
+    fn an_unknown_path_is_refused_by_name() {
         for (path, expected) in [
             (
                 "limits.operate_voltage_v.hihg",

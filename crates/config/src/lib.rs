@@ -22,6 +22,7 @@ pub mod error;
 pub mod keys;
 mod lot;
 pub mod nearest;
+mod overview;
 pub mod plant;
 #[cfg(test)]
 pub(crate) mod readme;
@@ -36,6 +37,7 @@ mod tests;
 
 pub use card::load_card;
 pub use error::ConfigError;
+pub use overview::overview;
 pub use plant::Plant;
 pub use recipes::{load_recipe, recipe_names};
 pub use revision::{Change, Revision, revise, revision};

@@ -13,6 +13,11 @@ pub fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
         .map(|(_, candidate)| candidate)
 }
 
+/// Returns the suggestion of a message: the nearest word as a question.
+pub(super) fn suggestion(near: &str) -> String {
+    format!("\"{near}\"?")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

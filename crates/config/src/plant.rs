@@ -52,7 +52,7 @@ struct GaugeSections {
 }
 
 impl Plant {
-    /// Reads and checks the files of `dir`. Nothing is opened or moved.
+    /// Reads and checks the files of `dir`; opens no port and moves no actuator.
     ///
     /// # Errors
     /// The first fault, with file, line, key, what was found and what was expected.
@@ -80,10 +80,8 @@ impl Plant {
             rig_text: rig.text,
         })
     }
-}
 
-impl Plant {
-    /// Returns what a kind of device needs to know of the plant.
+    /// Returns the wiring, references and accuracies that a kind of device measures with.
     pub fn rig(&self) -> Rig<'_> {
         Rig {
             wiring: &self.wiring,
@@ -135,7 +133,11 @@ impl File {
     pub fn parse(path: PathBuf, text: String) -> Result<Self, ConfigError> {
         match Node::parse(&text) {
             Ok(root) => Ok(Self { path, text, root }),
-            Err(fault) => Err(syntax(path, fault)),
+            Err(NotToml { line, problem }) => Err(ConfigError::Syntax {
+                file: path,
+                line,
+                problem,
+            }),
         }
     }
 
@@ -143,14 +145,6 @@ impl File {
     pub fn settings<T: DeserializeOwned>(&self, keys: &[Key]) -> Result<T, ConfigError> {
         self.check(keys)?;
         toml::from_str(&self.text).map_err(|error| self.type_mismatch(&error))
-    }
-}
-
-fn syntax(file: PathBuf, fault: NotToml) -> ConfigError {
-    ConfigError::Syntax {
-        file,
-        line: fault.line,
-        problem: fault.problem,
     }
 }
 

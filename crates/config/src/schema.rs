@@ -1,15 +1,38 @@
 //! JSON schema (draft 2020-12) of a configuration file, from the tables that loading uses.
 
+use super::keys;
+use machine::dut::Kind;
 use machine::form::{Form, Key, Range};
 use serde_json::{Map, Value, json};
 
+/// Files with a schema, by name without ending.
+pub const FILES: [&str; 5] = ["rig", "golden", "recipe", "card", "lot"];
+
+/// Returns the schema of a file of [`FILES`]; `None` for another name.
+pub fn of_file(name: &str) -> Option<Value> {
+    let keys = match name {
+        "rig" => keys::rig::FILE,
+        "golden" => keys::golden::FILE,
+        "card" => keys::card::FILE,
+        "lot" => keys::lot::FILE,
+        "recipe" => {
+            return Some(of_kinds(
+                "recipes/NAME.toml",
+                &Kind::ALL.map(keys::recipe::of),
+            ));
+        }
+        _ => return None,
+    };
+    Some(schema(&format!("{name}.toml"), keys))
+}
+
 /// Returns the schema of a file with these keys.
-pub fn schema(title: &str, keys: &[Key]) -> Value {
+fn schema(title: &str, keys: &[Key]) -> Value {
     titled(title, table(keys))
 }
 
 /// Returns the schema of a file whose keys depend on its `kind`.
-pub fn of_kinds(title: &str, kinds: &[impl AsRef<[Key]>]) -> Value {
+fn of_kinds(title: &str, kinds: &[impl AsRef<[Key]>]) -> Value {
     if let [only] = kinds {
         return schema(title, only.as_ref());
     }
@@ -110,7 +133,6 @@ fn number(range: &Range) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::keys;
     use machine::form::key;
 
     #[test]
@@ -134,7 +156,15 @@ mod tests {
     }
 
     #[test]
-    fn a_file_of_several_kinds_holds_the_keys_of_one() {
+    fn every_known_file_and_no_other_has_a_schema() {
+        assert!(FILES.iter().all(|name| of_file(name).is_some()));
+        let recipe = of_file("recipe").map(|it| it.to_string());
+        assert!(recipe.is_some_and(|it| it.contains("expected_operate_sd_v")));
+        assert_eq!(of_file("sim"), None);
+    }
+
+    #[test]
+    fn a_file_has_the_keys_of_one_kind() {
         const ONE: Key = key("kind", Form::Choice(&["one"]), "x", "x");
         const OTHER: Key = key("kind", Form::Choice(&["other"]), "x", "x");
         let only = of_kinds("x.toml", &[[ONE]]);

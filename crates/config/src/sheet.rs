@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn every_key_of_a_recipe_is_a_field_with_the_value_of_the_file() {
+    fn every_recipe_key_is_a_field_with_its_value() {
         let text = include_str!("../../../config/recipes/jzc-22f-012.toml");
         let file = File::parse("r.toml".into(), text.to_owned()).unwrap();
         let fields = fields(&file).unwrap();

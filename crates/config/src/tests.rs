@@ -93,7 +93,7 @@ fn the_default_rig_and_its_recipes_are_accepted() {
 }
 
 #[test]
-fn a_channel_that_the_module_does_not_have_is_refused() {
+fn a_channel_beyond_the_module_is_refused() {
     refused(
         "coil_voltage      = { module = \"coil_ai\", channel = 0",
         "coil_voltage      = { module = \"coil_ai\", channel = 9",
@@ -114,7 +114,7 @@ fn an_unknown_module_is_refused_with_the_known_ones() {
 }
 
 #[test]
-fn an_address_used_twice_on_a_line_is_refused_with_both_lines() {
+fn a_duplicate_address_is_refused_with_both_lines() {
     let text = changed(RIG, "address = \"12\"", "address = \"11\"");
     let message = rig(&text).unwrap_err().to_string();
     let expected = format!(
@@ -127,7 +127,7 @@ fn an_address_used_twice_on_a_line_is_refused_with_both_lines() {
 }
 
 #[test]
-fn two_points_on_one_terminal_are_refused_with_both_names() {
+fn two_points_on_one_terminal_are_refused_by_name() {
     let line = line_of(RIG, "emergency_stop_ok =");
     refused(
         "door_closed       = { module = \"mech_di_a\", channel = 1,",
@@ -141,7 +141,7 @@ fn two_points_on_one_terminal_are_refused_with_both_names() {
 }
 
 #[test]
-fn a_point_on_the_wrong_kind_of_module_is_refused() {
+fn a_point_on_an_unfit_module_is_refused() {
     refused(
         "button_stop       = { module = \"mech_di_b\"",
         "button_stop       = { module = \"mech_do_b\"",
@@ -161,7 +161,7 @@ fn a_missing_point_is_refused() {
 }
 
 #[test]
-fn a_mistyped_key_is_refused_with_the_nearest_known_one() {
+fn a_mistyped_key_is_refused_with_its_neighbour() {
     refused(
         "tries = 3 ",
         "trys = 3 ",
@@ -177,7 +177,7 @@ fn a_mistyped_key_is_refused_with_the_nearest_known_one() {
 }
 
 #[test]
-fn a_mistyped_point_is_refused_with_the_nearest_known_one() {
+fn a_mistyped_point_is_refused_with_its_neighbour() {
     for (from, to, near) in [
         ("air_ok            =", "air_oki           =", "air_ok"),
         ("latch             =", "lach              =", "latch"),
@@ -276,7 +276,7 @@ fn settings_that_do_not_fit_the_model_are_refused() {
 }
 
 #[test]
-fn a_limit_whose_low_side_is_above_its_high_side_is_refused() {
+fn a_low_limit_above_the_high_one_is_refused() {
     refused_recipe(
         "coil_resistance_ohm = { low = 360.0, high = 440.0 }",
         "coil_resistance_ohm = { low = 460.0, high = 440.0 }",
@@ -309,7 +309,7 @@ fn a_recipe_without_a_known_kind_is_refused_first() {
 }
 
 #[test]
-fn two_bins_at_one_point_of_the_axis_are_refused() {
+fn two_bins_at_one_axis_point_are_refused() {
     let line = line_of(RIG, "pass    =");
     refused(
         "coil    = { point = 3,",
@@ -379,7 +379,7 @@ fn a_plant_that_cannot_stop_in_time_is_refused() {
 }
 
 #[test]
-fn a_text_that_is_no_toml_is_refused_with_its_line() {
+fn invalid_toml_is_refused_with_its_line() {
     let text = changed(RIG, "[safety]", "[safety");
     let message = rig(&text).unwrap_err().to_string();
     let start = format!("config/rig.toml:{}: ", line_of(RIG, "[safety]"));

@@ -3,7 +3,6 @@
 //! Tables keep the order of the file. A path leads from the root to a value: `module.rtd.type`, or `golden.1.serial` with
 //! list items numbered from 0.
 
-use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -85,28 +84,28 @@ impl Node {
 
     /// Returns the path of the last value that begins at or before `line`; empty for the root.
     pub fn path_at(&self, line: usize) -> String {
-        let named: Vec<(String, &Node)> = match &self.value {
-            Value::Table(entries) => entries
-                .iter()
-                .map(|(name, node)| (name.clone(), node))
-                .collect(),
-            Value::List(items) => items
-                .iter()
-                .enumerate()
-                .map(|(at, node)| (at.to_string(), node))
-                .collect(),
+        let found = match &self.value {
+            Value::Table(entries) => {
+                let mut named = entries.iter().map(|(name, node)| (name.clone(), node));
+                named.rfind(|(_, node)| node.line <= line)
+            }
+            Value::List(items) => {
+                let mut numbered = items.iter().enumerate();
+                let found = numbered.rfind(|(_, node)| node.line <= line);
+                found.map(|(at, node)| (at.to_string(), node))
+            }
             Value::Text(_)
             | Value::Whole(_)
             | Value::Number(_)
             | Value::Flag(_)
-            | Value::Date(_) => Vec::new(),
+            | Value::Date(_) => None,
         };
-        match named.iter().rfind(|(_, node)| node.line <= line) {
-            Some((name, node)) => match node.path_at(line).as_str() {
-                "" => name.clone(),
-                deeper => format!("{name}.{deeper}"),
-            },
-            None => String::new(),
+        let Some((name, node)) = found else {
+            return String::new();
+        };
+        match node.path_at(line).as_str() {
+            "" => name,
+            deeper => format!("{name}.{deeper}"),
         }
     }
 
@@ -156,15 +155,11 @@ impl LineTable {
         self.0.partition_point(|start| *start <= offset)
     }
 
-    fn start(&self, span: Range<usize>) -> usize {
-        self.line(span.start)
-    }
-
     fn table(&self, table: &DeTable<'_>) -> Value {
         let mut entries: Vec<_> = table
             .iter()
             .map(|(key, value)| {
-                let line = self.start(key.span());
+                let line = self.line(key.span().start);
                 (
                     key.span().start,
                     key.get_ref().to_string(),
@@ -195,7 +190,7 @@ impl LineTable {
                 items
                     .iter()
                     .map(|item| Node {
-                        line: self.start(item.span()),
+                        line: self.line(item.span().start),
                         value: self.value(item),
                     })
                     .collect(),

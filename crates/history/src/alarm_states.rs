@@ -43,7 +43,7 @@ pub struct AlarmChangeRecord {
     pub change: AlarmChange,
 }
 
-/// An alarm that nobody has acknowledged.
+/// Unacknowledged occurrences of an alarm.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnacknowledgedAlarm {
     /// Code of the alarm.
@@ -99,7 +99,7 @@ pub(super) fn change(tx: &Transaction<'_>, it: &AlarmChangeRecord) -> Result<()>
             params![it.code, it.simulated, until_us, by, reason],
         ),
     };
-    made.doing("recording what became of an alarm")?;
+    made.doing("recording a change of an alarm")?;
     Ok(())
 }
 
@@ -128,6 +128,6 @@ fn left(connection: &Connection, simulated: bool) -> rusqlite::Result<Vec<Unackn
 impl Store {
     /// Returns the unacknowledged alarms of a rig, one per code, oldest first.
     pub fn unacknowledged_alarms(&self, simulated: bool) -> Result<Vec<UnacknowledgedAlarm>> {
-        left(self.connection(), simulated).doing("reading alarms that nobody has seen")
+        left(self.connection(), simulated).doing("reading unacknowledged alarms")
     }
 }

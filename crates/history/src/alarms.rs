@@ -3,7 +3,6 @@
 use super::error::{Doing, Result};
 use super::{Archive, Filter, Moment};
 use machine::station::catalogue::AlarmCode;
-use rusqlite::params_from_iter;
 use serde::Serialize;
 use texts::{Args, Lang};
 
@@ -85,10 +84,7 @@ pub(super) fn args(stored: Option<serde_json::Value>) -> Args {
 impl Archive {
     /// Returns the alarms of the selected runs (lot, run, recipe) and span in order of time, one page.
     pub fn alarms(&self, filter: &Filter) -> Result<Vec<Alarm>> {
-        const DOING: &str = "reading alarms";
-        let select = filter.alarms();
-        let mut statement = self.connection.prepare(&select.sql).doing(DOING)?;
-        let rows = statement.query_map(params_from_iter(&select.values), |row| {
+        let alarms = filter.alarms().rows(&self.connection, |row| {
             let moment = |column: usize| {
                 let at: rusqlite::Result<Option<i64>> = row.get(column);
                 at.map(|it| it.map(Moment))
@@ -120,6 +116,6 @@ impl Archive {
                 state: AlarmState::of(cleared, acknowledged),
             })
         });
-        rows.and_then(Iterator::collect).doing(DOING)
+        alarms.doing("reading alarms")
     }
 }

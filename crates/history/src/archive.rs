@@ -72,23 +72,18 @@ impl Archive {
 
     /// Counts the selected parts.
     pub fn count_parts(&self, filter: &Filter) -> Result<u64> {
-        let select = filter.count();
-        self.connection
-            .prepare(&select.sql)
-            .and_then(|mut it| it.query_row(params_from_iter(&select.values), |row| row.get(0)))
+        filter
+            .count()
+            .first(&self.connection, |row| row.get(0))
             .map(i64::unsigned_abs)
             .doing("counting parts")
     }
 
     /// Returns the cycle times of the selected parts, s, unordered.
     pub fn cycles(&self, filter: &Filter) -> Result<Vec<f64>> {
-        let select = filter.cycles();
-        self.connection
-            .prepare(&select.sql)
-            .and_then(|mut it| {
-                it.query_map(params_from_iter(&select.values), |row| row.get(0))?
-                    .collect()
-            })
+        filter
+            .cycles()
+            .rows(&self.connection, |row| row.get(0))
             .doing("reading cycle times")
     }
 
@@ -104,21 +99,14 @@ impl Archive {
         select.sql = select
             .sql
             .replace(" ORDER BY", &format!(" AND part.seq = {seq} ORDER BY"));
-        let mut parts = self.shown(&select).doing("reading a part")?;
-        for part in &mut parts {
-            part.curves = self.curves(part)?;
-        }
-        Ok(parts)
-    }
-
-    fn shown(&self, select: &super::filter::Select) -> rusqlite::Result<Vec<Part>> {
-        let mut statement = self.connection.prepare(&select.sql)?;
-        let mut rows = statement.query(params_from_iter(&select.values))?;
-        let mut parts = Vec::new();
-        while let Some(row) = rows.next()? {
+        let parts = select.rows(&self.connection, |row| {
             let mut part = self.part(row)?;
             part.measurements = self.measurements(part.row)?;
-            parts.push(part);
+            Ok(part)
+        });
+        let mut parts = parts.doing("reading a part")?;
+        for part in &mut parts {
+            part.curves = self.curves(part)?;
         }
         Ok(parts)
     }

@@ -79,7 +79,7 @@ impl Archive {
             None => Ok(()),
             Some(row) => {
                 let table: String = row.get(0).doing(DOING)?;
-                damaged(format!("a row of {table} refers to nothing"))
+                damaged(format!("a row of {table} refers to a missing row"))
             }
         }
     }

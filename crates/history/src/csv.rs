@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_that_looks_like_a_formula_is_made_harmless_and_comes_back_as_typed() {
+    fn a_formula_is_escaped_and_comes_back_as_typed() {
         let attacks = [
             "=cmd|' /C calc'!A0",
             "+1",
@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn unix_lines_and_a_missing_last_line_end_are_fine() {
+    fn unix_lines_and_an_open_end_are_accepted() {
         let back = read("a,b\n1,2\n\n3,4").unwrap();
         assert_eq!(back.len(), 3);
         assert_eq!(

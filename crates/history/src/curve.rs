@@ -125,7 +125,7 @@ pub(super) fn insert(tx: &Transaction<'_>, part: i64, it: &CurveRecord) -> rusql
     let Some((begin_us, _)) = it.samples.first() else {
         return Ok(());
     };
-    assert!(it.step > 0.0, "{} in steps of nothing", it.signal);
+    assert!(it.step > 0.0, "{}: a step of 0", it.signal);
     tx.prepare_cached(
         "INSERT INTO curve (part_id, signal, unit, step, begin_us, samples, packed)
          VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_come_back_to_the_microsecond_and_to_half_a_step() {
+    fn samples_keep_the_microsecond_and_half_a_step() {
         let samples = [
             (1_700_000_000_000_000, Some(0.0)),
             (1_700_000_000_000_000, None),
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_blob_that_is_cut_or_grown_is_no_curve() {
+    fn a_blob_of_another_length_is_no_curve() {
         let bytes = packed(&curve(&[(0, Some(1.0)), (5_000, Some(1.5)), (9_000, None)]));
         assert!(unpacked(&bytes, 3, 1e-4).is_some());
         for length in 0..bytes.len() {

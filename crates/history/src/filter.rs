@@ -9,6 +9,7 @@ mod related;
 use super::Moment;
 use super::gates::SUSPECT;
 use rusqlite::types::Value;
+use rusqlite::{Connection, Row, params_from_iter};
 use serde::Deserialize;
 
 /// Selection of parts; an absent member does not restrict.
@@ -55,6 +56,36 @@ pub(super) struct Select {
 }
 
 impl Select {
+    fn new(sql: impl Into<String>) -> Self {
+        Self {
+            sql: sql.into(),
+            values: Vec::new(),
+        }
+    }
+
+    /// Returns all rows as `read` converts them.
+    pub fn rows<T>(
+        &self,
+        connection: &Connection,
+        read: impl FnMut(&Row<'_>) -> rusqlite::Result<T>,
+    ) -> rusqlite::Result<Vec<T>> {
+        connection
+            .prepare(&self.sql)?
+            .query_map(params_from_iter(&self.values), read)?
+            .collect()
+    }
+
+    /// Returns the first row as `read` converts it.
+    pub fn first<T>(
+        &self,
+        connection: &Connection,
+        read: impl FnOnce(&Row<'_>) -> rusqlite::Result<T>,
+    ) -> rusqlite::Result<T> {
+        connection
+            .prepare(&self.sql)?
+            .query_row(params_from_iter(&self.values), read)
+    }
+
     fn add(&mut self, sql: &str, value: impl Into<Value>) {
         self.sql.push_str(sql);
         self.values.push(value.into());
@@ -121,10 +152,7 @@ impl Filter {
                 }
             }
             None => {
-                let mut select = Select {
-                    sql: format!("SELECT {COLUMNS} FROM part WHERE 1"),
-                    values: Vec::new(),
-                };
+                let mut select = Select::new(format!("SELECT {COLUMNS} FROM part WHERE 1"));
                 self.run_conditions(&mut select, "part");
                 select
             }
@@ -185,10 +213,8 @@ impl Filter {
 
     /// Selects the known cycle times.
     pub(super) fn cycles(&self) -> Select {
-        let mut select = Select {
-            sql: "SELECT part.cycle_s FROM part WHERE part.cycle_s IS NOT NULL".to_owned(),
-            values: Vec::new(),
-        };
+        let mut select =
+            Select::new("SELECT part.cycle_s FROM part WHERE part.cycle_s IS NOT NULL");
         self.run_conditions(&mut select, "part");
         self.part_conditions(&mut select, false);
         select
@@ -196,15 +222,12 @@ impl Filter {
 
     /// Counts parts that passed, and those that passed a first test without a second attempt.
     pub(super) fn passed(&self) -> Select {
-        let sql = "SELECT count(*), ifnull(sum(NOT EXISTS (SELECT 1 FROM measurement AS m \
-                   WHERE m.part_id = part.id AND m.attempt > 1) \
-                   AND part.run_id NOT IN (SELECT run_id FROM retest)), 0) \
-                   FROM part WHERE part.verdict = 'pass'"
-            .to_owned();
-        let mut select = Select {
-            sql,
-            values: Vec::new(),
-        };
+        let mut select = Select::new(
+            "SELECT count(*), ifnull(sum(NOT EXISTS (SELECT 1 FROM measurement AS m \
+             WHERE m.part_id = part.id AND m.attempt > 1) \
+             AND part.run_id NOT IN (SELECT run_id FROM retest)), 0) \
+             FROM part WHERE part.verdict = 'pass'",
+        );
         self.run_conditions(&mut select, "part");
         self.part_conditions(&mut select, false);
         select
@@ -216,11 +239,9 @@ impl Filter {
         } else {
             ""
         };
-        let sql = format!("SELECT {columns} FROM measurement AS m{join} WHERE ");
-        let mut select = Select {
-            sql,
-            values: Vec::new(),
-        };
+        let mut select = Select::new(format!(
+            "SELECT {columns} FROM measurement AS m{join} WHERE "
+        ));
         select.add(
             "m.parameter_id = (SELECT id FROM parameter WHERE key = ?)",
             param.to_owned(),
@@ -231,11 +252,7 @@ impl Filter {
             Some(_) | None => " AND m.population = 'lot'",
         };
         select.sql.push_str(population);
-        let runs = self.runs();
-        select
-            .sql
-            .push_str(&format!(" AND m.run_id IN ({})", runs.sql));
-        select.values.extend(runs.values);
+        self.add_runs(&mut select, "m");
         match &self.verdict {
             Some(verdict) => select.add(" AND m.part_verdict = ?", verdict.clone()),
             None => {
@@ -251,11 +268,24 @@ impl Filter {
 
     fn run_conditions(&self, select: &mut Select, table: &str) {
         if self.lot.is_some() || self.recipe.is_some() || self.run.is_some() {
-            let runs = self.runs();
-            select
-                .sql
-                .push_str(&format!(" AND {table}.run_id IN ({})", runs.sql));
-            select.values.extend(runs.values);
+            self.add_runs(select, table);
+        }
+    }
+
+    fn add_runs(&self, select: &mut Select, table: &str) {
+        let runs = self.runs();
+        let sql = format!(" AND {table}.run_id IN ({})", runs.sql);
+        select.sql.push_str(&sql);
+        select.values.extend(runs.values);
+    }
+
+    /// Adds the span of time from `since` until before `until`.
+    fn span(&self, select: &mut Select, column: &str) {
+        if let Some(since) = self.since {
+            select.add(&format!(" AND {column} >= ?"), since.0);
+        }
+        if let Some(until) = self.until {
+            select.add(&format!(" AND {column} < ?"), until.0);
         }
     }
 
@@ -271,12 +301,7 @@ impl Filter {
                 select.add(" AND part.verdict = ?", verdict.clone());
             }
         }
-        if let Some(since) = self.since {
-            select.add(" AND part.judged_at_us >= ?", since.0);
-        }
-        if let Some(until) = self.until {
-            select.add(" AND part.judged_at_us < ?", until.0);
-        }
+        self.span(select, "part.judged_at_us");
         if let Some(bin) = &self.bin {
             select.add(" AND part.bin = ?", bin.clone());
         }

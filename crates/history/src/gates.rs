@@ -14,7 +14,7 @@
 use super::error::{Doing, Result};
 use super::store::{RowIds, source};
 use super::{Archive, Filter, Moment, Store};
-use rusqlite::{Connection, OptionalExtension, Transaction, params, params_from_iter};
+use rusqlite::{Connection, OptionalExtension, Transaction, params};
 use serde::{Deserialize, Serialize};
 
 /// State of a lot.
@@ -228,19 +228,15 @@ impl Archive {
 
     /// Returns the reference checks of the selected runs in order of time.
     pub fn reference_checks(&self, filter: &Filter) -> Result<Vec<ReferenceCheck>> {
-        let runs = filter.runs();
-        let sql = format!(
+        let mut select = filter.runs();
+        select.sql = format!(
             "SELECT run.number, golden_check.at_us, passed, text, suspect_since_us
              FROM golden_check JOIN run ON run.id = golden_check.run_id
              WHERE run.id IN ({}) ORDER BY golden_check.at_us, golden_check.id",
-            runs.sql
+            select.sql
         );
-        self.connection
-            .prepare(&sql)
-            .and_then(|mut it| {
-                it.query_map(params_from_iter(&runs.values), reference_check_of)?
-                    .collect()
-            })
+        select
+            .rows(&self.connection, reference_check_of)
             .doing("reading reference checks")
     }
 

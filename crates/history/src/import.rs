@@ -6,6 +6,7 @@
 //! values unnoticed.
 
 use super::csv::{self, CsvError, Record};
+use super::inquiry::checks::VERDICTS;
 use super::{MeasurementRecord, Moment, PartRecord};
 use machine::dut::Reason;
 
@@ -33,7 +34,7 @@ pub struct ImportRow {
     pub timed: bool,
 }
 
-/// Why a file is refused. Nothing of it was imported.
+/// Why a file is refused as a whole.
 #[derive(Debug, thiserror::Error)]
 pub enum ImportError {
     /// The text is not CSV.
@@ -89,16 +90,7 @@ enum Column {
     PassedOver,
 }
 
-/// Reads a CSV text. `maps` renames columns (from, to); `parameters` are the keys of the history.
-pub fn parse_import(
-    text: &str,
-    maps: &[(String, String)],
-    parameters: &[String],
-) -> Result<Vec<ImportRow>, ImportError> {
-    parse_records(&csv::read(text)?, maps, parameters)
-}
-
-/// Reads records whose first one is the header; the rest as [`parse_import`].
+/// Reads records whose first one is the header. `maps` renames columns (from, to); `parameters` are the keys of the history.
 pub fn parse_records(
     records: &[Record],
     maps: &[(String, String)],
@@ -222,9 +214,7 @@ fn take(row: &mut ImportRow, column: &Column, name: &str, cell: &str) -> Result<
 
 fn verdict(cell: &str) -> Option<String> {
     let lower = cell.to_ascii_lowercase();
-    ["pass", "fail", "void", "unjudged"]
-        .contains(&lower.as_str())
-        .then_some(lower)
+    VERDICTS.contains(&lower.as_str()).then_some(lower)
 }
 
 fn measurement(key: &str, cell: &str) -> Result<MeasurementRecord, &'static str> {

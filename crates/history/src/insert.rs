@@ -1,7 +1,7 @@
 //! Inserts records as rows, inside a transaction of [`Store`](super::Store).
 
 use super::error::{Doing, HistoryError, Result};
-use super::store::RowIds;
+use super::store::{PROGRAM, RowIds};
 use super::{LotRecord, MeasurementRecord, PartRecord, SampleRecord};
 use super::{curve, reasons};
 use machine::dut::Reason;
@@ -12,7 +12,6 @@ pub(super) fn run(
     transaction: &Transaction<'_>,
     lot: &LotRecord,
     source: &str,
-    written_by: &str,
 ) -> rusqlite::Result<(i64, u32)> {
     transaction.execute(
         "INSERT INTO lot (name, first_opened_us) VALUES (?1, ?2) ON CONFLICT DO NOTHING",
@@ -42,7 +41,7 @@ pub(super) fn run(
             lot.opened_at_us,
             source,
             lot.seed.map(|seed| seed.to_string()),
-            written_by
+            PROGRAM
         ],
         |row| Ok((row.get(0)?, row.get(1)?)),
     )?;
@@ -218,7 +217,7 @@ fn sampled(
     it: &SampleRecord,
     (part, parameter, attempt, n): (i64, i64, u32, i64),
 ) -> rusqlite::Result<()> {
-    assert!(!it.command.is_empty(), "a reply that nothing asked for");
+    assert!(!it.command.is_empty(), "a reply without its request");
     tx.prepare_cached(
         "INSERT INTO sample (part_id, parameter_id, attempt, n, line, module, channel, command,
            raw, at_us) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)",

@@ -60,7 +60,7 @@ pub use filter::Filter;
 pub use gates::{
     LotState, LotStateRecord, LotStatus, LotYield, ReferenceCheck, ReferenceCheckRecord,
 };
-pub use import::{ImportError, ImportRow, parse_import, parse_records};
+pub use import::{ImportError, ImportRow, parse_records};
 pub use inside::InsideRecord;
 pub use lot_book::LotEntry;
 pub use lot_name::{LOT_NAME, is_lot_name};
@@ -76,7 +76,7 @@ pub use record::{
 pub use rejudge::rejudged;
 pub use retention::Pruned;
 pub use run_end::RunEndRecord;
-pub use store::{Identity, Store};
+pub use store::Store;
 pub use values::{LimitsSeen, Values};
 pub use wear::{Wear, WearRecord};
 

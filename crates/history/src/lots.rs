@@ -99,7 +99,41 @@ pub(super) const COUNTS: &str =
 impl Archive {
     /// Returns the selected runs (lot, recipe, run) in order of opening.
     pub fn lots(&self, filter: &Filter) -> Result<Vec<LotSummary>> {
-        self.summaries(filter).doing("reading the lots")
+        let mut select = filter.runs();
+        select.sql = format!(
+            "SELECT lot.name, run.number, recipe.name, recipe.hash, run.calibration_hash,
+               run.source, run.seed, run.opened_at_us, run.closed_at_us, run.id,
+               (SELECT consented_by FROM retest WHERE run_id = run.id),
+               run_end.ended, run_end.cause, run_end.cause_text
+             FROM run JOIN lot ON lot.id = run.lot_id JOIN recipe ON recipe.id = run.recipe_id
+               LEFT JOIN run_end ON run_end.run_id = run.id
+             WHERE run.id IN ({}) ORDER BY run.opened_at_us, run.id",
+            select.sql
+        );
+        let lots = select.rows(&self.connection, |row| {
+            let mut summary = LotSummary {
+                lot: row.get(0)?,
+                run: row.get(1)?,
+                recipe: row.get(2)?,
+                recipe_hash: row.get(3)?,
+                calibration_hash: row.get(4)?,
+                source: row.get(5)?,
+                seed: row.get(6)?,
+                retest: row.get(10)?,
+                opened: Moment(row.get(7)?),
+                closed: row.get::<_, Option<i64>>(8)?.map(Moment),
+                ended: row.get(11)?,
+                cause: row.get(12)?,
+                cause_text: row.get(13)?,
+                counts: Yield::default(),
+                golden: 0,
+                alarms: 0,
+                bins: std::collections::BTreeMap::new(),
+            };
+            self.count(row.get(9)?, &mut summary)?;
+            Ok(summary)
+        });
+        lots.doing("reading the lots")
     }
 
     /// Returns the text of the recipe with this hash.
@@ -139,56 +173,15 @@ impl Archive {
 
     /// Counts the selected parts that passed, and those that passed at the first attempt.
     pub fn passed(&self, filter: &Filter) -> Result<Passed> {
-        let select = filter.passed();
-        self.connection
-            .prepare(&select.sql)
-            .and_then(|mut it| {
-                it.query_row(params_from_iter(&select.values), |row| {
-                    Ok(Passed {
-                        finally: row.get::<_, i64>(0)?.unsigned_abs(),
-                        at_first: row.get::<_, i64>(1)?.unsigned_abs(),
-                    })
+        filter
+            .passed()
+            .first(&self.connection, |row| {
+                Ok(Passed {
+                    finally: row.get::<_, i64>(0)?.unsigned_abs(),
+                    at_first: row.get::<_, i64>(1)?.unsigned_abs(),
                 })
             })
             .doing("counting parts that passed")
-    }
-
-    fn summaries(&self, filter: &Filter) -> rusqlite::Result<Vec<LotSummary>> {
-        let runs = filter.runs();
-        let mut statement = self.connection.prepare(&format!(
-            "SELECT lot.name, run.number, recipe.name, recipe.hash, run.calibration_hash,
-               run.source, run.seed, run.opened_at_us, run.closed_at_us, run.id,
-               (SELECT consented_by FROM retest WHERE run_id = run.id),
-               run_end.ended, run_end.cause, run_end.cause_text
-             FROM run JOIN lot ON lot.id = run.lot_id JOIN recipe ON recipe.id = run.recipe_id
-               LEFT JOIN run_end ON run_end.run_id = run.id
-             WHERE run.id IN ({}) ORDER BY run.opened_at_us, run.id",
-            runs.sql
-        ))?;
-        let rows = statement.query_map(params_from_iter(&runs.values), |row| {
-            let mut summary = LotSummary {
-                lot: row.get(0)?,
-                run: row.get(1)?,
-                recipe: row.get(2)?,
-                recipe_hash: row.get(3)?,
-                calibration_hash: row.get(4)?,
-                source: row.get(5)?,
-                seed: row.get(6)?,
-                retest: row.get(10)?,
-                opened: Moment(row.get(7)?),
-                closed: row.get::<_, Option<i64>>(8)?.map(Moment),
-                ended: row.get(11)?,
-                cause: row.get(12)?,
-                cause_text: row.get(13)?,
-                counts: Yield::default(),
-                golden: 0,
-                alarms: 0,
-                bins: std::collections::BTreeMap::new(),
-            };
-            self.count(row.get(9)?, &mut summary)?;
-            Ok(summary)
-        })?;
-        rows.collect()
     }
 
     fn count(&self, run: i64, summary: &mut LotSummary) -> rusqlite::Result<()> {

@@ -3,7 +3,7 @@
 use super::error::{Doing, Result};
 use super::store::RowIds;
 use super::{Archive, Filter, Moment};
-use rusqlite::{Transaction, params, params_from_iter};
+use rusqlite::{Transaction, params};
 use serde::Serialize;
 
 /// An order and its answer.
@@ -64,23 +64,19 @@ pub(super) fn insert(tx: &Transaction<'_>, row_ids: &RowIds, it: &OrderRecord) -
 impl Archive {
     /// Returns the orders of the selected runs (lot, run, recipe) and span, of one person or of all, in order of time.
     pub fn orders(&self, filter: &Filter, who: Option<&str>) -> Result<Vec<OrderEntry>> {
-        let select = filter.orders(who);
-        self.connection
-            .prepare(&select.sql)
-            .and_then(|mut it| {
-                it.query_map(params_from_iter(&select.values), |row| {
-                    Ok(OrderEntry {
-                        at: Moment(row.get(0)?),
-                        lot: row.get(1)?,
-                        run: row.get(2)?,
-                        who: row.get(3)?,
-                        role: row.get(4)?,
-                        origin: row.get(5)?,
-                        what: row.get(6)?,
-                        refused: row.get(7)?,
-                    })
-                })?
-                .collect()
+        filter
+            .orders(who)
+            .rows(&self.connection, |row| {
+                Ok(OrderEntry {
+                    at: Moment(row.get(0)?),
+                    lot: row.get(1)?,
+                    run: row.get(2)?,
+                    who: row.get(3)?,
+                    role: row.get(4)?,
+                    origin: row.get(5)?,
+                    what: row.get(6)?,
+                    refused: row.get(7)?,
+                })
             })
             .doing("reading orders")
     }

@@ -53,7 +53,7 @@ fn read_text(text: &str) -> Reason {
     known.unwrap_or_else(|| Reason::unclassified(text))
 }
 
-/// The reason of one line of [`TEXTS`], when the text is its text.
+/// Returns the reason of one line of [`TEXTS`] when its form matches the text.
 fn match_text(line: &str, text: &str) -> Option<Reason> {
     let [code, key, side, form] = line.splitn(4, '|').collect::<Vec<_>>().try_into().ok()?;
     let detail = match form.split_once('*') {
@@ -65,7 +65,7 @@ fn match_text(line: &str, text: &str) -> Option<Reason> {
     Reason::stored(code, about, Side::from_name(side), detail)
 }
 
-/// A text that begins with the key of a characteristic and speaks of its limit.
+/// Returns the reason of a text that begins with the key of a characteristic and names its limit.
 fn limit_reason(text: &str) -> Option<Reason> {
     let (key, rest) = text.split_once(' ')?;
     let (code, side) = match rest {

@@ -1,4 +1,4 @@
-//! Judges stored values and curves by another recipe. Nothing is written.
+//! Judges stored values and curves by another recipe; writes no row.
 //!
 //! - Values are judged as in a run, with their stored uncertainty; a value within U of a limit is `not proven`, since it
 //!   cannot be measured again.

@@ -5,7 +5,7 @@
 //! that were never closed, read the index. Both ways give the same values in the same order.
 
 use super::{Archive, Filter};
-use rusqlite::{Connection, OptionalExtension, params, params_from_iter};
+use rusqlite::{Connection, OptionalExtension, params};
 
 /// Selects parts and counted values of a parameter in one run, unordered.
 pub(super) const OF_RUN: &str = "SELECT part_id, value FROM measurement
@@ -118,10 +118,6 @@ impl Archive {
 
     /// Returns the row numbers of the selected runs.
     pub(super) fn run_rows(&self, filter: &Filter) -> rusqlite::Result<Vec<i64>> {
-        let runs = filter.runs();
-        self.connection
-            .prepare(&runs.sql)?
-            .query_map(params_from_iter(&runs.values), |row| row.get(0))?
-            .collect()
+        filter.runs().rows(&self.connection, |row| row.get(0))
     }
 }

@@ -4,39 +4,20 @@
 
 use super::error::{Doing, HistoryError, Result};
 use super::{
-    AlarmRecord, CalibrationRecord, LandingRecord, LotRecord, PartRecord, Row, alarm_states, gates,
-    insert, inside, landing, open, orders, run_end, series, wear,
+    CalibrationRecord, LotRecord, PartRecord, Row, alarm_states, gates, insert, inside, landing,
+    open, orders, run_end, series, wear,
 };
 use rusqlite::{Connection, OptionalExtension, Transaction, TransactionBehavior, params};
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-/// Name and version of the writing program, stored with every run.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Identity {
-    /// Name of the program.
-    pub program: String,
-    /// Its version.
-    pub version: String,
-}
-
-impl Identity {
-    /// Returns name and version of this package.
-    #[must_use]
-    pub fn of_this_program() -> Self {
-        Self {
-            program: env!("CARGO_PKG_NAME").into(),
-            version: env!("CARGO_PKG_VERSION").into(),
-        }
-    }
-}
+/// Name and version of this program; every run and the foot of every page keep them.
+pub(crate) const PROGRAM: &str = concat!("relayrig ", env!("CARGO_PKG_VERSION"));
 
 /// The writer of a history file. Calls block for about one disk flush.
 #[derive(Debug)]
 pub struct Store {
     connection: Connection,
-    path: PathBuf,
-    written_by: String,
     row_ids: RowIds,
 }
 
@@ -62,27 +43,19 @@ impl RowIds {
 impl Store {
     /// Opens a file; creates a missing one and migrates an older one. Fails for a file of another program and for a schema
     /// newer than [`SCHEMA`](super::SCHEMA).
-    pub fn open(path: &Path, identity: &Identity) -> Result<Self> {
+    pub fn open(path: &Path) -> Result<Self> {
         Ok(Self {
             connection: open::writer(path)?,
-            path: path.to_owned(),
-            written_by: format!("{} {}", identity.program, identity.version),
             row_ids: RowIds::default(),
         })
-    }
-
-    /// Returns the path of the file.
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 
     /// Opens a run of the lot and returns its number within the lot, from 1.
     pub fn begin_lot(&mut self, lot: &LotRecord) -> Result<u32> {
         const DOING: &str = "opening the lot";
         let source = source(lot.simulated);
-        let written_by = self.written_by.clone();
         let transaction = self.transaction(DOING)?;
-        let (run, number) = insert::run(&transaction, lot, source, &written_by).doing(DOING)?;
+        let (run, number) = insert::run(&transaction, lot, source).doing(DOING)?;
         transaction.commit().doing(DOING)?;
         let before = self.row_ids.runs.insert(lot.lot.clone(), run);
         assert_ne!(before, Some(run), "one row for two runs");
@@ -95,15 +68,8 @@ impl Store {
         const DOING: &str = "importing";
         let own = parts.iter().all(|part| part.lot == lot.lot);
         assert!(own, "a part of another lot");
-        let Self {
-            connection,
-            written_by,
-            ..
-        } = self;
-        let transaction = connection
-            .transaction_with_behavior(TransactionBehavior::Immediate)
-            .doing(DOING)?;
-        let (run, number) = insert::run(&transaction, lot, "import", written_by).doing(DOING)?;
+        let transaction = self.transaction(DOING)?;
+        let (run, number) = insert::run(&transaction, lot, "import").doing(DOING)?;
         let mut row_ids = RowIds::default();
         row_ids.runs.insert(lot.lot.clone(), run);
         for part in &parts {
@@ -177,30 +143,6 @@ impl Store {
         let is_over = connection.is_autocommit();
         assert!(written.is_err() || is_over, "a batch is left open");
         written
-    }
-
-    /// Records that the beam of `bin` confirmed production part `seq`.
-    pub fn landed(
-        &mut self,
-        lot: &str,
-        seq: u64,
-        bin: &str,
-        at_us: i64,
-        cycle_s: Option<f64>,
-    ) -> Result<()> {
-        self.record(&[Row::Landed(LandingRecord {
-            lot: lot.to_owned(),
-            kind: "lot".to_owned(),
-            seq,
-            bin: bin.to_owned(),
-            at_us,
-            cycle_s,
-        })])
-    }
-
-    /// Records an alarm, or with `cleared_at_us` that it was cleared.
-    pub fn alarm(&mut self, alarm: &AlarmRecord) -> Result<()> {
-        self.record(&[Row::Alarm(alarm.clone())])
     }
 
     /// Stores a calibration; for one that exists only updates `verified`.
@@ -289,6 +231,29 @@ pub(super) fn calibration(row: &rusqlite::Row<'_>) -> rusqlite::Result<Calibrati
 
 #[cfg(test)]
 impl Store {
+    /// Records that the beam of `bin` confirmed production part `seq`.
+    pub(super) fn landed(
+        &mut self,
+        lot: &str,
+        seq: u64,
+        bin: &str,
+        at_us: i64,
+        cycle_s: Option<f64>,
+    ) -> Result<()> {
+        self.record(&[Row::Landed(super::LandingRecord {
+            lot: lot.to_owned(),
+            kind: "lot".to_owned(),
+            seq,
+            bin: bin.to_owned(),
+            at_us,
+            cycle_s,
+        })])
+    }
+
+    /// Records an alarm, or with `cleared_at_us` that it was cleared.
+    pub(super) fn alarm(&mut self, alarm: &super::AlarmRecord) -> Result<()> {
+        self.record(&[Row::Alarm(alarm.clone())])
+    }
     /// Fails at once on a locked file.
     pub(super) fn impatient(&self) {
         self.connection

@@ -3,7 +3,7 @@
 
 use super::error::{Doing, Result};
 use super::{Archive, Filter};
-use rusqlite::{OptionalExtension, params, params_from_iter};
+use rusqlite::{OptionalExtension, params};
 
 /// Values of one parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,12 +57,7 @@ impl Archive {
 
     fn one_by_one(&self, param: &str, filter: &Filter) -> rusqlite::Result<Vec<f64>> {
         let select = filter.series(param);
-        let mut statement = self.connection.prepare(&select.sql)?;
-        let mut rows = statement.query(params_from_iter(&select.values))?;
-        let mut found: Vec<(i64, f64)> = Vec::new();
-        while let Some(row) = rows.next()? {
-            found.push((row.get(0)?, row.get(1)?));
-        }
+        let found = select.rows(&self.connection, |row| Ok((row.get(0)?, row.get(1)?)))?;
         Ok(in_order(found).collect())
     }
 
@@ -113,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_come_in_order_of_their_parts_whether_these_are_close_or_far_apart() {
+    fn values_come_in_order_of_their_parts() {
         let close = vec![(7, 3.0), (5, 1.0), (9, 4.0), (6, 2.0)];
         let far = vec![(i64::MAX, 4.0), (5, 2.0), (i64::MIN, 1.0), (1 << 40, 3.0)];
         for found in [close, far] {

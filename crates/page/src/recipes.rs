@@ -23,7 +23,7 @@ use config::{Change, Plant, Revision};
 use history::inquiry::paper::paper;
 use history::report::Lang;
 use history::report::card;
-use history::{Identity, OrderRecord, Row, Store};
+use history::{OrderRecord, Row, Store};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::net::SocketAddr;
@@ -126,7 +126,7 @@ pub(super) async fn revise(
     let origin = from.map_or_else(|_| String::new(), |from| from.0.ip().to_string());
     let (dir, db) = (app.shared.config.clone(), app.shared.db.clone());
     blocking(move || {
-        let mut audit = Store::open(&db, &Identity::of_this_program())?;
+        let mut audit = Store::open(&db)?;
         let done = revised(&dir, &person, &change);
         let noted = audit.record(&[Row::Order(OrderRecord {
             lot: None,

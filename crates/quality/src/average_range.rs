@@ -7,6 +7,7 @@
 
 use super::crossing;
 use super::gauge_rr::{GaugeRr, GaugeRrError, Reading, deviations};
+use super::squares::{Means, mean};
 use std::f64::consts::FRAC_1_SQRT_2;
 
 /// K1 and K2 by the number of trials or operators, from 2 (AIAG MSA, 4th edition; Duncan's d2*). K2 for two
@@ -48,18 +49,11 @@ pub fn average_and_range(readings: &[Reading]) -> Result<GaugeRr, GaugeRrError> 
             trials,
         });
     };
-    let all = cells.iter().flatten();
-    let repeatability = k1 * mean(all.map(|cell| range(cell)));
-    let of_part = |row: &Vec<Vec<f64>>| mean(row.iter().map(|cell| mean(cell.iter().copied())));
-    let part = k3 * range(&cells.iter().map(of_part).collect::<Vec<f64>>());
-    let of_operator = |at: usize| {
-        mean(
-            cells
-                .iter()
-                .map(|row: &Vec<Vec<f64>>| mean(row[at].iter().copied())),
-        )
-    };
-    let apart = range(&(0..operators).map(of_operator).collect::<Vec<f64>>());
+    let ranges: Vec<f64> = cells.iter().flatten().map(|cell| range(cell)).collect();
+    let repeatability = k1 * mean(&ranges);
+    let means = Means::of(&cells);
+    let part = k3 * range(&means.part);
+    let apart = range(&means.operator);
     let own = repeatability * repeatability / (parts * trials) as f64;
     let reproducibility = ((apart * k2).powi(2) - own).max(0.0);
     let variances = [
@@ -69,11 +63,6 @@ pub fn average_and_range(readings: &[Reading]) -> Result<GaugeRr, GaugeRrError> 
         part * part,
     ];
     Ok(deviations("average and range", variances, None))
-}
-
-fn mean(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, n) = values.fold((0.0, 0.0), |(sum, n), it| (sum + it, n + 1.0));
-    sum / n
 }
 
 fn range(values: &[f64]) -> f64 {

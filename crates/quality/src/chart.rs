@@ -9,17 +9,17 @@ use super::rules::{self, Rules, Signal};
 use super::spread::{self, Spread};
 use serde::Serialize;
 
-/// Factors of a subgroup of n: (n, A2, D3, D4, d2), from the ASTM manual of control charts.
-const FACTORS: [(usize, f64, f64, f64, f64); 9] = [
-    (2, 1.880, 0.0, 3.267, 1.128),
-    (3, 1.023, 0.0, 2.575, 1.693),
-    (4, 0.729, 0.0, 2.282, 2.059),
-    (5, 0.577, 0.0, 2.114, 2.326),
-    (6, 0.483, 0.0, 2.004, 2.534),
-    (7, 0.419, 0.076, 1.924, 2.704),
-    (8, 0.373, 0.136, 1.864, 2.847),
-    (9, 0.337, 0.184, 1.816, 2.970),
-    (10, 0.308, 0.223, 1.777, 3.078),
+/// Factors of a subgroup of n: (n, A2, D3, D4), from the ASTM manual of control charts.
+const FACTORS: [(usize, f64, f64, f64); 9] = [
+    (2, 1.880, 0.0, 3.267),
+    (3, 1.023, 0.0, 2.575),
+    (4, 0.729, 0.0, 2.282),
+    (5, 0.577, 0.0, 2.114),
+    (6, 0.483, 0.0, 2.004),
+    (7, 0.419, 0.076, 1.924),
+    (8, 0.373, 0.136, 1.864),
+    (9, 0.337, 0.184, 1.816),
+    (10, 0.308, 0.223, 1.777),
 ];
 
 /// One control chart. Every point carries its own limits, because those of a p chart differ from point to point.
@@ -70,7 +70,7 @@ pub fn individuals(values: &[f64], rules: Rules) -> Option<[Chart; 2]> {
 /// Returns charts of means and ranges of subgroups of `size` consecutive values, 2 to 10; an incomplete last
 /// subgroup is left out. Returns `None` for another size or below two subgroups.
 pub fn subgroups(values: &[f64], size: usize, rules: Rules) -> Option<[Chart; 2]> {
-    let &(_, a2, d3, d4, _) = FACTORS.iter().find(|(n, ..)| *n == size)?;
+    let &(_, a2, d3, d4) = FACTORS.iter().find(|(n, ..)| *n == size)?;
     let groups: Vec<Spread> = values.chunks_exact(size).map(Spread::of).collect();
     if groups.len() < 2 {
         return None;
@@ -87,13 +87,6 @@ pub fn subgroups(values: &[f64], size: usize, rules: Rules) -> Option<[Chart; 2]
         level("means", &means, centre, limits, Some(rules)),
         level("ranges", &ranges, range, [d3 * range, d4 * range], None),
     ])
-}
-
-/// Returns the short-term deviation from subgroups: mean range / d2.
-pub fn deviation_of_subgroups(values: &[f64], size: usize) -> Option<f64> {
-    let &(.., d2) = FACTORS.iter().find(|(n, ..)| *n == size)?;
-    let [_, ranges] = subgroups(values, size, Rules::Nelson)?;
-    Some(ranges.centre / d2)
 }
 
 /// Returns the chart of the fraction of defectives from `(number tested, number defective)` per lot or hour,
@@ -170,7 +163,6 @@ mod tests {
         assert_eq!((means.centre, ranges.centre), (4.0, 4.0));
         assert!((means.points[0].high - (4.0 + 0.577 * 4.0)).abs() < 1e-12);
         assert!((ranges.points[0].high - 2.114 * 4.0).abs() < 1e-12);
-        assert!((deviation_of_subgroups(&values, 5).unwrap() - 4.0 / 2.326).abs() < 1e-12);
         assert!(subgroups(&values, 11, Rules::Nelson).is_none());
     }
 

@@ -105,12 +105,8 @@ impl Spread {
     }
 }
 
-/// Returns the lag-1 autocorrelation in the given order; `None` below two values or when all are equal.
-pub fn lag1(values: &[f64]) -> Option<f64> {
-    lag1_about(&Spread::of(values), values)
-}
-
-/// Returns the lag-1 autocorrelation, given the moments `all` of the same values.
+/// Returns the lag-1 autocorrelation in the given order, given the moments `all` of the same values; `None` below two values
+/// or when all are equal.
 pub fn lag1_about(all: &Spread, values: &[f64]) -> Option<f64> {
     let squares = all.squares.value();
     let deviation = |value: f64| Double::new(value).minus(all.mean);

@@ -1,6 +1,10 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
 
+fn lag1(values: &[f64]) -> Option<f64> {
+    lag1_about(&Spread::of(values), values)
+}
+
 /// Number of correct decimal digits of `found`.
 fn digits(found: f64, certified: f64) -> f64 {
     -((found - certified).abs() / certified.abs())

@@ -54,15 +54,16 @@ impl Squares {
     }
 }
 
-struct Means {
+/// Means of the readings.
+pub(super) struct Means {
     cell: Vec<Vec<f64>>,
-    part: Vec<f64>,
-    operator: Vec<f64>,
+    pub part: Vec<f64>,
+    pub operator: Vec<f64>,
     grand: f64,
 }
 
 impl Means {
-    fn of(cells: &Cells) -> Self {
+    pub fn of(cells: &Cells) -> Self {
         let of_row = |row: &Vec<Vec<f64>>| row.iter().map(|cell| mean(cell)).collect();
         let cell: Vec<Vec<f64>> = cells.iter().map(of_row).collect();
         let part: Vec<f64> = cell.iter().map(|row| mean(row)).collect();
@@ -78,7 +79,7 @@ impl Means {
     }
 }
 
-fn mean(values: &[f64]) -> f64 {
+pub(super) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 

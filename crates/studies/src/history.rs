@@ -12,7 +12,7 @@ use anyhow::Context;
 use app::generate::{GenerateOptions, generate};
 use app::progress::{PIECES, progress};
 use history::inquiry::figures::figures;
-use history::{Archive, Filter, Identity, LotRecord, Moment, Row, Store};
+use history::{Archive, Filter, LotRecord, Moment, Row, Store};
 use machine::dut::em_relay::Parameter;
 use quality::Ordered;
 use std::path::Path;
@@ -87,7 +87,7 @@ fn timed<T>(spent: &mut Vec<f64>, work: impl FnOnce() -> T) -> T {
 
 /// Writes parts as a rig does: one transaction and one flush for each.
 fn one_by_one(db: &Path) -> anyhow::Result<Figure> {
-    let mut store = Store::open(db, &Identity::of_this_program())?;
+    let mut store = Store::open(db)?;
     store.begin_lot(&LotRecord {
         lot: "single".into(),
         recipe: "none".into(),

@@ -6,8 +6,8 @@ use crate::cli::output::input;
 use anyhow::{Context, bail};
 use app::exit::Exit;
 use app::follower::{self, Update, UpdateContent};
-use bus::{Direction, Entry, Meaning, Pace, Recorded, arrow, escaped, open_serial, unescaped};
-use std::path::PathBuf;
+use bus::{Direction, Entry, Meaning, Pace, Recorded, arrow, escaped, unescaped};
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 use tokio::io::AsyncReadExt;
 
@@ -94,7 +94,7 @@ async fn watch(args: &MonitorArgs) -> anyhow::Result<()> {
     let Some(path) = &args.port else {
         bail!("--port, --from or --trace is needed");
     };
-    listen(args, &PortArgs { port: path.clone() }).await
+    listen(args, path).await
 }
 
 /// Returns the row of a message of a running controller, without line end.
@@ -103,23 +103,25 @@ fn row(news: &Update, level: Level) -> String {
     let UpdateContent::Message(message) = &news.what else {
         return format!("{seconds:>14.6} {line} - messages were lost here");
     };
+    let shown = detail(level, &message.text, &message.meaning);
+    format!("{seconds:>14.6} {line} {} {shown}", message.way)
+}
+
+/// Returns a message of escaped `text` in the detail of `level`.
+fn detail(level: Level, text: &str, meaning: &str) -> String {
+    let bytes = || unescaped(text).unwrap_or_default().into_iter();
     let shown = match level {
-        Level::Bytes => unescaped(&message.text)
-            .unwrap_or_default()
-            .iter()
-            .map(|byte| format!("{byte:02X} "))
-            .collect(),
-        Level::Frames => message.text.clone(),
-        Level::Meaning => format!("{:<24} {}", message.text, message.meaning),
+        Level::Bytes => bytes().map(|byte| format!("{byte:02X} ")).collect(),
+        Level::Frames => text.to_owned(),
+        Level::Meaning => format!("{text:<24} {meaning}"),
     };
-    let row = format!("{seconds:>14.6} {line} {} {shown}", message.way);
-    row.trim_end().to_owned()
+    shown.trim_end().to_owned()
 }
 
 /// Shows frames until the port goes away.
-async fn listen(args: &MonitorArgs, port: &PortArgs) -> anyhow::Result<()> {
-    let path = port.port.to_string_lossy();
-    let mut stream = open_serial(&path, args.baud).with_context(|| format!("--port {path}"))?;
+async fn listen(args: &MonitorArgs, path: &Path) -> anyhow::Result<()> {
+    let (port, path) = (path.to_owned(), path.display());
+    let mut stream = PortArgs { port }.open(args.baud)?;
     let pace = Pace::real();
     let mut writer = RowWriter::new(args.level, args.checksum);
     let mut frame: Vec<u8> = Vec::new();
@@ -168,20 +170,8 @@ impl RowWriter {
     /// Returns one row with its line end.
     fn row(&mut self, entry: &Entry) -> String {
         let seconds = entry.at.0 as f64 / 1e6;
-        let shown = match self.level {
-            Level::Bytes => entry
-                .bytes()
-                .iter()
-                .map(|byte| format!("{byte:02X} "))
-                .collect(),
-            Level::Frames => escaped(entry.bytes()),
-            Level::Meaning => format!("{:<24} {}", escaped(entry.bytes()), self.meaning.of(entry)),
-        };
-        format!(
-            "{seconds:>14.6} {} {}\n",
-            arrow(entry.direction),
-            shown.trim_end()
-        )
+        let shown = detail(self.level, &escaped(entry.bytes()), &self.meaning.of(entry));
+        format!("{seconds:>14.6} {} {shown}\n", arrow(entry.direction))
     }
 }
 

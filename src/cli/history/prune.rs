@@ -1,10 +1,11 @@
 //! `history prune`: deletes the parts of old runs that were copied whole; lists them without `--yes`.
 
 use crate::cli::output::{Column, Output};
+use app::copies::OldRuns;
 use app::exit::Exit;
 use app::progress::{PIECES, progress};
 use clap::Args;
-use history::{Identity, Pruned, Store};
+use history::Pruned;
 use std::path::Path;
 
 #[derive(Debug, Args)]
@@ -17,14 +18,9 @@ pub(super) struct PruneArgs {
     yes: bool,
 }
 
-const DAY_US: i64 = 86_400_000_000;
-
 pub(super) fn run(db: &Path, args: &PruneArgs) -> anyhow::Result<Exit> {
-    anyhow::ensure!(db.exists(), "no history at {}", db.display());
-    let mut store = Store::open(db, &Identity::of_this_program())?;
-    let now_us = jiff::Timestamp::now().as_microsecond();
-    let before = now_us - DAY_US * i64::from(args.older_than_days);
-    let runs = store.prunable(before)?;
+    let old = OldRuns::open(db, args.older_than_days)?;
+    let runs = old.list()?;
     let columns: [Column<Pruned>; 4] = [
         ("lot", |it| it.lot.clone()),
         ("run", |it| it.run.to_string()),
@@ -40,7 +36,7 @@ pub(super) fn run(db: &Path, args: &PruneArgs) -> anyhow::Result<Exit> {
         return Ok(Exit::Done);
     }
     let bar = progress(Some(runs.len() as u64), PIECES);
-    store.prune(before, now_us, |_| bar.inc(1))?;
+    old.delete(|| bar.inc(1))?;
     bar.finish_and_clear();
     Ok(Exit::Done)
 }

@@ -14,7 +14,7 @@ use super::source::RigSource;
 use anyhow::{Context, bail};
 pub use compare::{FactorComparison, K, K_JOINT};
 use config::{Plant, load_recipe};
-use history::{CalibrationRecord, Identity, Store, snapshot_hash};
+use history::{CalibrationRecord, Store, snapshot_hash};
 use machine::dut::Calibration;
 use std::path::Path;
 use std::sync::OnceLock;
@@ -104,7 +104,7 @@ fn reference_voltage(config: &Path, recipe: &str) -> anyhow::Result<f64> {
 }
 
 fn open(db: &Path) -> anyhow::Result<Store> {
-    Ok(Store::open(db, &Identity::of_this_program())?)
+    Ok(Store::open(db)?)
 }
 
 fn valid_calibration(

@@ -1,8 +1,8 @@
 //! Schedules the scan of a line.
 //!
 //! The poll of the module with the emergency-stop contact is every second transaction, and even a write waits for it.
-//! The turns between alternate between the watched beam and the other modules, and now and then read the reset status
-//! of a module; when an actuator is not where it should be, the scan reads the reset status of all modules first. Each
+//! The turns between alternate between the watched beam and the other modules; every sixteenth reads the reset status of a
+//! module; when an actuator is not where it should be, the scan reads the reset status of all modules first. Each
 //! list has a counter of its own, so no list starves another.
 
 use dcon::Command;
@@ -13,7 +13,7 @@ const RESET_EVERY: usize = 16;
 /// The scan of one line.
 #[derive(Debug)]
 pub(super) struct ScanSchedule {
-    /// ScanPoll of the emergency-stop contact, on the line that carries it; every second turn.
+    /// Poll of the emergency-stop contact, every second transaction; `None` on other lines.
     priority: Option<Command>,
     /// Polls of the other modules.
     others: Vec<Command>,
@@ -75,7 +75,7 @@ impl ScanSchedule {
         }
     }
 
-    /// Returns the next poll; `None` when the line has nothing to poll.
+    /// Returns the next poll; `None` on a line without modules to poll.
     pub(super) fn next(&mut self, beam: Option<Command>) -> Option<ScanPoll> {
         if let Some(command) = self.contact() {
             return Some(ScanPoll::Priority(command));
@@ -125,7 +125,7 @@ mod tests {
         Digital::ReadEvents { channel }.to(Address(0x11))
     }
 
-    /// Counts each command in `turns` turns, and the longest wait between two polls of the contact.
+    /// Counts each command in `turns` turns.
     fn counted(
         scan_schedule: &mut ScanSchedule,
         beam: Option<Command>,
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn a_misplaced_actuator_makes_each_reset_status_due_at_once() {
+    fn a_misplaced_actuator_makes_reset_statuses_due_at_once() {
         let resets = vec![reset(0x13), reset(0x14)];
         let mut scan_schedule = ScanSchedule::new(Some(poll(0x11)), vec![poll(0x12)], resets);
         scan_schedule.require_resets();

@@ -1,4 +1,4 @@
-//! Counts failures in a row on a line; as many as the bus settings allow tries raise an alarm.
+//! Counts consecutive failures of scans and writes, up to the number of tries in the bus settings.
 
 use dcon::{Address, Command};
 use machine::rig::wiring::{LineId, ModuleId, Wiring};

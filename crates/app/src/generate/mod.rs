@@ -1,7 +1,7 @@
 //! Generates a history as large as that of weeks in a plant, for trying queries and reports.
 //!
 //! Parts follow the lot of the default world (means, scatter, 4 % defects) and the recipe judges them by the rules of a
-//! run. They come in lots of [`LOT`] at the pace of the rig and end at [`GenerateOptions::until`]. Five of a hundred values have
+//! run. They come in lots of [`LOT`] at the pace of the rig and end at [`GenerateOptions::until`]. Five per cent of the values have
 //! a second attempt. Only rejects carry raw replies: a rig keeps about thirty replies per part, which would make the
 //! file three times as large and no query slower. The history marks the runs as simulated. The same seed gives the same
 //! values.
@@ -9,7 +9,7 @@
 mod parts;
 
 use config::load_recipe;
-use history::{Identity, LotRecord, Moment, Row, Store};
+use history::{LotRecord, Moment, Row, Store};
 use parts::PartGenerator;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -56,7 +56,7 @@ pub fn generate(
     mut done_so_far: impl FnMut(u64),
 ) -> anyhow::Result<Generated> {
     let recipe = load_recipe(config, &wanted.recipe)?;
-    let mut store = Store::open(db, &Identity::of_this_program())?;
+    let mut store = Store::open(db)?;
     let until = wanted
         .until
         .map_or_else(|| jiff::Timestamp::now().as_microsecond(), |until| until.0);

@@ -143,12 +143,7 @@ impl Generated {
             uncertainty: Some(2.0 * self.scatter.u),
             low: self.limit.low,
             high: self.limit.high,
-            verdict: match judgement {
-                Judgement::Pass => "pass",
-                Judgement::Fail(_) | Judgement::Conditional(_) => "fail",
-                Judgement::Void => "void",
-            }
-            .to_owned(),
+            verdict: judgement.verdict().to_owned(),
             attempt,
             budget: Some(self.budget.clone()),
             samples: Vec::new(),

@@ -1,5 +1,5 @@
-//! Import of a file of an older system: all of it or nothing, and the same file into the same lot only once. CSV, or a
-//! spreadsheet by the end of its name.
+//! Imports a file of an older system, CSV or a spreadsheet by its extension: the whole file or none of it, and the same file
+//! into the same lot only once.
 
 mod sheet;
 #[cfg(test)]
@@ -7,17 +7,16 @@ mod tests;
 
 use anyhow::Context;
 use history::{
-    Archive, Filter, Identity, ImportRow, LotRecord, PartRecord, Store, csv, parse_records,
-    snapshot_hash,
+    Archive, Filter, ImportRow, LotRecord, PartRecord, Store, csv, parse_records, snapshot_hash,
 };
 use std::path::Path;
 
 /// A file to import.
 #[derive(Debug)]
 pub struct Source<'a> {
-    /// Its name, by which it is a spreadsheet or not.
+    /// Path; the extension tells a spreadsheet from CSV.
     pub file: &'a Path,
-    /// Its content.
+    /// Content of the file.
     pub bytes: &'a [u8],
     /// Sheet of the spreadsheet; the first when absent.
     pub sheet: Option<&'a str>,
@@ -37,11 +36,11 @@ pub struct Imported {
 /// Puts the parts of a file into a new run of `lot`.
 ///
 /// # Errors
-/// A file that cannot be read as records, is in the lot already, or has an unknown column or a cell that does not fit.
+/// Fails when the file is not readable as records, is in the lot already, or has an unknown column or an invalid cell.
 pub fn import(db: &Path, source: &Source, lot: &str) -> anyhow::Result<Imported> {
     let name = || source.file.display().to_string();
     let records = records(source).with_context(name)?;
-    let mut store = Store::open(db, &Identity::of_this_program())?;
+    let mut store = Store::open(db)?;
     let archive = Archive::open(db)?;
     let snapshot = format!(
         "# imported from a file with SHA-256 {}\n",

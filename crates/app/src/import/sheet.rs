@@ -1,20 +1,19 @@
 //! The first (or a named) sheet of a spreadsheet as records: xlsx, xlsm, xlsb, xls, ods.
 //!
 //! Numbers come as the shortest text that reads back the same, dates as RFC 3339 in the zone of this
-//! computer (a spreadsheet has no zone). A row without any content is skipped; the others keep
-//! their numbers in the spreadsheet.
+//! computer (a spreadsheet has no zone). Empty rows are skipped; the others keep
+//! their row numbers.
 
 use anyhow::Context;
 use calamine::{Data, Reader, open_workbook_auto};
 use history::csv::Record;
+use history::report::sheet::EPOCH_DAYS;
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 use std::path::Path;
 
 /// Extensions of spreadsheets.
 const ENDINGS: [&str; 5] = ["xlsx", "xlsm", "xlsb", "xls", "ods"];
-/// Days from the epoch of spreadsheets to 1970.
-const EPOCH_DAYS: f64 = 25_569.0;
 
 /// Returns true for the name of a spreadsheet.
 pub(super) fn is_spreadsheet(file: &Path) -> bool {

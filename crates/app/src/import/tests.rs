@@ -7,7 +7,7 @@ use rust_xlsxwriter::{ExcelDateTime, Format, Workbook};
 use std::path::Path;
 
 #[test]
-fn a_sheet_becomes_records_with_the_numbers_of_its_rows() {
+fn a_sheet_becomes_records_with_its_row_numbers() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("old.xlsx");
     let mut book = Workbook::new();

@@ -2,7 +2,7 @@
 
 use super::LotContext;
 use super::prior_state::PriorState;
-use crate::cycle::{Cycle, CycleLinks, LineEnds, mimic};
+use crate::cycle::{Cycle, CycleLinks, LineEnds};
 use anyhow::Context;
 use bus::Pace;
 use config::Plant;
@@ -16,7 +16,7 @@ use machine::rig::axis::AxisStation;
 use machine::station::catalogue::AlarmCode;
 use machine::station::trouble::Alarm;
 use machine::station::{Plan, Station};
-use machine::view::Mimic;
+use machine::view::{Mimic, MimicBody};
 use std::sync::Arc;
 use units::RigTime;
 
@@ -82,7 +82,17 @@ pub(super) fn cycle(
 /// Returns the machine as a screen draws it, with parts of the size in `recipe`.
 pub fn mimic(plant: &Plant, recipe: &Recipe) -> anyhow::Result<Mimic> {
     let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
-    Ok(mimic::mimic(guard.drawing(&size_of(recipe))))
+    let ride = |(it, way): (Actuator, [f64; 3])| (it.name().to_owned(), way);
+    let bodies = guard.drawing(&size_of(recipe)).into_iter();
+    let bodies = bodies.map(|body| MimicBody {
+        id: body.id,
+        rides: body.rides.into_iter().map(ride).collect(),
+        above: body.above,
+        front: body.front,
+    });
+    Ok(Mimic {
+        bodies: bodies.collect(),
+    })
 }
 
 /// Raises an unacknowledged alarm of an earlier run again.

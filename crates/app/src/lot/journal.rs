@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failed_check_holds_the_lot_until_the_alarm_is_cleared() {
+    fn failed_check_holds_the_lot_until_its_alarm_clears() {
         let mut journal = journal();
         let alarm = Alarm::reference_check_failed(&fault());
         let mut list = Annunciator::default();

@@ -19,6 +19,8 @@ mod recorder;
 mod rows;
 mod screen;
 mod summary;
+#[cfg(all(test, feature = "sim"))]
+mod tests;
 
 pub use assemble::mimic;
 pub use context::{FOUND_LOT, LotContext, Purpose};
@@ -108,18 +110,20 @@ impl LotRunner<'_> {
         if let Some(limiter) = limiter {
             limiter.abort();
         }
-        let Ok((ending, profile)) = ended else {
-            let cause = Cause::assertion();
-            tracing::error!("{}", cause.text);
-            return Ok(Exit::Trouble(cause));
+        let exit = match (&ended, &kept) {
+            (Ok((ending, _)), Ok(())) => stream.lot.exit(ending),
+            (Ok(_), Err(error)) => Exit::Trouble(Cause::history_lost(&format!("{error:#}"))),
+            (Err(_), _) => {
+                let cause = Cause::assertion();
+                tracing::error!("{}", cause.text);
+                Exit::Trouble(cause)
+            }
         };
-        let exit = match &kept {
-            Ok(()) => stream.lot.exit(&ending),
-            Err(error) => Exit::Trouble(Cause::history_lost(&format!("{error:#}"))),
-        };
+        let (ending, profile) = ended.unwrap_or((Ending::Alarm, Profile::default()));
         let closed = stream.close(&ending, &exit, &profile, &lines.logs);
         lines.finish(context.source)?;
-        if kept.is_ok() {
+        // A history that is lost already cannot close the run; a failed assertion outranks a failed close.
+        if !exit.cause().is_some_and(Cause::is_program_failure) {
             closed?;
         }
         Ok(exit)

@@ -13,8 +13,7 @@ use crate::cycle::Event;
 use crate::exit::Exit;
 use anyhow::Context;
 use history::{
-    CalibrationRecord, Identity, InterruptedRecord, LandingRecord, LotRecord, Row, Store,
-    snapshot_hash,
+    CalibrationRecord, InterruptedRecord, LandingRecord, LotRecord, Row, Store, snapshot_hash,
 };
 use machine::dut::{Calibration, Reason};
 use machine::handling::inside::Inside;
@@ -38,9 +37,9 @@ pub(super) struct Recorder {
 }
 
 impl Recorder {
-    /// Opens the history and begins the lot's run; returns what the run takes over, on a rig a valid calibration.
+    /// Opens the history and begins the lot's run; returns the state that the run takes over.
     pub fn open(db: &Path, context: &LotContext) -> anyhow::Result<(Self, PriorState)> {
-        let mut store = Store::open(db, &Identity::of_this_program())?;
+        let mut store = Store::open(db)?;
         store.cut_off(context.is_simulated(), context.epoch_us)?;
         let prior_state = PriorState::read(&store, context)?;
         let mut recorder = Self {
@@ -73,7 +72,7 @@ impl Recorder {
             lot: order.lot.clone(),
             recipe: recipe.name.clone(),
             recipe_snapshot: recipe.source_text.clone(),
-            recipe_hash: snapshot_hash(&recipe.source_text),
+            recipe_hash: recipe.hash.clone(),
             calibration_hash: calibration.map(hash),
             opened_at_us: context.epoch_us,
             simulated: context.is_simulated(),
@@ -241,7 +240,6 @@ impl Recorder {
 }
 
 fn hash(calibration: &Calibration) -> String {
-    serde_json::to_string(calibration)
-        .map(|body| snapshot_hash(&body))
-        .unwrap_or_default()
+    let body = serde_json::to_string(calibration);
+    body.map(snapshot_hash).unwrap_or_default()
 }

@@ -100,12 +100,7 @@ fn measurement(
         uncertainty: Some(reading.expanded()).filter(|u| u.is_finite()),
         low: limit.low,
         high: limit.high,
-        verdict: match judgement {
-            Some(Judgement::Pass) => "pass",
-            Some(Judgement::Fail(_) | Judgement::Conditional(_)) => "fail",
-            Some(Judgement::Void) | None => "void",
-        }
-        .to_string(),
+        verdict: judgement.unwrap_or(Judgement::Void).verdict().to_owned(),
         attempt: u32::try_from(judged.record.attempts(characteristic)).unwrap_or(u32::MAX),
         budget: budget(&reading),
         samples: judged.record.evidence(characteristic).map(sample).collect(),

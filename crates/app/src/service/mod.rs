@@ -1,6 +1,6 @@
 //! Keeps the rig under one program for a whole day: page and API over the rig, one lot after another.
 //!
-//! The rig is always under one *run*, as the command `run` has it. Between lots this run has no lot: the machine keeps
+//! One *run*, as of the command `run`, always controls the rig. Between lots this run has no lot: the machine keeps
 //! its state until an operator resets it, the page shows inputs and alarms, motions by hand are possible, and the rig
 //! discharges parts found inside. An admitted lot ordered at the page ([`router`]) ends that run. The run of the lot
 //! then begins as every lot does: it verifies the modules, homes the machine and calibrates the rig if necessary. After
@@ -30,10 +30,10 @@ use super::order_queue::OrderQueue;
 use super::source::RigSource;
 use super::{links, lot_decision};
 #[cfg(feature = "sim")]
-use super::{simulated, simulated::LiveRig, source::Simulated};
+use super::{simulated, simulated::LiveRig};
 use anyhow::{Context, bail};
 use config::{Plant, load_recipe, recipe_names};
-use history::{Decision, Identity, Store};
+use history::{Decision, Store};
 use machine::dut::Recipe;
 use machine::station::packml::State;
 use machine::view::OrderRequest;
@@ -154,8 +154,7 @@ impl Service {
                     Some(AfterRun::Lot(lot)) => next = Some(*lot),
                     Some(AfterRun::Hold(held)) => {
                         let row = lot_decision::state(&held.0, &held.1, Decision::Hold);
-                        Store::open(&self.files.db, &Identity::of_this_program())?
-                            .record(&[row])?;
+                        Store::open(&self.files.db)?.record(&[row])?;
                     }
                     None => {}
                 },
@@ -195,18 +194,15 @@ impl Service {
             #[cfg(feature = "sim")]
             RigSource::Simulated(source) => {
                 let Some(live) = &source.live else {
-                    bail!("the simulated rig is not there");
+                    bail!("the simulated rig was not built");
                 };
                 if let Some(order) = lot {
                     simulated::load(&live.rig, &self.plant, source, order)?;
                 }
                 let now_us = i64::try_from(live.rig.now_us()).unwrap_or(i64::MAX);
-                return Ok(RigSource::Simulated(Simulated {
-                    live: Some(Box::new(LiveRig {
-                        epoch_us: live.epoch_us + now_us,
-                        ..LiveRig::clone(live)
-                    })),
-                    ..source.clone()
+                return Ok(source.clone().on(LiveRig {
+                    epoch_us: live.epoch_us + now_us,
+                    ..LiveRig::clone(live)
                 }));
             }
         }
@@ -222,15 +218,8 @@ fn with_live_rig(source: RigSource, plant: &Plant, order: &LotOrder) -> anyhow::
         RigSource::Serial(given) => RigSource::Serial(given),
         #[cfg(feature = "sim")]
         RigSource::Simulated(source) => {
-            let live = LiveRig {
-                rig: simulated::build_empty(plant, &source, order)?,
-                epoch_us: jiff::Timestamp::now().as_microsecond(),
-                calibration: None,
-            };
-            RigSource::Simulated(Simulated {
-                live: Some(Box::new(live)),
-                ..source
-            })
+            let rig = simulated::build_empty(plant, &source, order)?;
+            source.on(LiveRig::new(rig))
         }
     })
 }

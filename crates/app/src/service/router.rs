@@ -16,7 +16,7 @@ use crate::lot_decision;
 use crate::order::LotOrder;
 use crate::source::RigSource;
 use config::Plant;
-use history::{Archive, Decision, Identity, Store};
+use history::{Archive, Decision, Store};
 use machine::view::{By, Order, OrderRequest};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -241,7 +241,7 @@ fn write_replacement(db: &Path, order: &Order, by: &By, simulated: bool) -> Resu
         }
         Ok(known)
     };
-    let store = Store::open(db, &Identity::of_this_program());
+    let store = Store::open(db);
     match store.and_then(write) {
         Ok(true) => Ok(()),
         Ok(false) => Err(refused("no_such_counter").with("counter", name)),

@@ -4,6 +4,7 @@
 
 use super::*;
 use crate::runtime;
+use crate::source::Simulated;
 use machine::view::{By, Order, View};
 use std::sync::atomic::Ordering;
 use tokio::sync::{oneshot, watch};
@@ -26,7 +27,7 @@ async fn reset(orders: &mpsc::Sender<OrderRequest>) {
 
 #[test]
 fn a_part_found_between_lots_gets_its_own_lot() {
-    let mut nobody = ();
+    let mut ignored = ();
     let folder = tempfile::tempdir().unwrap();
     let (config, db) = (Path::new("../../config"), folder.path().join("history.db"));
     let plant = Plant::load(config).unwrap();
@@ -41,14 +42,9 @@ fn a_part_found_between_lots_gets_its_own_lot() {
     };
     let rig = simulated::build(&plant, &drawn, &lot).unwrap();
     let source = || {
-        let live = LiveRig {
-            rig: rig.clone(),
+        drawn.clone().on(LiveRig {
             epoch_us: i64::try_from(rig.now_us()).unwrap(),
-            calibration: None,
-        };
-        RigSource::Simulated(Simulated {
-            live: Some(Box::new(live)),
-            ..drawn.clone()
+            ..LiveRig::new(rig.clone())
         })
     };
 
@@ -64,7 +60,7 @@ fn a_part_found_between_lots_gets_its_own_lot() {
         let mut seen = first.view.subscribe();
         let testing = |view: &View| view.judged == 1 && view.state.starts_with("testing");
         tokio::select! {
-            _ = run.run(OrderQueue::from(asked), &mut nobody) => panic!("it ended"),
+            _ = run.run(OrderQueue::from(asked), &mut ignored) => panic!("it ended"),
             () = until(&mut seen, testing) => {}
         }
     });
@@ -98,7 +94,7 @@ fn a_part_found_between_lots_gets_its_own_lot() {
             std::future::pending::<()>().await;
         };
         tokio::select! {
-            exit = run.run(OrderQueue::from(asked), &mut nobody) => exit.unwrap(),
+            exit = run.run(OrderQueue::from(asked), &mut ignored) => exit.unwrap(),
             () = person => unreachable!(),
         }
     });

@@ -18,7 +18,7 @@ use super::lot::{LotContext, LotRunner, Purpose, Subscriber};
 use super::order::{Files, LotOrder};
 use super::order_queue::OrderQueue;
 use super::simulated::{self, LiveRig};
-use super::source::{RigSource, Simulated};
+use super::source::Simulated;
 use bus::Pace;
 use config::Plant;
 use play::Player;
@@ -43,14 +43,7 @@ pub fn run(
     let plant = Plant::load(&files.config)?;
     let recipe = admit(&files.db, &plant, order, Purpose::Lot)?;
     let live = simulated::build(&plant, &rig, order)?;
-    let source = RigSource::Simulated(Simulated {
-        live: Some(Box::new(LiveRig {
-            rig: live.clone(),
-            epoch_us: jiff::Timestamp::now().as_microsecond(),
-            calibration: None,
-        })),
-        ..rig
-    });
+    let source = rig.on(LiveRig::new(live.clone()));
     let controls = Controls::new(true);
     let runner = LotRunner {
         db: &files.db,
@@ -68,14 +61,14 @@ pub fn run(
         let mut both = (onlooker, outer);
         let exit = runner.run(OrderQueue::from(asked), &mut both).await?;
         drop(both);
-        let told = playing.await.ok();
-        let played = match &told {
-            Some(told) if told.complete => Exit::Done,
+        let report = playing.await.ok();
+        let played = match &report {
+            Some(report) if report.complete => Exit::Done,
             Some(_) => Exit::AnswerIsNo,
             None => Exit::Trouble(Cause::script()),
         };
         // Alarms belong to the story; a failure of the program does not.
         let own = exit.cause().is_some_and(Cause::is_program_failure);
-        Ok((told, if own { exit } else { played }))
+        Ok((report, if own { exit } else { played }))
     })
 }

@@ -12,7 +12,7 @@ use machine::rig::bin::Bin;
 use machine::station::annunciator::ListedAlarm;
 use machine::station::catalogue::AlarmCode;
 use machine::station::trouble::Alarm;
-use rigsim::SimError;
+use rigsim::{SharedRig, SimError};
 use std::collections::{BTreeMap, BTreeSet};
 use texts::Lang;
 use units::RigTime;
@@ -122,16 +122,19 @@ impl Narrator {
         self.stamped(now, &text);
     }
 
-    /// Returns the account, with the parts in each bin and the collisions.
-    pub fn end(mut self, crashes: &[String]) -> String {
+    /// Returns the account, with the parts in each bin, the collisions and the overdriven coils of `rig`.
+    pub fn end(mut self, rig: &SharedRig) -> String {
         let bins: Vec<String> = self
             .bins
             .iter()
             .map(|(bin, n)| format!("{bin} {n}"))
             .collect();
         self.text += &format!("\nin the bins: {}\n", bins.join(", "));
-        for crash in crashes {
+        for crash in rig.crashes() {
             self.text += &format!("BODIES TOUCHED: {crash}\n");
+        }
+        for overdrive in rig.overdrives() {
+            self.text += &format!("COIL OVERDRIVEN: {overdrive}\n");
         }
         if !rigsim::world::bodies::WATCHED {
             self.text += "bodies: not watched\n";

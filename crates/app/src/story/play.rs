@@ -106,7 +106,7 @@ impl Player {
             }
         }
         complete &= steps.peek().is_none();
-        let text = narrator.end(&rig.crashes());
+        let text = narrator.end(&rig);
         if let Some((file, entries)) = journal
             && let Err(error) = write_journal(file, &entries)
         {

@@ -98,7 +98,7 @@ fn add(script: &mut Script, text: &str) -> anyhow::Result<()> {
         ["parts", count] => script.parts = number(count)?,
         ["fault", fault] => script.faults.push(fault.to_owned()),
         ["after", ref rest @ ..] => script.steps.push(step(rest)?),
-        _ => bail!("found {text:?}, expected parts N, fault NAME[=VALUE] or after EVENT DEED"),
+        _ => bail!("found {text:?}, expected parts N, fault NAME[=VALUE] or after EVENT ACTION"),
     }
     Ok(())
 }
@@ -227,7 +227,7 @@ mod tests {
             ),
             (
                 "run",
-                "expected parts N, fault NAME[=VALUE] or after EVENT DEED",
+                "expected parts N, fault NAME[=VALUE] or after EVENT ACTION",
             ),
             (
                 "after state Running order stop",

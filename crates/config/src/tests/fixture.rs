@@ -83,7 +83,7 @@ fn refused(rig: &Table) -> Vec<String> {
 }
 
 #[test]
-fn a_rig_without_the_coil_board_refuses_each_of_its_recipes() {
+fn a_rig_without_coil_board_refuses_relay_recipes() {
     let refused = refused(&without_the_coil_board());
     assert_eq!(refused.len(), 9);
     for message in refused {
@@ -125,7 +125,7 @@ fn a_rig_without_references_refuses_relays_and_takes_resistors() {
 }
 
 #[test]
-fn a_resistor_is_refused_by_the_first_point_it_misses() {
+fn the_first_missing_point_refuses_a_resistor() {
     let copy = folder(&without_the_coil_board());
     let plant = Plant::load(copy.path()).unwrap();
     let recipe = load_recipe(copy.path(), "resistor-390").unwrap();
@@ -167,7 +167,7 @@ fn the_machine_resolves_without_the_coil_board() {
 }
 
 #[test]
-fn a_recipe_is_refused_by_the_first_point_that_is_missing() {
+fn the_first_missing_point_refuses_a_recipe() {
     for (section, name) in [
         ("digital_in", "latch"),
         ("digital_out", "arm"),
@@ -183,7 +183,7 @@ fn a_recipe_is_refused_by_the_first_point_that_is_missing() {
 }
 
 #[test]
-fn a_recipe_needs_no_point_that_its_test_does_not_read() {
+fn a_recipe_needs_only_the_points_it_reads() {
     let spare = [
         "coil_voltage",
         "contact_current",
@@ -200,7 +200,7 @@ fn a_recipe_needs_no_point_that_its_test_does_not_read() {
 }
 
 #[test]
-fn the_default_rig_wires_every_point_that_a_kind_declares() {
+fn the_default_rig_wires_every_declared_point() {
     let rig: Table = toml::from_str(RIG).unwrap();
     for kind in FIXTURES {
         let outputs = kind.digital_out.iter().map(|it| ("digital_out", it.name));

@@ -93,7 +93,7 @@ fn a_missing_file_is_named() {
 }
 
 #[test]
-fn a_serial_number_used_twice_is_refused_with_both_lines() {
+fn a_duplicate_serial_is_refused_with_both_lines() {
     let copy = Copy::with("golden.toml", |text| changed(text, "G-12-2", "G-12-1"));
     let [first, second] = [line_of(GOLDEN, "G-12-1"), line_of(GOLDEN, "G-12-2")];
     let expected = format!(
@@ -104,7 +104,7 @@ fn a_serial_number_used_twice_is_refused_with_both_lines() {
 }
 
 #[test]
-fn an_unknown_key_of_the_scene_is_refused_with_its_line() {
+fn an_unknown_scene_key_is_refused_with_its_line() {
     let copy = Copy::with("scene.toml", |text| {
         changed(text, "stroke_mm = 60.0", "strok_mm = 60.0")
     });
@@ -117,7 +117,7 @@ fn an_unknown_key_of_the_scene_is_refused_with_its_line() {
 }
 
 #[test]
-fn a_scene_with_a_number_out_of_range_is_refused_with_its_line() {
+fn a_scene_number_out_of_range_is_refused() {
     let copy = Copy::with("scene.toml", |text| {
         let line = text
             .lines()
@@ -138,7 +138,7 @@ fn a_scene_with_a_number_out_of_range_is_refused_with_its_line() {
 }
 
 #[test]
-fn a_place_beyond_the_stroke_of_the_axis_is_refused() {
+fn a_place_beyond_the_axis_stroke_is_refused() {
     let copy = Copy::with("rig.toml", |text| {
         changed(text, "point = 7, x_mm = 350.0", "point = 7, x_mm = 360.0")
     });

@@ -39,7 +39,7 @@ fn files(folder: &Path) -> BTreeMap<String, String> {
 }
 
 #[test]
-fn a_revision_is_what_loads_next_and_the_old_text_is_kept_to_the_letter() {
+fn a_revision_loads_next_and_keeps_the_old_text() {
     let (copy, plant) = bench();
     let old = load_recipe(copy.0.path(), NAME).unwrap();
     let path = "limits.operate_voltage_v.high";
@@ -69,7 +69,7 @@ fn a_revision_is_what_loads_next_and_the_old_text_is_kept_to_the_letter() {
 }
 
 #[test]
-fn the_second_of_two_people_is_told_and_nothing_is_written() {
+fn the_second_of_two_changes_is_refused() {
     let (copy, plant) = bench();
     let first = change(&plant, "decision.slow_repeats", json!(4));
     let second = change(&plant, "part.pin_length_mm", json!(3.6));
@@ -84,7 +84,7 @@ fn the_second_of_two_people_is_told_and_nothing_is_written() {
 }
 
 #[test]
-fn what_loading_or_the_plant_refuses_is_named_by_its_key_and_leaves_every_file_as_it_was() {
+fn a_refused_revision_names_its_key_and_changes_nothing() {
     let (copy, plant) = bench();
     let before = files(copy.0.path());
     let high = "limits.operate_voltage_v.high";
@@ -150,7 +150,7 @@ fn a_name_that_climbs_is_no_recipe() {
 }
 
 #[test]
-fn a_revision_that_was_cut_off_after_the_old_text_was_kept_is_made_again_under_its_number() {
+fn an_interrupted_revision_repeats_under_its_number() {
     let (copy, plant) = bench();
     let folder = copy.0.path().join("recipes/revisions/jzc-22f-012");
     std::fs::create_dir_all(&folder).unwrap();
@@ -170,7 +170,7 @@ fn a_revision_that_was_cut_off_after_the_old_text_was_kept_is_made_again_under_i
 }
 
 #[test]
-fn a_number_that_never_was_is_refused_with_the_greatest() {
+fn an_unknown_revision_is_refused_with_the_newest() {
     let (copy, _) = bench();
     for number in [0, 2, u32::MAX] {
         let refused = revision(copy.0.path(), NAME, Some(number)).unwrap_err();

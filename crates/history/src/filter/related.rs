@@ -5,8 +5,7 @@ use super::{Filter, Select};
 impl Filter {
     /// Selects runs.
     pub(in super::super) fn runs(&self) -> Select {
-        let mut select = Select::default();
-        select.sql.push_str(
+        let mut select = Select::new(
             "SELECT run.id FROM run JOIN lot ON lot.id = run.lot_id \
              JOIN recipe ON recipe.id = run.recipe_id WHERE 1",
         );
@@ -24,8 +23,7 @@ impl Filter {
 
     /// Selects alarms with lot and run in order of time.
     pub(in super::super) fn alarms(&self) -> Select {
-        let mut select = Select::default();
-        select.sql.push_str(
+        let mut select = Select::new(
             "SELECT lot.name, run.number, alarm.code, alarm.line, alarm.text, alarm.raised_at_us, \
              alarm.cleared_at_us, alarm_state.acknowledged_at_us, alarm_state.acknowledged_by, \
              alarm_state.shelved_until_us, alarm_state.shelved_by, alarm_state.shelf_reason, alarm.args \
@@ -33,12 +31,7 @@ impl Filter {
              LEFT JOIN run ON run.id = alarm.run_id LEFT JOIN lot ON lot.id = run.lot_id WHERE 1",
         );
         self.run_conditions(&mut select, "alarm");
-        if let Some(since) = self.since {
-            select.add(" AND alarm.raised_at_us >= ?", since.0);
-        }
-        if let Some(until) = self.until {
-            select.add(" AND alarm.raised_at_us < ?", until.0);
-        }
+        self.span(&mut select, "alarm.raised_at_us");
         select
             .sql
             .push_str(" ORDER BY alarm.raised_at_us, alarm.id");
@@ -48,19 +41,13 @@ impl Filter {
 
     /// Selects orders with lot and run in order of time.
     pub(in super::super) fn orders(&self, who: Option<&str>) -> Select {
-        let mut select = Select::default();
-        select.sql.push_str(
+        let mut select = Select::new(
             "SELECT ordered.at_us, lot.name, run.number, ordered.who, ordered.role, ordered.origin, \
              ordered.what, ordered.refused FROM ordered LEFT JOIN run ON run.id = ordered.run_id \
              LEFT JOIN lot ON lot.id = run.lot_id WHERE 1",
         );
         self.run_conditions(&mut select, "ordered");
-        if let Some(since) = self.since {
-            select.add(" AND ordered.at_us >= ?", since.0);
-        }
-        if let Some(until) = self.until {
-            select.add(" AND ordered.at_us < ?", until.0);
-        }
+        self.span(&mut select, "ordered.at_us");
         if let Some(who) = who {
             select.add(" AND ordered.who = ?", who.to_owned());
         }

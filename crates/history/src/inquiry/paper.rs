@@ -6,6 +6,7 @@ use super::{InquiryError, Result, checks};
 use crate::report::certificate::certificate;
 use crate::report::lot::{LotReport, ParameterValues};
 use crate::report::{Lang, Paper, alarms};
+use crate::store::PROGRAM;
 use crate::{Archive, Filter};
 use jiff::{Timestamp, tz::TimeZone};
 
@@ -13,8 +14,7 @@ use jiff::{Timestamp, tz::TimeZone};
 pub fn paper(language: Lang) -> Paper {
     let zone = TimeZone::system();
     let now = Timestamp::now().to_zoned(zone.clone());
-    let program = concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION"));
-    let made = format!("{} · {program}", now.strftime("%Y-%m-%d %H:%M %:z"));
+    let made = format!("{} · {PROGRAM}", now.strftime("%Y-%m-%d %H:%M %:z"));
     Paper {
         language,
         zone,

@@ -1,4 +1,4 @@
-//! Verdicts of another recipe on the parts of a lot. Nothing is written.
+//! Verdicts of another recipe on the parts of a lot; writes no row.
 
 use super::{InquiryError, Result, checks};
 use crate::{Archive, Filter, Part, rejudged};

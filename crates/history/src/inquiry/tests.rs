@@ -6,7 +6,7 @@ use crate::columns::{COLUMNS, header, row};
 use crate::{Filter, Part};
 
 #[test]
-fn a_member_that_a_question_does_not_use_is_refused_by_name() {
+fn an_unused_member_is_refused_by_name() {
     let filter = Filter {
         lot: Some("A".into()),
         bin: Some("coil".into()),
@@ -33,7 +33,7 @@ fn every_member_of_the_filter_has_its_name() {
 }
 
 #[test]
-fn a_part_has_a_cell_under_every_column_and_none_is_named_twice() {
+fn a_part_has_one_cell_per_column() {
     let keys = ["operate_voltage_v".to_owned()];
     let mut part = Part::fixture("批次", 7, "fail");
     part = part.with_reasons(["a", "b"].map(machine::dut::Reason::unclassified).into());

@@ -4,12 +4,14 @@
 //! Steps, rating and drive come from the kind ([`Card`]), limits from the recipe, figures of the plant from `card.toml`
 //! ([`CardSettings`]).
 
+use super::lot::limits;
 use super::page::{Format, page};
-use super::words::{figure, parameter};
+use super::words::{figure, parameter, short_hash};
 use machine::dut::card::{Card, CardSettings, Demand, Piece, Step};
 use machine::dut::{Characteristic, Recipe};
 use machine::gauge::Rule;
 use maud::{Markup, html};
+use quality::Limits;
 use texts::Lang;
 
 /// Returns the card as an HTML page, A4 landscape.
@@ -138,15 +140,9 @@ fn demands(language: Lang, recipe: &Recipe, characteristics: &[Characteristic]) 
     let one = |characteristic: &Characteristic| {
         let limit = recipe.limits.of(*characteristic);
         let name = parameter(language, characteristic.key());
-        match (limit.low, limit.high) {
-            (None, None) => None,
-            (Some(low), None) => Some(format!("{name} ≥ {}", figure(Some(low)))),
-            (None, Some(high)) => Some(format!("{name} ≤ {}", figure(Some(high)))),
-            (Some(low), Some(high)) => {
-                let (low, high) = (figure(Some(low)), figure(Some(high)));
-                Some(format!("{name} {low} … {high}"))
-            }
-        }
+        let (low, high) = (limit.low, limit.high);
+        let is_limited = low.is_some() || high.is_some();
+        is_limited.then(|| format!("{name} {}", limits(Limits { low, high })))
     };
     let all: Vec<String> = characteristics.iter().filter_map(one).collect();
     all.join("; ")
@@ -167,7 +163,7 @@ fn remarks(language: Lang, recipe: &Recipe, kind: &Card) -> String {
     format!(
         "{rule}; {repeats} {}{counts}; {recipe_text} {}",
         decision.slow_repeats,
-        recipe.hash.get(..16).unwrap_or(&recipe.hash)
+        short_hash(&recipe.hash)
     )
 }
 

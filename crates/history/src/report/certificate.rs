@@ -2,7 +2,7 @@
 
 use super::lot::{limits, source};
 use super::page::{Format, facts, head, page, sign_off};
-use super::words::{figure, parameter};
+use super::words::{figure, parameter, short_hash};
 use super::{Paper, words};
 use crate::{LotSummary, Measurement, Part};
 use maud::{Markup, html};
@@ -41,7 +41,10 @@ fn about(paper: &Paper, part: &Part, run: &LotSummary) -> Vec<(&'static str, Str
     let language = paper.language;
     let say = |id| language.text(id);
     let none = || "–".to_owned();
-    let short = |hash: &str| hash.get(..16).unwrap_or(hash).to_owned();
+    let bin = |bin: &Option<String>| {
+        let name = |bin: &String| language.name("bin", bin).to_owned();
+        bin.as_ref().map_or_else(none, name)
+    };
     vec![
         (say("paper-lot_run"), format!("{} / {}", part.lot, part.run)),
         (say("paper-part"), part.seq.to_string()),
@@ -51,27 +54,19 @@ fn about(paper: &Paper, part: &Part, run: &LotSummary) -> Vec<(&'static str, Str
         ),
         (say("paper-certificate_tested"), paper.time(part.time)),
         (say("paper-recipe"), part.recipe.clone()),
-        (say("paper-recipe_sha_256"), short(&run.recipe_hash)),
+        (say("paper-recipe_sha_256"), short_hash(&run.recipe_hash)),
         (
             say("paper-measured_on"),
             source(language, &run.source).to_owned(),
         ),
         (
             say("paper-calibration_sha_256"),
-            run.calibration_hash.as_deref().map_or_else(none, short),
-        ),
-        (
-            say("paper-bin"),
-            part.bin
+            run.calibration_hash
                 .as_deref()
-                .map_or_else(none, |bin| language.name("bin", bin).to_owned()),
+                .map_or_else(none, short_hash),
         ),
-        (
-            say("paper-landed_bin"),
-            part.landed_bin
-                .as_deref()
-                .map_or_else(none, |bin| language.name("bin", bin).to_owned()),
-        ),
+        (say("paper-bin"), bin(&part.bin)),
+        (say("paper-landed_bin"), bin(&part.landed_bin)),
     ]
 }
 

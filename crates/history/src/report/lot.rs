@@ -2,7 +2,7 @@
 
 use super::charts;
 use super::page::{Format, facts, head, page, sign_off};
-use super::words::{figure, parameter, percent, span, unbroken};
+use super::words::{figure, parameter, percent, short_hash, span, unbroken};
 use super::{Paper, alarms};
 use crate::{Alarm, LotSummary, Passed};
 use maud::{Markup, PreEscaped, html};
@@ -80,15 +80,17 @@ impl LotReport<'_> {
             texts.dedup();
             texts.join(", ")
         };
-        let short = |hash: &str| hash.get(..16).unwrap_or(hash).to_owned();
-        let calibration =
-            |it: &LotSummary| it.calibration_hash.as_deref().map_or("–".into(), short);
+        let calibration = |it: &LotSummary| {
+            it.calibration_hash
+                .as_deref()
+                .map_or("–".into(), short_hash)
+        };
         let open = say("paper-not_closed").to_owned();
         facts(&[
             (say("paper-recipe"), all(&|it| it.recipe.clone())),
             (
                 say("paper-recipe_sha_256"),
-                all(&|it| short(&it.recipe_hash)),
+                all(&|it| short_hash(&it.recipe_hash)),
             ),
             (say("paper-runs"), self.runs.len().to_string()),
             (say("paper-calibration_sha_256"), all(&calibration)),

@@ -25,6 +25,7 @@ pub mod svg;
 mod words;
 
 pub use texts::Lang;
+pub use words::significant;
 
 use crate::Moment;
 use jiff::{Timestamp, tz::TimeZone};

@@ -48,7 +48,7 @@ pub(super) fn page(
     whole.into_string()
 }
 
-/// Title with a subtitle.
+/// Returns title and subtitle.
 pub(super) fn head(title: &str, about: &str) -> Markup {
     html! {
         header {
@@ -58,7 +58,7 @@ pub(super) fn head(title: &str, about: &str) -> Markup {
     }
 }
 
-/// Pairs of name and text in two columns.
+/// Returns pairs of name and text in two columns.
 pub(super) fn facts(pairs: &[(&str, String)]) -> Markup {
     html! {
         dl.facts {
@@ -69,7 +69,7 @@ pub(super) fn facts(pairs: &[(&str, String)]) -> Markup {
     }
 }
 
-/// Boxes for names and dates.
+/// Returns boxes for names and dates.
 pub(super) fn sign_off(language: Lang) -> Markup {
     let roles = [
         language.text("paper-tested_by"),

@@ -3,13 +3,13 @@
 use super::svg::Svg;
 use quality::ordered::round_step;
 
-/// Room for numbers at the left and under the plot.
+/// Margins around the plot, px, for numbers and names.
 const LEFT: f64 = 58.0;
 const BELOW: f64 = 24.0;
 const ABOVE: f64 = 10.0;
 const RIGHT: f64 = 64.0;
 
-/// Colours that are told apart in grey, too.
+/// Colours of different lightness, which differ in a grey print too.
 pub(super) const LINE: &str = "#1f5f99";
 pub(super) const LIMIT: &str = "#a11212";
 pub(super) const QUIET: &str = "#8a97a5";
@@ -26,7 +26,7 @@ pub(super) struct Plot {
 }
 
 impl Plot {
-    /// An empty plot of this size over these ranges; a range without extent gets some.
+    /// Makes an empty plot of this size over these ranges; widens a range of one value by 0.5 on each side.
     pub fn new([width, height]: [f64; 2], x: [f64; 2], y: [f64; 2]) -> Self {
         let mut plot = Self {
             svg: Svg::new([width, height]),
@@ -39,24 +39,24 @@ impl Plot {
         plot
     }
 
-    /// Place of a value along x.
+    /// Returns the place of a value along x.
     pub fn at_x(&self, value: f64) -> f64 {
         LEFT + (self.width - LEFT - RIGHT) * (value - self.x[0]) / (self.x[1] - self.x[0])
     }
 
-    /// Place of a value along y.
+    /// Returns the place of a value along y.
     pub fn at_y(&self, value: f64) -> f64 {
         let bottom = self.height - BELOW;
         bottom - (bottom - ABOVE) * (value - self.y[0]) / (self.y[1] - self.y[0])
     }
 
-    /// A text centred under the plot at a value of x.
+    /// Writes a text under the plot, centred at a value of x.
     pub fn under(&mut self, x: f64, text: &str) {
         let at = [self.at_x(x), self.height - 8.0];
         self.svg.text(at, "text-anchor=\"middle\"", text);
     }
 
-    /// A line across at a value of y, named at the right.
+    /// Draws a horizontal line at a value of y with its name at the right.
     pub fn across(&mut self, y: f64, colour: &str, dashes: &str, name: &str) {
         let (at, end) = (self.at_y(y), self.width - RIGHT);
         let style = format!("stroke=\"{colour}\" stroke-dasharray=\"{dashes}\"");
@@ -65,7 +65,7 @@ impl Plot {
         self.svg.text([end + 3.0, at + 4.0], &style, name);
     }
 
-    /// A line upwards at a value of x, named at its top.
+    /// Draws a vertical line at a value of x with its name at the top.
     pub fn vertical_line(&mut self, x: f64, colour: &str, name: &str) {
         let (at, bottom) = (self.at_x(x), self.height - BELOW);
         let style = format!("stroke=\"{colour}\" stroke-width=\"1.5\" stroke-dasharray=\"5 3\"");
@@ -74,12 +74,12 @@ impl Plot {
         self.svg.text([at + 3.0, ABOVE + 9.0], &style, name);
     }
 
-    /// The finished picture.
+    /// Returns the picture.
     pub fn finish(self) -> String {
         self.svg.inline()
     }
 
-    /// Round values of y with thin lines across, and the frame.
+    /// Draws round values of y with thin horizontal lines, and the frame.
     fn ticks(&mut self) {
         let [low, high] = self.y;
         let step = round_step((high - low) / 5.0).unwrap_or(1.0);
@@ -100,10 +100,10 @@ impl Plot {
     }
 }
 
-/// As many decimals as the step needs.
+/// Formats a value with the decimals of the step between two ticks.
 pub(super) fn ticked(value: f64, step: f64) -> String {
     let decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
-    // Not a negative zero.
+    // Adding 0 turns -0 into 0.
     format!("{:.decimals$}", value + 0.0)
 }
 

@@ -17,7 +17,7 @@ use texts::Lang;
 /// Parts on one sheet; spreadsheets hold 1,048,576 rows.
 const ROWS: u32 = 1_000_000;
 /// Days from the epoch of spreadsheets to 1970.
-const EPOCH_DAYS: f64 = 25_569.0;
+pub const EPOCH_DAYS: f64 = 25_569.0;
 /// Height of a chart in rows of the summary.
 const CHART_ROWS: u32 = 16;
 

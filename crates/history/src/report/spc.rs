@@ -80,14 +80,14 @@ fn legend(language: Lang, charts: &[NamedChart<'_>]) -> Markup {
             tbody { @for it in charts { tr {
                 td { (title(language, it)) }
                 td.n { (it.chart.points.len()) } td.n { (figure(Some(it.chart.centre))) }
-                td.text { (told(language, &it.chart.signals)) }
+                td.text { (signals(language, &it.chart.signals)) }
             } } }
         }
         p.note { (language.text("paper-chart_note")) }
     } }
 }
 
-fn told(language: Lang, signals: &[Signal]) -> String {
+fn signals(language: Lang, signals: &[Signal]) -> String {
     if signals.is_empty() {
         return language.text("paper-spc_none").to_owned();
     }

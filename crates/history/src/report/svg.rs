@@ -9,7 +9,7 @@ pub struct Svg {
 }
 
 impl Svg {
-    /// An empty picture of this width and height.
+    /// Makes an empty picture of this width and height.
     pub fn new(size: [f64; 2]) -> Self {
         let text = String::new();
         Self { text, size }
@@ -72,7 +72,7 @@ impl Svg {
     }
 }
 
-/// Text that stays text.
+/// Escapes the characters that have a meaning in XML.
 pub fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")

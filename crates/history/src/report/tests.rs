@@ -118,7 +118,7 @@ fn lot_report(language: Lang) -> String {
 }
 
 #[test]
-fn a_text_of_an_operator_stays_text_on_every_page() {
+fn typed_text_stays_text_on_every_page() {
     let [chart, _] = individuals(&[1.0, 2.0, 3.0], Rules::Nelson).unwrap();
     let names = [EVIL.to_owned(), EVIL.to_owned(), EVIL.to_owned()];
     let named = NamedChart {
@@ -139,7 +139,7 @@ fn a_text_of_an_operator_stays_text_on_every_page() {
 }
 
 #[test]
-fn whatever_says_that_a_part_is_good_says_what_was_not_tested() {
+fn every_page_of_a_good_part_names_untested_properties() {
     for (language, words) in [
         (Lang::En, ["insulation", "dielectric", "endurance"]),
         (Lang::Zh, ["绝缘电阻", "介质耐压", "寿命"]),
@@ -156,7 +156,7 @@ fn whatever_says_that_a_part_is_good_says_what_was_not_tested() {
 }
 
 #[test]
-fn a_part_that_failed_gets_a_record_and_no_certificate() {
+fn a_failed_part_gets_a_record_not_a_certificate() {
     let good = certificate(&paper(Lang::En), &part("pass"), &run());
     assert!(good.contains("<h1>Test certificate</h1>"));
     let bad = certificate(&paper(Lang::En), &part("fail"), &run());
@@ -164,7 +164,7 @@ fn a_part_that_failed_gets_a_record_and_no_certificate() {
 }
 
 #[test]
-fn a_record_says_in_its_language_why_the_part_failed() {
+fn a_record_gives_reasons_in_its_language() {
     let why = ["operate_voltage_v high", "coil open"].map(Reason::from_text);
     let failed = part("fail").with_reasons(why.into());
     for (language, words) in [
@@ -180,7 +180,7 @@ fn a_record_says_in_its_language_why_the_part_failed() {
 }
 
 #[test]
-fn a_chart_of_a_bin_bears_its_name_and_says_what_it_leaves_out() {
+fn a_bin_chart_names_bin_and_omitted_points() {
     let chart = shares(&[(100, 3), (100, 5), (100, 4)]).unwrap();
     let named = NamedChart {
         of: "coil",
@@ -195,7 +195,7 @@ fn a_chart_of_a_bin_bears_its_name_and_says_what_it_leaves_out() {
 }
 
 #[test]
-fn a_certificate_shows_the_last_attempt_rounded_by_its_uncertainty() {
+fn a_certificate_rounds_the_last_attempt_by_its_uncertainty() {
     let page = certificate(&paper(Lang::En), &part("pass"), &run());
     assert!(
         page.contains(">7.704<") && page.contains(">0.011<"),
@@ -211,7 +211,7 @@ fn a_simulated_lot_says_so() {
 }
 
 #[test]
-fn a_lot_report_tells_both_yields_and_how_long_an_alarm_stood() {
+fn a_lot_report_has_both_yields_and_alarm_times() {
     let page = lot_report(Lang::En);
     assert!(page.contains("33.33 %") && page.contains("66.67 %"));
     assert!(page.contains("0:01:00"));
@@ -241,7 +241,7 @@ fn process_card(language: Lang) -> String {
 }
 
 #[test]
-fn a_process_card_has_every_step_its_limits_and_the_sum_of_its_times() {
+fn a_process_card_has_steps_limits_and_total_time() {
     for language in LANGUAGES {
         let page = process_card(language);
         let rows = page.matches("<td>0.25</td>").count();
@@ -254,13 +254,13 @@ fn a_process_card_has_every_step_its_limits_and_the_sum_of_its_times() {
 }
 
 #[test]
-fn every_step_of_the_card_has_its_quota_by_name() {
+fn every_card_step_has_its_quota_by_name() {
     let steps = recipe().device.card().steps;
     assert!(steps.iter().map(|it| it.name).eq(STEPS.iter().copied()));
 }
 
 #[test]
-fn a_control_chart_draws_the_last_points_and_numbers_what_stands_out() {
+fn a_control_chart_numbers_signals_among_the_last_points() {
     let values: Vec<f64> = (0..50).map(|n| f64::from(n % 3)).chain([40.0]).collect();
     let [chart, _] = individuals(&values, Rules::Nelson).unwrap();
     let svg = super::charts::control(&chart, 10, &[]);
@@ -269,7 +269,7 @@ fn a_control_chart_draws_the_last_points_and_numbers_what_stands_out() {
 }
 
 #[test]
-fn every_state_of_an_alarm_has_its_word_in_both_languages() {
+fn every_alarm_state_has_a_word_in_both_languages() {
     let states = [
         (AlarmState::Unacknowledged, "unacknowledged", "未确认"),
         (AlarmState::Acknowledged, "acknowledged", "已确认"),

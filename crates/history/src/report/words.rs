@@ -28,19 +28,30 @@ pub(super) fn unbroken(name: &str) -> String {
     name.replace(" / ", "\u{a0}/\u{a0}")
 }
 
+/// Returns the first 16 digits of a hash.
+pub(super) fn short_hash(hash: &str) -> String {
+    hash.get(..16).unwrap_or(hash).to_owned()
+}
+
 /// Formats five significant digits without trailing zeros; a dash for `None`.
 pub(super) fn figure(value: Option<f64>) -> String {
     let Some(value) = value.filter(|it| it.is_finite()) else {
         return "–".to_owned();
     };
+    let is_plain = value == 0.0 || (-4.0..7.0).contains(&value.abs().log10().floor());
+    match is_plain {
+        true => significant(value, 5),
+        false => format!("{value:.3e}"),
+    }
+}
+
+/// Formats `digits` significant digits without trailing zeros or exponent.
+pub fn significant(value: f64, digits: u8) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
     let before = value.abs().log10().floor();
-    if !(-4.0..7.0).contains(&before) {
-        return format!("{value:.3e}");
-    }
-    let decimals = (4.0 - before).max(0.0) as usize;
+    let decimals = (f64::from(digits) - 1.0 - before).max(0.0) as usize;
     let text = format!("{value:.decimals$}");
     if text.contains('.') {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -49,7 +60,7 @@ pub(super) fn figure(value: Option<f64>) -> String {
     }
 }
 
-/// Formats a share as percent with two decimals; a dash for a share of 0.
+/// Formats a share as percent with two decimals; a dash when `of` is 0.
 pub(super) fn percent(part: u64, of: u64) -> String {
     if of == 0 {
         return "–".to_owned();

@@ -27,7 +27,7 @@ fn parts(name: &str, count: u64) -> Vec<Row> {
 }
 
 #[test]
-fn what_was_judged_between_a_good_check_and_a_failed_one_is_suspect() {
+fn parts_between_passed_and_failed_check_are_suspect() {
     let file = File::new();
     let mut store = file.store();
     store.begin_lot(&lot("A")).unwrap();
@@ -66,7 +66,7 @@ fn a_check_sent_again_is_one_check() {
 }
 
 #[test]
-fn on_a_rig_a_failed_check_reaches_into_the_lots_before_and_a_simulated_rig_is_another_every_run() {
+fn failed_check_reaches_earlier_lots_on_a_rig_only() {
     let file = File::new();
     let mut store = file.store();
     let of = |name: &str, simulated| LotRecord {
@@ -83,7 +83,7 @@ fn on_a_rig_a_failed_check_reaches_into_the_lots_before_and_a_simulated_rig_is_a
 }
 
 #[test]
-fn a_lot_is_where_it_was_put_last_and_open_before() {
+fn a_lot_has_its_last_state_and_begins_open() {
     let file = File::new();
     let mut store = file.store();
     assert_eq!(store.begin_lot(&lot("A")).unwrap(), 1);
@@ -105,7 +105,7 @@ fn a_lot_is_where_it_was_put_last_and_open_before() {
 }
 
 #[test]
-fn a_lot_that_was_cut_off_is_open_once_a_program_has_the_rig_again() {
+fn the_next_program_opens_a_lot_cut_off() {
     let file = File::new();
     let mut store = file.store();
     let put = |store: &mut Store, name: &str, simulated: bool, state| {
@@ -134,7 +134,7 @@ fn a_lot_that_was_cut_off_is_open_once_a_program_has_the_rig_again() {
 }
 
 #[test]
-fn a_retest_adds_to_the_final_yield_and_leaves_the_first_pass_yield() {
+fn a_retest_raises_only_the_final_yield() {
     let file = File::new();
     let mut store = file.store();
     store.begin_lot(&lot("A")).unwrap();
@@ -165,7 +165,7 @@ fn a_retest_adds_to_the_final_yield_and_leaves_the_first_pass_yield() {
 }
 
 #[test]
-fn the_calibration_that_a_run_measures_by_stays_with_it() {
+fn a_run_keeps_its_calibration() {
     let file = File::new();
     let mut store = file.store();
     store.begin_lot(&lot("A")).unwrap();
@@ -176,7 +176,7 @@ fn the_calibration_that_a_run_measures_by_stays_with_it() {
 }
 
 #[test]
-fn an_order_is_kept_with_who_where_what_and_why_not() {
+fn an_order_keeps_person_origin_content_and_refusal() {
     let file = File::new();
     let mut store = file.store();
     store.begin_lot(&lot("A")).unwrap();
@@ -230,7 +230,7 @@ fn change(code: Option<&str>, change: AlarmChange) -> Row {
 }
 
 #[test]
-fn an_alarm_that_nobody_has_seen_is_left_over_until_somebody_has() {
+fn an_alarm_stays_listed_until_it_is_acknowledged() {
     let file = File::new();
     let mut store = file.store();
     store.begin_lot(&lot("A")).unwrap();
@@ -280,7 +280,7 @@ fn an_alarm_that_nobody_has_seen_is_left_over_until_somebody_has() {
 }
 
 #[test]
-fn wear_adds_up_over_runs_and_begins_anew_when_it_was_replaced() {
+fn wear_adds_up_until_the_replacement() {
     let file = File::new();
     let mut store = file.store();
     let more = |more| {
@@ -304,7 +304,7 @@ fn wear_adds_up_over_runs_and_begins_anew_when_it_was_replaced() {
 }
 
 #[test]
-fn the_book_of_lots_counts_over_runs_and_leaves_out_what_was_imported() {
+fn the_book_of_lots_counts_runs_without_imports() {
     let file = File::new();
     let mut store = file.store();
     for (name, opened_at_us) in [("A", 1), ("B", 2), ("A", 3)] {
@@ -320,16 +320,16 @@ fn the_book_of_lots_counts_over_runs_and_leaves_out_what_was_imported() {
         .import(&lot("C"), vec![part("C", 1, "pass", 7.0)])
         .unwrap();
     let book = file.archive().lot_book(10, 0).unwrap();
-    let told: Vec<_> = book
+    let counted: Vec<_> = book
         .iter()
         .map(|it| (it.lot.as_str(), it.runs, it.counts.parts, it.opened.0))
         .collect();
-    assert_eq!(told, [("A", 2, 4, 3), ("B", 1, 2, 2)]);
+    assert_eq!(counted, [("A", 2, 4, 3), ("B", 1, 2, 2)]);
     assert_eq!(file.archive().lot_book(1, 1).unwrap()[0].lot, "B");
 }
 
 #[test]
-fn what_a_decision_makes_of_a_lot_it_does_not_make_twice() {
+fn a_repeated_decision_is_refused() {
     for decision in Decision::ALL {
         assert_eq!(Decision::ordered(decision.order()), Some(decision));
         let again = decision.refusal(decision.becomes());

@@ -44,7 +44,7 @@ fn of_schema(file: &File, schema: usize) {
 }
 
 #[test]
-fn a_file_of_every_earlier_schema_keeps_its_rows_and_can_be_written_on() {
+fn a_migrated_file_keeps_rows_and_takes_new_ones() {
     for schema in 1..MIGRATIONS.len() {
         let file = File::new();
         of_schema(&file, schema);
@@ -77,7 +77,7 @@ fn a_file_of_every_earlier_schema_keeps_its_rows_and_can_be_written_on() {
 }
 
 #[test]
-fn the_texts_of_a_file_without_codes_are_read_into_rows() {
+fn texts_without_codes_migrate_into_reason_rows() {
     let file = File::new();
     of_schema(&file, 7);
     file.archive();
@@ -113,7 +113,7 @@ fn the_texts_of_a_file_without_codes_are_read_into_rows() {
 }
 
 #[test]
-fn texts_of_more_parts_than_a_batch_are_all_read() {
+fn texts_beyond_one_batch_are_all_read() {
     let file = File::new();
     of_schema(&file, 7);
     let more =

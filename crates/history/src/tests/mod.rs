@@ -30,7 +30,7 @@ impl File {
         }
     }
     fn store(&self) -> Store {
-        Store::open(&self.path, &identity()).unwrap()
+        Store::open(&self.path).unwrap()
     }
     fn archive(&self) -> Archive {
         Archive::open(&self.path).unwrap()
@@ -38,13 +38,6 @@ impl File {
     /// The file as any other program sees it.
     fn by_hand(&self) -> rusqlite::Connection {
         rusqlite::Connection::open(&self.path).unwrap()
-    }
-}
-
-fn identity() -> Identity {
-    Identity {
-        program: "relayrig".into(),
-        version: "0.1.0".into(),
     }
 }
 

@@ -23,7 +23,7 @@ fn explained(by_hand: &rusqlite::Connection, sql: &str) -> String {
 }
 
 #[test]
-fn a_value_range_enters_the_index_at_its_first_value() {
+fn a_value_range_enters_the_index_once() {
     let file = File::new();
     let _store = filled(&file, 10);
     let lot = Filter {
@@ -48,7 +48,7 @@ fn a_value_range_enters_the_index_at_its_first_value() {
 }
 
 #[test]
-fn the_values_of_a_part_are_read_from_their_index_and_planned_once() {
+fn values_of_a_part_come_from_their_index() {
     let file = File::new();
     let _store = filled(&file, 10);
     let archive = file.archive();
@@ -142,7 +142,7 @@ fn scans_a_growing_table(plan: &str) -> bool {
 }
 
 #[test]
-fn no_question_about_a_lot_a_span_or_a_value_reads_through_a_table_that_grows() {
+fn no_query_scans_a_growing_table() {
     let file = File::new();
     let _store = filled(&file, 10);
     let of_lot = Filter {
@@ -190,7 +190,7 @@ fn no_question_about_a_lot_a_span_or_a_value_reads_through_a_table_that_grows() 
 }
 
 #[test]
-fn what_is_read_or_deleted_part_by_part_is_found_by_its_key() {
+fn rows_of_a_part_are_found_by_key() {
     let file = File::new();
     let _store = filled(&file, 10);
     let by_hand = file.by_hand();
@@ -216,7 +216,7 @@ fn what_is_read_or_deleted_part_by_part_is_found_by_its_key() {
 }
 
 #[test]
-fn alarms_of_a_lot_or_a_span_are_found_by_an_index() {
+fn alarms_are_found_by_an_index() {
     let file = File::new();
     let _store = filled(&file, 10);
     let of_lot = Filter {

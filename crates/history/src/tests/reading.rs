@@ -2,6 +2,14 @@
 
 use super::*;
 
+fn parse_import(
+    text: &str,
+    maps: &[(String, String)],
+    parameters: &[String],
+) -> std::result::Result<Vec<ImportRow>, ImportError> {
+    parse_records(&csv::read(text)?, maps, parameters)
+}
+
 fn seqs(archive: &Archive, filter: &Filter) -> Vec<u64> {
     archive
         .query(filter)
@@ -103,7 +111,7 @@ fn each_member_of_the_filter_restricts() {
 }
 
 #[test]
-fn a_filter_from_text_refuses_what_it_does_not_know() {
+fn a_filter_from_text_refuses_unknown_members() {
     let filter: Filter =
         serde_json::from_str(r#"{"lot":"A","since":"1970-01-01T00:00:01Z"}"#).unwrap();
     assert_eq!(filter.since, Some(Moment(1_000_000)));
@@ -204,7 +212,7 @@ fn limits_are_given_only_when_all_runs_agree() {
 }
 
 #[test]
-fn the_view_parts_has_a_column_per_parameter_and_local_time() {
+fn the_parts_view_has_parameter_columns_and_local_time() {
     let file = File::new();
     let mut store = filled(&file, 1);
     let mut more = part("A", 2, "pass", 7.0);

@@ -47,7 +47,7 @@ fn by_values(part: &Part, recipe: &Recipe) -> Verdict {
 }
 
 #[test]
-fn the_limits_of_the_other_recipe_decide_with_the_stored_uncertainty() {
+fn the_other_recipes_limits_judge_with_stored_uncertainty() {
     let recipe = recipe();
     assert_eq!(
         by_values(&part(8.9, "fail", &["operate_voltage_v high"]), &recipe),
@@ -80,7 +80,7 @@ fn what_no_value_says_stays() {
 }
 
 #[test]
-fn a_value_that_was_never_had_is_void_and_never_passes() {
+fn a_missing_value_is_void() {
     let mut part = part(8.0, "pass", &[]);
     part.values.remove("operate_time_ms");
     let again = by_values(&part, &recipe());
@@ -91,7 +91,7 @@ fn a_value_that_was_never_had_is_void_and_never_passes() {
 }
 
 #[test]
-fn values_are_brought_to_the_reference_temperature_of_the_other_recipe() {
+fn values_convert_to_the_other_recipes_reference_temperature() {
     let mut recipe = recipe();
     let stored = part(8.9, "pass", &[]);
     let at_23_c = Basis::of_recipe(&recipe);
@@ -141,7 +141,7 @@ fn never_made() -> Vec<Curve> {
 }
 
 #[test]
-fn a_part_without_a_value_fails_where_its_curves_prove_it_and_is_void_where_they_do_not() {
+fn curves_decide_a_missing_value_as_fail_or_void() {
     let recipe = recipe();
     let mut high = part(
         8.0,

@@ -3,13 +3,13 @@
 use super::*;
 
 #[test]
-fn a_file_of_another_program_is_refused_and_left_untouched() {
+fn a_foreign_file_is_refused_untouched() {
     let file = File::new();
     file.by_hand()
         .execute_batch("CREATE TABLE invoices (id INTEGER)")
         .unwrap();
     let before = std::fs::read(&file.path).unwrap();
-    let refusal = Store::open(&file.path, &identity()).unwrap_err();
+    let refusal = Store::open(&file.path).unwrap_err();
     assert!(matches!(refusal, HistoryError::Foreign { .. }), "{refusal}");
     assert!(matches!(
         Archive::open(&file.path),
@@ -19,11 +19,11 @@ fn a_file_of_another_program_is_refused_and_left_untouched() {
 }
 
 #[test]
-fn a_file_that_is_no_database_is_refused_and_left_untouched() {
+fn a_non_database_file_is_refused_untouched() {
     let file = File::new();
     let text = "this is a letter, not a database\n".repeat(100);
     std::fs::write(&file.path, &text).unwrap();
-    let refusal = Store::open(&file.path, &identity()).unwrap_err();
+    let refusal = Store::open(&file.path).unwrap_err();
     assert!(
         refusal.to_string().contains("no SQLite database"),
         "{refusal}"
@@ -38,7 +38,7 @@ fn a_newer_schema_is_refused_with_both_numbers() {
     file.by_hand()
         .pragma_update(None, "user_version", SCHEMA + 1)
         .unwrap();
-    let refusal = Store::open(&file.path, &identity()).unwrap_err();
+    let refusal = Store::open(&file.path).unwrap_err();
     assert!(matches!(refusal, HistoryError::Newer { found, known, .. } if found == known + 1));
     assert!(matches!(
         Archive::open(&file.path),
@@ -57,7 +57,7 @@ fn reading_what_was_never_written_makes_no_file() {
 }
 
 #[test]
-fn a_file_locked_by_another_process_is_an_error_that_says_so() {
+fn a_file_locked_elsewhere_is_an_error_by_name() {
     let file = File::new();
     let mut store = file.store();
     store.impatient();
@@ -73,7 +73,7 @@ fn a_file_locked_by_another_process_is_an_error_that_says_so() {
 }
 
 #[test]
-fn a_file_that_may_not_be_written_is_an_error_that_says_so_and_can_still_be_read() {
+fn read_only_file_is_readable_and_names_its_error() {
     let file = File::new();
     let mut store = filled(&file, 10);
     store.read_only();
@@ -85,7 +85,7 @@ fn a_file_that_may_not_be_written_is_an_error_that_says_so_and_can_still_be_read
 }
 
 #[test]
-fn a_full_disk_is_an_error_that_says_so_and_loses_nothing_written() {
+fn a_full_disk_names_its_error_and_keeps_rows() {
     let file = File::new();
     let mut store = filled(&file, 10);
     store.forbid_growth();
@@ -114,7 +114,7 @@ fn the_file_is_marked_as_ours_and_written_durably() {
 }
 
 #[test]
-fn every_table_is_strict_and_every_column_has_its_remark() {
+fn every_table_is_strict_with_remarked_columns() {
     let file = File::new();
     drop(file.store());
     let by_hand = file.by_hand();
@@ -145,7 +145,7 @@ fn every_table_is_strict_and_every_column_has_its_remark() {
 }
 
 #[test]
-fn a_backup_of_a_file_in_use_is_whole_and_never_overwrites() {
+fn a_backup_in_use_is_whole_and_never_overwrites() {
     let (file, copy) = (File::new(), File::new());
     let mut store = filled(&file, 25);
     let archive = file.archive();
@@ -165,7 +165,7 @@ fn a_backup_of_a_file_in_use_is_whole_and_never_overwrites() {
 }
 
 #[test]
-fn a_batch_whose_process_died_before_the_end_left_nothing() {
+fn an_uncommitted_batch_leaves_no_row() {
     let file = File::new();
     let store = filled(&file, 5);
     store.begin_and_forget();

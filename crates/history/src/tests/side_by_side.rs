@@ -50,7 +50,7 @@ fn agree(file: &File) {
 }
 
 #[test]
-fn closed_runs_side_by_side_and_an_open_one_give_the_values_of_the_index() {
+fn packed_values_equal_the_values_of_the_index() {
     let file = File::new();
     let mut store = file.store();
     for name in ["A", "B", "C"] {
@@ -68,7 +68,7 @@ fn closed_runs_side_by_side_and_an_open_one_give_the_values_of_the_index() {
 }
 
 #[test]
-fn runs_whose_parts_alternate_are_read_in_order_of_judgement() {
+fn alternating_runs_come_in_order_of_judgement() {
     let file = File::new();
     let mut store = file.store();
     for name in ["A", "B"] {
@@ -89,7 +89,7 @@ fn runs_whose_parts_alternate_are_read_in_order_of_judgement() {
 }
 
 #[test]
-fn a_filter_for_more_than_runs_does_not_take_packed_values() {
+fn a_filter_within_runs_skips_packed_values() {
     let base = Filter::default;
     let some = |text: &str| Some(text.to_owned());
     let narrower = [

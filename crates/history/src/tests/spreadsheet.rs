@@ -19,7 +19,7 @@ fn part(operate_v: f64) -> Part {
 }
 
 #[test]
-fn a_spreadsheet_reads_back_as_it_was_written_with_its_charts_and_no_formula() {
+fn a_spreadsheet_reads_back_with_charts_without_formula() {
     let keys = ["operate_voltage_v".to_owned()];
     let mut sheet = Sheet::new(Lang::En, TimeZone::UTC, &keys).unwrap();
     for _ in 0..3 {

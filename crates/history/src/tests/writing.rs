@@ -71,7 +71,7 @@ fn an_interruption_adds_its_code_once() {
 }
 
 #[test]
-fn what_is_inside_is_known_to_the_next_run_of_the_same_rig() {
+fn the_next_run_of_a_rig_knows_its_contents() {
     let file = File::new();
     let mut store = file.store();
     let inside = Inside {
@@ -92,7 +92,7 @@ fn what_is_inside_is_known_to_the_next_run_of_the_same_rig() {
 }
 
 #[test]
-fn what_was_seen_of_a_part_comes_back_with_it_and_with_nothing_else() {
+fn a_part_comes_back_with_its_curves_only() {
     let file = File::new();
     let mut store = file.store();
     store.begin_lot(&lot("A")).unwrap();
@@ -126,7 +126,7 @@ fn what_was_seen_of_a_part_comes_back_with_it_and_with_nothing_else() {
 }
 
 #[test]
-fn a_lot_opened_again_gets_the_next_run_and_overwrites_nothing() {
+fn a_lot_opened_again_gets_the_next_run() {
     let file = File::new();
     let mut store = file.store();
     assert_eq!(store.begin_lot(&lot("A")).unwrap(), 1);
@@ -190,7 +190,7 @@ fn a_batch_sent_again_makes_no_second_row() {
 }
 
 #[test]
-fn a_part_that_contradicts_its_row_is_refused_with_its_whole_batch() {
+fn a_contradicting_part_refuses_its_whole_batch() {
     let file = File::new();
     let mut store = file.store();
     store.begin_lot(&lot("A")).unwrap();
@@ -291,7 +291,7 @@ fn only_the_last_attempt_with_a_judged_value_counts() {
 }
 
 #[test]
-fn rows_of_a_lot_that_is_not_open_are_refused() {
+fn rows_of_a_closed_lot_are_refused() {
     let file = File::new();
     let mut store = file.store();
     let refusal = store
@@ -333,7 +333,7 @@ fn an_alarm_is_one_row_from_raised_to_cleared() {
 }
 
 #[test]
-fn the_latest_calibration_is_the_one_made_last_of_its_rig_and_coil() {
+fn the_latest_calibration_is_per_rig_and_coil() {
     let file = File::new();
     let mut store = file.store();
     let latest = |store: &Store| store.latest_calibration_of(false, 12.0).unwrap();
@@ -366,7 +366,7 @@ fn the_latest_calibration_is_the_one_made_last_of_its_rig_and_coil() {
 }
 
 #[test]
-fn quotes_chinese_and_sql_in_every_text_do_no_harm() {
+fn quotes_chinese_and_sql_in_texts_are_harmless() {
     let file = File::new();
     let mut store = file.store();
     let nasty = "批次'; DROP TABLE part; --\"\n";

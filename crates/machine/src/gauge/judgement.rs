@@ -84,6 +84,17 @@ pub enum Judgement {
     Void,
 }
 
+impl Judgement {
+    /// Returns the verdict of the row of one attempt; an attempt within U of a limit has not passed.
+    pub const fn verdict(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::Fail(_) | Self::Conditional(_) => "fail",
+            Self::Void => "void",
+        }
+    }
+}
+
 /// Judges one result by its limit; an open limit passes every usable result.
 ///
 /// # Panics

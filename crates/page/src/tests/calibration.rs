@@ -2,8 +2,8 @@
 
 use super::*;
 use ::history::{
-    CalibrationRecord, Identity, LotRecord, MeasurementRecord, PartRecord, ReferenceCheckRecord,
-    Row, Store, snapshot_hash,
+    CalibrationRecord, LotRecord, MeasurementRecord, PartRecord, ReferenceCheckRecord, Row, Store,
+    snapshot_hash,
 };
 use machine::dut::em_relay::Calibration;
 use machine::dut::em_relay::calibration::{InputLine, OutputLine};
@@ -71,7 +71,7 @@ fn golden(seq: u64, at_us: i64, uncertainty: Option<f64>) -> PartRecord {
 
 fn fixture(rows: &[Row], calibrations: &[CalibrationRecord]) -> Fixture {
     let fixture = Fixture::new();
-    let mut store = Store::open(&fixture.db, &Identity::of_this_program()).unwrap();
+    let mut store = Store::open(&fixture.db).unwrap();
     for calibration in calibrations {
         store.save_calibration(calibration).unwrap();
     }

@@ -1,20 +1,14 @@
 //! The history over HTTP.
 
 use super::*;
-use ::history::{
-    AlarmRecord, Identity, LotRecord, MeasurementRecord, OrderRecord, PartRecord, Row, Store,
-};
+use ::history::{AlarmRecord, LotRecord, MeasurementRecord, OrderRecord, PartRecord, Row, Store};
 
 const KEY: &str = "operate_voltage_v";
 
 /// A lot `A` of `parts` parts with 7.00 V, 7.01 V and so on; each fifth one fails.
 fn with_parts(parts: u64) -> Fixture {
     let fixture = Fixture::new();
-    let identity = Identity {
-        program: "test".into(),
-        version: "1".into(),
-    };
-    let mut store = Store::open(&fixture.db, &identity).unwrap();
+    let mut store = Store::open(&fixture.db).unwrap();
     let lot = LotRecord {
         lot: "A".into(),
         recipe: "r".into(),
@@ -190,15 +184,14 @@ async fn an_export_is_a_file_with_the_rows_of_the_filter() {
 #[tokio::test]
 async fn alarms_come_in_order_of_time_by_pages() {
     let fixture = with_parts(1);
-    let identity = Identity::of_this_program();
-    let mut store = Store::open(&fixture.db, &identity).unwrap();
+    let mut store = Store::open(&fixture.db).unwrap();
     for at in [3, 1, 2] {
         let alarm = AlarmRecord {
             code: format!("alarm {at}"),
             raised_at_us: at,
             ..AlarmRecord::default()
         };
-        store.alarm(&alarm).unwrap();
+        store.record(&[Row::Alarm(alarm)]).unwrap();
     }
     let alarms = fixture.get("/api/history/alarms?limit=2&offset=1").await;
     let codes: Vec<_> = alarms
@@ -379,7 +372,7 @@ async fn a_file_of_another_program_is_refused_unchanged() {
 #[tokio::test]
 async fn the_audit_lists_orders_with_their_persons() {
     let fixture = with_parts(1);
-    let mut store = Store::open(&fixture.db, &Identity::of_this_program()).unwrap();
+    let mut store = Store::open(&fixture.db).unwrap();
     for (at_us, who, refused) in [(1, "li", None), (2, "wang", Some("not now".to_owned()))] {
         let row = OrderRecord {
             at_us,

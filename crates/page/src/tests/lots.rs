@@ -1,11 +1,11 @@
 //! The list of lots and the wear counters over HTTP.
 
 use super::*;
-use ::history::{Decision, Identity, LotRecord, LotState, LotStateRecord, Row, Store, WearRecord};
+use ::history::{Decision, LotRecord, LotState, LotStateRecord, Row, Store, WearRecord};
 
 fn with_lots(states: &[(&str, LotState)]) -> Fixture {
     let fixture = Fixture::new();
-    let mut store = Store::open(&fixture.db, &Identity::of_this_program()).unwrap();
+    let mut store = Store::open(&fixture.db).unwrap();
     for (n, (lot, state)) in states.iter().enumerate() {
         let at_us = i64::try_from(n).unwrap() * 1_000_000;
         store
@@ -73,7 +73,7 @@ async fn lots_come_by_pages() {
 #[tokio::test]
 async fn wear_counters_are_those_of_the_rig_in_view() {
     let fixture = with_lots(&[("A", LotState::Open)]);
-    let mut store = Store::open(&fixture.db, &Identity::of_this_program()).unwrap();
+    let mut store = Store::open(&fixture.db).unwrap();
     for (simulated, more) in [(true, 7), (false, 9)] {
         let row = WearRecord {
             simulated,

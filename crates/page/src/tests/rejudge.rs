@@ -1,7 +1,7 @@
 //! Rejudging over HTTP.
 
 use super::*;
-use ::history::{Archive, Filter, Identity, LotRecord, MeasurementRecord, PartRecord, Row, Store};
+use ::history::{Archive, Filter, LotRecord, MeasurementRecord, PartRecord, Row, Store};
 use serde_json::{Value, json};
 
 /// Values of a good part without its operate voltage.
@@ -41,7 +41,7 @@ fn part(seq: u64, operate_v: f64) -> PartRecord {
 fn fixture() -> Fixture {
     let fixture = Fixture::new();
     let recipe = std::fs::read_to_string("../../config/recipes/jzc-22f-012.toml").unwrap();
-    let mut store = Store::open(&fixture.db, &Identity::of_this_program()).unwrap();
+    let mut store = Store::open(&fixture.db).unwrap();
     let lot = LotRecord {
         lot: "A".into(),
         recipe: "jzc-22f-012".into(),

@@ -70,13 +70,10 @@ pub struct Runner<'a> {
 impl Runner<'_> {
     fn source(&self, calibration: Option<Calibration>) -> RigSource {
         let began_us = i64::try_from(self.rig.now_us()).unwrap_or(i64::MAX);
-        RigSource::Simulated(Simulated {
-            live: Some(Box::new(LiveRig {
-                rig: self.rig.clone(),
-                epoch_us: EPOCH_US + began_us,
-                calibration,
-            })),
-            ..Simulated::with_seed(1)
+        Simulated::with_seed(1).on(LiveRig {
+            rig: self.rig.clone(),
+            epoch_us: EPOCH_US + began_us,
+            calibration,
         })
     }
 

@@ -208,6 +208,7 @@ impl<'a> Storm<'a> {
             bodies: rig.bodies(),
             driven: rig.motion_starts(),
             touched: rig.crashes(),
+            overdrives: rig.overdrives(),
             rows: archive.query(&all)?,
             alarms: archive.alarms(&Filter::default())?,
             limits: limits

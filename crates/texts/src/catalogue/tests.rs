@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn both_languages_have_the_same_ids_in_the_same_order() {
+fn both_languages_have_equal_ids_in_order() {
     assert!(ids(Lang::En).eq(ids(Lang::Zh)));
 }
 

@@ -7,7 +7,7 @@
 //! | `motion` | no motion begins after a stop, while a safety input is open, or without a controller |
 //! | `endings` | every life ends, an alarm names every trouble, and production resumes after the faults |
 //!
-//! The rig itself lists bodies that touch where they must not.
+//! The rig itself lists bodies that touch where they must not, and overdriven coils.
 
 mod bodies;
 mod endings;
@@ -18,7 +18,7 @@ mod values;
 
 use super::life::{EPOCH_US, EndedLife};
 use history::{Alarm, Moment, Part};
-use rigsim::truth::BodyTruth;
+use rigsim::truth::{BodyTruth, Overdrive};
 use units::Span;
 
 /// Everything that the rules need. All times are microseconds of rig time, over all lives.
@@ -32,6 +32,8 @@ pub struct Case {
     pub driven: Vec<(u64, &'static str)>,
     /// Bodies that touched, as the rig describes them.
     pub touched: Vec<String>,
+    /// Coils driven in a supply range above the commanded one.
+    pub overdrives: Vec<Overdrive>,
     /// Rows of parts in order of judgement, reference parts included.
     pub rows: Vec<Part>,
     /// Alarms in order of time.
@@ -57,7 +59,9 @@ impl Case {
             .touched
             .iter()
             .map(|it| format!("bodies touched: {it}"));
-        let mut violations: Vec<String> = touched.collect();
+        let overdriven = self.overdrives.iter();
+        let overdriven = overdriven.map(|it| format!("coil overdriven: {it}"));
+        let mut violations: Vec<String> = touched.chain(overdriven).collect();
         violations.extend(bodies::violations(self));
         violations.extend(values::violations(self));
         violations.extend(motion::violations(self));

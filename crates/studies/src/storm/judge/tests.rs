@@ -7,7 +7,7 @@ use crate::storm::life::{EPOCH_US, End, EndedLife};
 use crate::storm::operator::Answered;
 use app::exit::{Cause, Exit};
 use history::{Alarm, AlarmState, Moment, Part};
-use rigsim::truth::{BodyTruth, PartTruth, Place};
+use rigsim::truth::{BodyTruth, Overdrive, PartTruth, Place};
 use serde_json::json;
 use units::{RigTime, Span};
 
@@ -115,6 +115,7 @@ fn sound() -> Case {
         ],
         driven: vec![(S, "escapement"), (17 * S, "sort_axis"), (31 * S, "sort_z")],
         touched: Vec::new(),
+        overdrives: Vec::new(),
         rows: vec![
             row("one", 1, 3, "pass", "pass", Some(7)),
             row("one", 2, 9, "fail", "voltage", None),
@@ -151,6 +152,20 @@ fn bodies_that_touched_are_found() {
     found(
         |case| case.touched.push("pusher and probes".into()),
         "bodies touched: pusher and probes",
+    );
+}
+
+#[test]
+fn an_overdriven_coil_is_found() {
+    let overdrive = Overdrive {
+        t_us: 5_250_000,
+        commanded: 1,
+        range: 3,
+        supply_v: 48.0,
+    };
+    found(
+        |case| case.overdrives.push(overdrive),
+        "coil overdriven: 48.00 V at 5.250 s, supply range 3 in place of 1",
     );
 }
 
