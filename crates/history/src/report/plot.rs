@@ -9,7 +9,7 @@ const BELOW: f64 = 24.0;
 const ABOVE: f64 = 10.0;
 const RIGHT: f64 = 64.0;
 
-/// Colours that are told apart in grey, too.
+/// Colours of different lightness, so that a print in grey shows the difference too.
 pub(super) const LINE: &str = "#1f5f99";
 pub(super) const LIMIT: &str = "#a11212";
 pub(super) const QUIET: &str = "#8a97a5";
