@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { SIZES, leave, logIn, looks, open, picture, shown, visit } from "./browser.mjs";
+import { SIZES, forgive, leave, logIn, looks, open, picture, shown, visit } from "./browser.mjs";
 import { WORDS, start } from "./rig.mjs";
 
 let rig, browser;
@@ -146,6 +146,6 @@ test("old values turn grey within 3 s, and the page comes back by itself", async
   await rig.again();
   await page.waitForSelector("body:not(.stale)");
   assert.ok(await page.evaluate(() => window.same), "without a reload");
-  page.sins = page.sins.filter((it) => !/ERR_(CONNECTION_REFUSED|INCOMPLETE_CHUNKED_ENCODING|EMPTY_RESPONSE|CONNECTION_RESET)/.test(it));
+  forgive(page);
   await leave(page);
 });
