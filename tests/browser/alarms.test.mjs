@@ -18,7 +18,7 @@ after(async () => {
 const order = (page, word, path = "#orders") => page.click(`${path} [data-order="${word}"]`);
 const live = (page, selector) => page.waitForSelector(selector + ':not([aria-disabled="true"])');
 
-test("an alarm has cause and action, sounds, and is found by search", async () => {
+test("an alarm sounds, has cause and action, is searchable", async () => {
   const page = await visit(browser, rig);
   await shown(page, "#alarms", "part_dropped");
   assert.equal(await page.getAttribute("#mute", "data-sounding"), "true");
@@ -55,7 +55,7 @@ test("the list of alarms prints", async () => {
   await leave(page);
 });
 
-test("an operator acknowledges and may not shelve; a maintainer shelves with a reason", async () => {
+test("only a maintainer shelves an alarm, with a reason", async () => {
   const page = await visit(browser, rig, { role: "operator", path: "/#alarms" });
   await page.click('[data-code="part_dropped"] .shelve');
   await page.fill("#shelve_reason", "not mine to decide");
@@ -73,7 +73,7 @@ test("an operator acknowledges and may not shelve; a maintainer shelves with a r
   await leave(other);
 });
 
-test("after clear and reset jogging works, and the guard refuses a collision", async () => {
+test("after a reset jogging works; the guard refuses collisions", async () => {
   const page = await visit(browser, rig, { role: "maintainer" });
   await live(page, '#orders [data-order="clear"]');
   await order(page, "clear");

@@ -30,7 +30,7 @@ async function decide(page, lot, order, reason) {
   await page.click("#decide_go");
 }
 
-test("without a lot start refuses and points to the page of lots", async () => {
+test("start without a lot points to the page Lots", async () => {
   const page = await visit(browser, rig, { role: "operator" });
   await rig.until("stopped", (view) => view.machine.state === "Stopped");
   await page.click('#orders [data-order="reset"]');
@@ -41,7 +41,7 @@ test("without a lot start refuses and points to the page of lots", async () => {
   await leave(page);
 });
 
-test("the page starts, holds and closes a lot and starts another", async () => {
+test("one lot starts, holds and closes, another starts", async () => {
   const page = await visit(browser, rig, { role: "operator", path: "/#lots" });
   await startLot(page, "A", 500);
   await rig.until("a part is judged", (view) => view.lot === "A" && view.judged >= 2);
@@ -68,7 +68,7 @@ test("the page starts, holds and closes a lot and starts another", async () => {
   await leave(page);
 });
 
-test("a held lot takes no run until a maintainer releases it", async () => {
+test("a held lot waits until a maintainer releases it", async () => {
   const operator = await visit(browser, rig, { role: "operator", path: "/#lots" });
   await lotRow(operator, "A").waitFor();
   await decide(operator, "A", "hold_lot", "wrong label");

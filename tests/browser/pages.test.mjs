@@ -17,7 +17,7 @@ after(async () => {
 
 const rows = (page, body) => page.$$eval(body + " tr", (all) => all.length);
 
-test("the history filters parts and shows the raw replies of one", async () => {
+test("the history filters parts and shows raw replies", async () => {
   const page = await visit(browser, rig, { path: "/#history" });
   await page.waitForSelector("#parts tr");
   const all = await rows(page, "#parts");
@@ -106,7 +106,7 @@ test("calibration shows factors with due dates and reference parts", async () =>
   await leave(page);
 });
 
-test("bus shows the health of every module, trace its traffic", async () => {
+test("bus shows the health of modules, trace their traffic", async () => {
   const page = await visit(browser, rig, { path: "/#bus" });
   await page.waitForSelector("#bus tr");
   assert.equal(await rows(page, "#bus"), 13);

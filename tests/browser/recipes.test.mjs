@@ -44,7 +44,7 @@ test("without the role engineer recipes are read-only texts", async () => {
   }
 });
 
-test("a bad value is refused at its field, a good one saved", async () => {
+test("fields refuse bad values and save good ones", async () => {
   const page = await visit(browser, rig, { role: "engineer", path: "/#recipes" });
   await choose(page);
   const { number } = await newest();
@@ -70,7 +70,7 @@ test("a bad value is refused at its field, a good one saved", async () => {
   await leave(page);
 });
 
-test("the second of two revisions is refused and keeps its text", async () => {
+test("a second revision is refused and keeps its text", async () => {
   const pages = [];
   for (const value of ["0.61", "0.62"]) {
     const page = await visit(browser, rig, { role: "engineer", path: "/#recipes" });

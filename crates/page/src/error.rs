@@ -28,8 +28,8 @@ pub(super) enum ApiError {
     #[error("orders are taken from this rig's own page only; found {found}")]
     CrossSite { found: String },
     /// 401: the request has no valid session.
-    #[error("{reason}: log in first")]
-    NotLoggedIn { reason: &'static str },
+    #[error("{}", refusal("not_logged_in").say(Lang::En))]
+    NotLoggedIn,
     /// 401: name or password is wrong; the answer does not say which.
     #[error("{}", refusal("wrong_password").say(Lang::En))]
     WrongPassword,
@@ -113,7 +113,7 @@ impl ApiError {
             Self::NoSuchRoute { .. } => StatusCode::NOT_FOUND,
             Self::WrongMethod { .. } => StatusCode::METHOD_NOT_ALLOWED,
             Self::CrossSite { .. } | Self::NotAllowed { .. } => StatusCode::FORBIDDEN,
-            Self::NotLoggedIn { .. } | Self::WrongPassword => StatusCode::UNAUTHORIZED,
+            Self::NotLoggedIn | Self::WrongPassword => StatusCode::UNAUTHORIZED,
             Self::TooManyTries { .. } => StatusCode::TOO_MANY_REQUESTS,
             Self::Body { status, .. } => *status,
             Self::UnknownOrder { .. } | Self::Query { .. } => StatusCode::BAD_REQUEST,
@@ -154,7 +154,7 @@ impl ApiError {
     fn message(&self) -> Option<Message> {
         Some(match self {
             Self::NotNow { why, .. } => why.clone(),
-            Self::NotLoggedIn { .. } => refusal("not_logged_in"),
+            Self::NotLoggedIn => refusal("not_logged_in"),
             Self::WrongPassword => refusal("wrong_password"),
             Self::NotAllowed { found, needed } => not_allowed(*found, *needed),
             Self::TooManyTries { wait } => too_many_tries(*wait),

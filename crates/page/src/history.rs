@@ -29,7 +29,7 @@
 
 pub(super) mod export;
 mod feed;
-mod members;
+pub(super) mod members;
 pub(super) mod paper;
 mod readers;
 pub(super) mod rejudge;

@@ -208,7 +208,7 @@ impl Figures<'_> {
         Ok(())
     }
 
-    /// Does the same, and omits a figure without rows.
+    /// Writes as [`Self::each`] does, but omits a figure without rows.
     fn known<'a, const N: usize, V: EncodeGaugeValue>(
         &mut self,
         name: &str,

@@ -10,12 +10,11 @@ use super::error::{ApiError, JsonResult};
 use super::router::{App, AppState};
 use super::{origin, sessions};
 use axum::Json;
-use axum::extract::rejection::{ExtensionRejection, JsonRejection};
-use axum::extract::{ConnectInfo, State};
+use axum::extract::State;
+use axum::extract::rejection::JsonRejection;
 use axum::http::HeaderMap;
 use machine::view::{Answer, By, LOT_ORDERS, ORDERS, Order, OrderRequest};
 use serde::Serialize;
-use std::net::SocketAddr;
 use texts::Message;
 use tokio::sync::oneshot;
 
@@ -31,21 +30,16 @@ pub(super) struct Accepted {
 /// `POST /api/orders`.
 pub(super) async fn order(
     State(app): App,
-    from: Result<ConnectInfo<SocketAddr>, ExtensionRejection>,
+    from: origin::Peer,
     headers: HeaderMap,
     body: Result<Json<Order>, JsonRejection>,
 ) -> JsonResult<Accepted> {
-    origin::check(&headers)?;
-    let person = app
-        .shared
-        .sessions
-        .at_least(Role::Operator, &headers)
-        .await?;
+    let person = app.shared.sessions.author(&headers).await?;
     let Json(order) = body?;
     let by = By {
         who: person.name.clone(),
         role: person.role.to_string(),
-        origin: from.map_or_else(|_| String::new(), |from| from.0.ip().to_string()),
+        origin: origin::address(from),
     };
     let word = match allowed(&person, &order) {
         Ok(word) => word,

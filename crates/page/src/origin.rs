@@ -9,10 +9,20 @@
 //! A request with neither header comes from a program that is no browser, and passes.
 
 use super::error::ApiError;
+use axum::extract::ConnectInfo;
+use axum::extract::rejection::ExtensionRejection;
 use axum::http::{HeaderMap, HeaderName, header, uri::Authority};
-use std::net::IpAddr;
+use std::net::{IpAddr, SocketAddr};
 
 const SEC_FETCH_SITE: HeaderName = HeaderName::from_static("sec-fetch-site");
+
+/// Address of the client; absent in tests, which use no socket.
+pub(super) type Peer = Result<ConnectInfo<SocketAddr>, ExtensionRejection>;
+
+/// Returns the IP address of the client for the audit; empty when absent.
+pub(super) fn address(peer: Peer) -> String {
+    peer.map_or_else(|_| String::new(), |peer| peer.0.ip().to_string())
+}
 
 /// Fails when a page of another site sent the request.
 pub(super) fn check(headers: &HeaderMap) -> Result<(), ApiError> {

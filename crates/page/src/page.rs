@@ -1,8 +1,8 @@
 //! The page. The first answer holds everything that the operator's page needs; the script of any other page follows when
 //! a browser first opens that page. Nothing comes from another host.
 //!
-//! Every answer is put together and compressed once, from the files in `page/` and the catalogue of texts. The policy lets a
-//! browser run the inline script, by its hash, and scripts of this rig, which all have the media type of a script.
+//! The program makes and compresses each answer once, from the files in `page/` and the catalogue of texts. The policy lets a
+//! browser run the inline script, which it checks by a hash, and the scripts that this rig sends.
 
 mod compressed;
 mod kinds;
@@ -23,7 +23,7 @@ const LOOK: &str = concat!(
     include_str!("page/look.css"),
     include_str!("page/pages.css")
 );
-/// What every page shares, the operator's page, and the start of everything, in this order.
+/// Scripts of the first answer, in order: shared functions, the operator's page, the start.
 const SCRIPT: &str = concat!(
     include_str!("page/script/shared.js"),
     include_str!("page/script/texts.js"),
@@ -63,7 +63,7 @@ pub(super) async fn page(headers: HeaderMap) -> impl IntoResponse {
     (policy, PAGE.answer(&headers))
 }
 
-/// `GET /page/{file}`: fails when no page has this version of a script.
+/// `GET /page/{file}`: fails when no script has this name and hash.
 pub(super) async fn script(
     Path(file): Path<String>,
     headers: HeaderMap,

@@ -8,16 +8,17 @@
 //! | `POST /api/recipes/revise` | `name`, `from`, `values` | the new revision |
 //!
 //! Reading needs no login; a revision needs an engineer. The audit of orders gets every try of a logged-in person with its
-//! outcome. The history is opened before the change, so that a revision without an audit is impossible to begin.
+//! outcome. The history is opened before the change, so that no revision begins without an audit.
 
 use super::access::{Person, Role};
 use super::error::{ApiError, JsonResult, Members, blocking};
+use super::history::members::language;
 use super::history::paper::{Page, with_policy};
 use super::router::App;
 use super::{origin, sessions};
 use axum::Json;
-use axum::extract::rejection::{ExtensionRejection, JsonRejection};
-use axum::extract::{ConnectInfo, Query, State};
+use axum::extract::rejection::JsonRejection;
+use axum::extract::{Query, State};
 use axum::http::HeaderMap;
 use config::{Change, Plant, Revision};
 use history::inquiry::paper::paper;
@@ -26,7 +27,6 @@ use history::report::card;
 use history::{OrderRecord, Row, Store};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use std::net::SocketAddr;
 use std::path::Path;
 
 /// A recipe in the list.
@@ -54,21 +54,18 @@ pub(super) async fn list(State(app): App) -> JsonResult<Vec<ListedRecipe>> {
 
 fn listed(dir: &Path, name: String) -> ListedRecipe {
     let found = config::revision(dir, &name, None);
+    let good = found.as_ref().ok();
     let title = |path: &str| {
-        let fields = found
-            .as_ref()
-            .map(|it| it.fields.as_slice())
-            .unwrap_or_default();
-        let title = fields.iter().find(|it| it.path == path)?.value.as_str();
-        Some(title?.to_owned())
+        let title = good?.fields.iter().find(|it| it.path == path)?;
+        Some(title.value.as_str()?.to_owned())
     };
     ListedRecipe {
         title_en: title("title_en").unwrap_or_default(),
         title_zh: title("title_zh").unwrap_or_default(),
-        number: found.as_ref().ok().map(|it| it.number),
-        hash: found.as_ref().ok().map(|it| it.hash.clone()),
-        saved_at_us: found.as_ref().ok().and_then(|it| it.saved_at_us),
-        trouble: found.err().map(|it| it.to_string()),
+        number: good.map(|it| it.number),
+        hash: good.map(|it| it.hash.clone()),
+        saved_at_us: good.and_then(|it| it.saved_at_us),
+        trouble: found.as_ref().err().map(ToString::to_string),
         name,
     }
 }
@@ -101,7 +98,7 @@ pub(super) async fn card(State(app): App, printed: Members<CardQuery>) -> Result
     let dir = app.shared.config.clone();
     let made = move || {
         let recipe = config::load_recipe(&dir, &name)?;
-        let paper = paper(lang.unwrap_or(Lang::Zh));
+        let paper = paper(language(lang));
         let plant = config::load_card(&dir)?;
         let card = card::card(paper.language, &recipe, &plant, &paper.made);
         Ok::<_, ApiError>(with_policy(card))
@@ -112,18 +109,13 @@ pub(super) async fn card(State(app): App, printed: Members<CardQuery>) -> Result
 /// `POST /api/recipes/revise`.
 pub(super) async fn revise(
     State(app): App,
-    from: Result<ConnectInfo<SocketAddr>, ExtensionRejection>,
+    from: origin::Peer,
     headers: HeaderMap,
     body: Result<Json<Change>, JsonRejection>,
 ) -> JsonResult<Revision> {
-    origin::check(&headers)?;
-    let person = app
-        .shared
-        .sessions
-        .at_least(Role::Operator, &headers)
-        .await?;
+    let person = app.shared.sessions.author(&headers).await?;
     let Json(change) = body?;
-    let origin = from.map_or_else(|_| String::new(), |from| from.0.ip().to_string());
+    let origin = origin::address(from);
     let (dir, db) = (app.shared.config.clone(), app.shared.db.clone());
     blocking(move || {
         let mut audit = Store::open(&db)?;

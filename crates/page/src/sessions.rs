@@ -12,13 +12,13 @@
 
 use super::access::{AccessError, Limiter, Person, Register, Role, SESSION_S};
 use super::error::{ApiError, blocking};
+use super::origin;
 use axum::http::{HeaderMap, header};
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 const COOKIE: &str = "relayrig_session";
-const NOT_IN: &str = "nobody is logged in here";
 
 /// The people of this rig, behind one lock: logins run one after another, because each takes 19 MiB and 20 ms of a core.
 #[derive(Debug, Clone)]
@@ -82,16 +82,10 @@ impl Sessions {
             .await
     }
 
-    /// Returns the person of the session. Fails without a valid one or with a weaker role than `role`.
-    pub(super) async fn at_least(
-        &self,
-        role: Role,
-        headers: &HeaderMap,
-    ) -> Result<Person, ApiError> {
-        let person = self.who(headers).await?;
-        let person = person.ok_or(ApiError::NotLoggedIn { reason: NOT_IN })?;
-        require_role(&person, role)?;
-        Ok(person)
+    /// Returns the person behind a change. Fails without a valid session, and for a request of another site.
+    pub(super) async fn author(&self, headers: &HeaderMap) -> Result<Person, ApiError> {
+        origin::check(headers)?;
+        self.who(headers).await?.ok_or(ApiError::NotLoggedIn)
     }
 
     fn check_pace(&self, name: &str) -> Result<(), ApiError> {

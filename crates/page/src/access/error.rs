@@ -51,7 +51,7 @@ pub enum AccessError {
         /// Greatest length, characters.
         most: usize,
     },
-    /// The person is the only engineer; without an engineer nobody could change recipes.
+    /// The person is the only engineer, and only an engineer changes recipes and people.
     #[error("{name:?} is the only engineer; make another one first")]
     LastEngineer {
         /// The name as given.

@@ -118,9 +118,8 @@ fn object(members: &[Member]) -> Schema {
 
 fn text(member: &Member) -> Schema {
     let kind = match member.name {
-        "run" | "seq" | "limit" | "offset" | "last" | "subgroup" | "minutes" | "revision" => {
-            Type::Integer
-        }
+        "run" | "seq" | "limit" | "offset" | "last" | "subgroup" | "minutes" | "revision"
+        | "count" => Type::Integer,
         "values" => Type::Object,
         "changed" => Type::Boolean,
         "min" | "max" | "ideal_cycle_s" => Type::Number,

@@ -71,7 +71,7 @@ impl RouteMembers for AuditMembers {
 }
 
 /// Returns the language of a printed report, Chinese by default.
-pub(super) fn language(asked: Option<Lang>) -> Lang {
+pub(crate) fn language(asked: Option<Lang>) -> Lang {
     asked.unwrap_or(Lang::Zh)
 }
 

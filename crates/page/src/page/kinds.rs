@@ -4,7 +4,7 @@ use machine::dut::Characteristic;
 use serde_json::{Value, json};
 use texts::Lang;
 
-/// Families of texts that the pages do not use: their texts come with alarms, reasons and refusals, or are for print only.
+/// Families of texts that the first answer omits: they reach the page inside alarms, reasons and refusals, or only the paper.
 const ELSEWHERE: [&str; 12] = [
     "alarm",
     "card",

@@ -1,4 +1,4 @@
-//! Scripts that a browser fetches when it first opens a page: one adds markup and code of one page or of a few.
+//! Scripts that a browser fetches when it first opens a page; each adds markup and code of one or more pages.
 
 use super::compressed::CompressedBody;
 use data_encoding::HEXLOWER;
@@ -31,7 +31,7 @@ pub(super) const SOURCES: [[&str; 3]; 9] = {
     ]
 };
 
-/// Scripts by path; the path holds a hash of the script, so that a browser may keep it.
+/// Scripts by path; the path holds a hash of the script, so that a browser may cache it for ever.
 pub(super) static SCRIPTS: LazyLock<BTreeMap<String, CompressedBody>> = LazyLock::new(|| {
     let body = |text| CompressedBody::new("text/javascript; charset=utf-8", text);
     let compressed = |(path, text)| (path, body(text));

@@ -103,8 +103,8 @@ async fn each_coil_has_its_latest_calibration_overdue_when_expired() {
             foreign,
         ],
     );
-    let told = fixture.get("/api/calibration").await.json();
-    let held = told["calibrations"].as_array().unwrap();
+    let answer = fixture.get("/api/calibration").await.json();
+    let held = answer["calibrations"].as_array().unwrap();
     let facts: Vec<_> = held
         .iter()
         .map(|it| {
@@ -146,8 +146,8 @@ async fn a_reference_part_has_certificate_and_last_reading() {
         Row::Part(golden(2, 4_000_000, Some(0.5))),
         check,
     ];
-    let told = fixture(&rows, &[]).get("/api/calibration").await.json();
-    let first = &told["golden"][0];
+    let answer = fixture(&rows, &[]).get("/api/calibration").await.json();
+    let first = &answer["golden"][0];
     assert_eq!(
         (&first["serial"], &first["run"]),
         (&json!("G-12-1"), &json!(["A", 1]))
@@ -158,9 +158,9 @@ async fn a_reference_part_has_certificate_and_last_reading() {
         json!({"parameter": "operate_voltage_v", "certified": 7.4, "certified_uncertainty": 0.002, "value": 7.41,
             "uncertainty": 0.01})
     );
-    assert_eq!(told["golden"][1]["seen"], json!(null));
+    assert_eq!(answer["golden"][1]["seen"], json!(null));
     assert_eq!(
-        (&told["check"]["passed"], &told["check"]["text"]),
+        (&answer["check"]["passed"], &answer["check"]["text"]),
         (&json!(false), &json!("G-12-1 high"))
     );
 }
@@ -168,10 +168,10 @@ async fn a_reference_part_has_certificate_and_last_reading() {
 #[tokio::test]
 async fn readings_for_the_overshoot_are_not_compared_with_certificates() {
     let rows = [Row::Part(golden(1, 5_000_000, None))];
-    let told = fixture(&rows, &[]).get("/api/calibration").await.json();
-    let first = &told["golden"][0];
+    let answer = fixture(&rows, &[]).get("/api/calibration").await.json();
+    let first = &answer["golden"][0];
     assert_eq!(
-        (&first["values"][0]["value"], &told["check"]),
+        (&first["values"][0]["value"], &answer["check"]),
         (&json!(null), &json!(null))
     );
     assert!(first["seen"].is_string());

@@ -37,20 +37,23 @@ async fn every_lot_has_its_allowed_orders_and_reasons() {
         ("C", LotState::Open),
     ]);
     let lots = fixture.get("/api/lots").await.json();
-    let told: Vec<_> = lots.as_array().unwrap().iter().collect();
-    let names: Vec<_> = told.iter().map(|it| it["lot"].as_str().unwrap()).collect();
+    let answer: Vec<_> = lots.as_array().unwrap().iter().collect();
+    let names: Vec<_> = answer
+        .iter()
+        .map(|it| it["lot"].as_str().unwrap())
+        .collect();
     assert_eq!(names, ["C", "B", "A"], "the last one first");
-    assert_eq!(told[1]["why"], "wrong label (li)");
+    assert_eq!(answer[1]["why"], "wrong label (li)");
     let live = |lot: &serde_json::Value| {
         let why_not = lot["why_not"].as_object().unwrap();
         assert_eq!(why_not.len(), Decision::ALL.len() + 1);
         let live = why_not.iter().filter(|(_, why)| why.is_null());
         live.map(|(order, _)| order.clone()).collect::<Vec<_>>()
     };
-    assert_eq!(live(told[0]), ["close_lot", "hold_lot", "start"]);
-    assert_eq!(live(told[1]), ["close_lot", "release_lot"]);
-    assert_eq!(live(told[2]), ["hold_lot", "start"]);
-    let why = &told[1]["why_not"]["start"];
+    assert_eq!(live(answer[0]), ["close_lot", "hold_lot", "start"]);
+    assert_eq!(live(answer[1]), ["close_lot", "release_lot"]);
+    assert_eq!(live(answer[2]), ["hold_lot", "start"]);
+    let why = &answer[1]["why_not"]["start"];
     assert!(why["en"].as_str().unwrap().contains("release it first"));
     assert!(why["zh"].as_str().unwrap().contains("放行"));
 }

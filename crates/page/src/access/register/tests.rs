@@ -4,7 +4,7 @@ use super::*;
 
 const HOUR_US: i64 = 3_600_000_000;
 
-/// A new register, and its folder, which goes with the guard.
+/// Returns a new register with the guard that removes its folder.
 fn fresh() -> (Register, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
     let register = Register::open(&folder.path().join("people.db")).unwrap();
@@ -13,7 +13,7 @@ fn fresh() -> (Register, tempfile::TempDir) {
 
 #[cfg(unix)]
 #[test]
-fn nobody_else_may_read_the_file() {
+fn only_the_owner_may_read_the_file() {
     use std::os::unix::fs::PermissionsExt;
     let (_register, folder) = fresh();
     let file = std::fs::metadata(folder.path().join("people.db")).unwrap();
@@ -28,10 +28,10 @@ fn the_first_start_adds_one_engineer_once() {
     let (person, _) = register.log_in(&name, &password, 0).unwrap().unwrap();
     assert_eq!(person.role, Role::Engineer);
     let bytes = std::fs::read(folder.path().join("people.db")).unwrap();
-    let told = bytes
+    let leaked = bytes
         .windows(password.len())
         .any(|it| it == password.as_bytes());
-    assert!(!told, "the password itself stands in the file");
+    assert!(!leaked, "the file holds the password in plain text");
 }
 
 #[test]

@@ -28,10 +28,7 @@ function standing(alarm) {
   return item;
 }
 
-async function giveAlarmOrder(order) {
-  const why = me === null ? word("stop-login") : await sendOrder(order);
-  at("alarm_answer").textContent = why || word("order-" + order.order) + ": " + word("order-taken");
-}
+const giveAlarmOrder = (order) => giveOrder(order, (text) => { at("alarm_answer").textContent = text; });
 
 function askShelve(code) {
   at("shelve").dataset.code = code;

@@ -15,9 +15,7 @@ function lotAnswer(text) {
 }
 
 async function orderLot(order) {
-  const why = me === null ? word("stop-login") : await sendOrder(order);
-  lotAnswer(why || word("order-" + order.order) + ": " + word("order-taken"));
-  if (!why) readBook();
+  if (await giveOrder(order, lotAnswer)) readBook();
 }
 
 // Returns the reason against an order about a lot: of the machine or of the lot; empty without one.

@@ -49,7 +49,7 @@ function showMimic() {
 
 // --- a motion that the guard refused: mover, blocker and swept volume ---
 
-// The id stands for the name of a body that only the plant's own scene has.
+// Falls back to the id: a plant's own scene may have bodies without a text.
 const bodyText = (id) => wordOr("body-" + id, id.replaceAll("_", " "));
 
 const bodiesText = ({mover, blocker, text}) => (mover === "" ? text : bodyText(mover) + " → " + bodyText(blocker));

@@ -14,6 +14,13 @@ async function sendOrder(order) {
   }
 }
 
+// Sends an order of a logged-in person and passes the answer to `show`; returns whether the rig took the order.
+async function giveOrder(order, show) {
+  const why = me === null ? word("stop-login") : await sendOrder(order);
+  show(why || word("order-" + order.order) + ": " + word("order-taken"));
+  return why === "";
+}
+
 // Returns the text of a jog that the guard refuses, with the page's names of both bodies; empty for other orders.
 function refusedJog({order, motion}) {
   const jog = order === "jog" && view.machine.jogs.find((it) => it.motion === motion);

@@ -1,4 +1,4 @@
-// Pages besides the operator's: the rig sends the script of each when it is first opened, and it stays here.
+// Pages besides the operator's: fetches the script of each when it first opens, and keeps it.
 
 // Path of the script by name of the page; a changed script has another path.
 const SCRIPTS = JSON.parse(at("scripts").textContent);
@@ -21,7 +21,7 @@ function fetchScript(path) {
   document.head.append(element);
 }
 
-// Every fetched script is one call of this: adds `markup` to the page and runs `begin`, once.
+// Adds `markup` to the page and runs `begin`, once for each path; every fetched script is one call of this function.
 function addPages(path, markup, begin) {
   if (scripts[path] === "here") return;
   scripts[path] = "here";
@@ -31,7 +31,7 @@ function addPages(path, markup, begin) {
   if (!at("fetching").hidden) openPage();
 }
 
-// Fetches the open page unless that is under way or has failed, and shows how far it is.
+// Fetches the script of the open page unless that is under way or has failed, and shows the progress.
 function showFetching() {
   const path = SCRIPTS[current];
   if (Object.hasOwn(PAGES, current)) return;

@@ -1,7 +1,7 @@
 // Texts for codes of the rig.
 
-// State of the station, and the stage of a test under way.
+// Returns the state of the station and, during a test, its stage.
 const stateTexts = ({doing, stage}) => [word("state-" + (doing || "none")), ...(stage ? [wordOr("stage-" + stage, stage)] : [])];
 
-// Reasons for the verdict of a part.
+// Returns the reasons for the verdict of a part.
 const reasonTexts = (part) => part.reason_codes.map((it) => it[language]);
