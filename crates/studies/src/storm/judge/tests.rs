@@ -192,7 +192,7 @@ fn a_body_that_landed_by_two_rows_is_found() {
 fn a_row_without_a_body_is_found() {
     found(
         |case| case.rows.push(row("two", 2, 55, "void", "retest", None)),
-        "is nobody's",
+        "has no body",
     );
 }
 
@@ -201,11 +201,11 @@ fn a_landing_without_a_confirmation_is_found() {
     let forget = |case: &mut Case| {
         case.rows[2].landed_bin = None;
     };
-    found(forget, "its row does not know it");
+    found(forget, "its row has no landing");
 }
 
 #[test]
-fn the_next_life_declares_a_part_lost_at_the_kill() {
+fn the_next_life_declares_a_part_lost_at_kill() {
     let mut case = sound();
     case.lives[0].ended_us = 6 * S - 1;
     case.lives[0].end = End::Killed;
@@ -216,7 +216,7 @@ fn the_next_life_declares_a_part_lost_at_the_kill() {
     case.rows.truncate(1);
     (case.rows[0].landed_bin, case.rows[0].landed_at) = (None, None);
     (case.alarms, case.driven, case.disturbed_us) = (Vec::new(), Vec::new(), Vec::new());
-    assert!(case.violations()[0].contains("its row does not know it"));
+    assert!(case.violations()[0].contains("its row has no landing"));
     case.alarms.push(alarm("two", "part_lost", 8));
     assert_eq!(case.violations(), Vec::<String>::new());
 }
@@ -251,7 +251,7 @@ fn a_late_alarm_declares_no_earlier_loss() {
 fn an_undeclared_part_on_the_floor_is_found() {
     found(
         |case| case.alarms[0].code = "door_open".into(),
-        "lies on the floor since 12.000 s and no alarm",
+        "lies on the floor since 12.000 s and no alarm declares it",
     );
 }
 

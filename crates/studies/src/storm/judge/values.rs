@@ -9,8 +9,8 @@ use machine::dut::em_relay::Parameter;
 use rigsim::truth::PartTruth;
 use serde_json::Value;
 
-/// Least distance from its truth, in expanded uncertainties (k = 2), at which a value must belong to another body. A right
-/// value is this far off less than once in 10^9 storms of 10^6 values.
+/// Least distance from its truth, in expanded uncertainties (k = 2), at which a value must belong to another body: eight
+/// standard deviations, which a normal error exceeds once in 8 * 10^14 values.
 const FOREIGN_K: f64 = 4.0;
 /// Distance from a limit, in expanded uncertainties, from which a true value is clearly inside or outside.
 const CLEAR_K: f64 = 2.0;
@@ -88,10 +88,10 @@ fn misjudged(case: &Case, row: &Part, readings: &[Reading], part: &PartTruth) ->
             .map(|it| format!("passed with a true {} of {}", it.key, it.truth)),
         (_, Some(defect)) => {
             let right = bin_of(defect).unwrap_or("");
-            let asked = row.bin.as_deref().unwrap_or("");
+            let named = row.bin.as_deref().unwrap_or("");
             let near = readings.iter().any(|it| !clear(it) && !beyond(&it));
-            (asked != right && !near && !also_beyond(asked, readings, &beyond))
-                .then(|| format!("{defect} belongs to {right}, its row says {asked}"))
+            (named != right && !near && !also_beyond(named, readings, &beyond))
+                .then(|| format!("{defect} belongs to {right}, its row says {named}"))
         }
         (_, None) => readings
             .iter()
@@ -100,9 +100,9 @@ fn misjudged(case: &Case, row: &Part, readings: &[Reading], part: &PartTruth) ->
     }
 }
 
-/// Returns true when a true value lies beyond a limit that belongs to the bin `asked`.
-fn also_beyond(asked: &str, readings: &[Reading], beyond: &dyn Fn(&&Reading) -> bool) -> bool {
-    let of_bin = |key: &str| match asked {
+/// Returns true when a true value lies beyond a limit that belongs to the bin `named`.
+fn also_beyond(named: &str, readings: &[Reading], beyond: &dyn Fn(&&Reading) -> bool) -> bool {
+    let of_bin = |key: &str| match named {
         "coil" => key.starts_with("coil"),
         "voltage" => key.contains("voltage"),
         "time" => key.contains("time") || key.contains("bounce"),
