@@ -264,7 +264,7 @@ fn every_part_has_rows_down_to_raw_replies() {
 }
 
 #[test]
-fn golden_parts_come_first_and_end_in_retest() {
+fn reference_parts_come_first_and_end_in_retest() {
     let workshop = &twelve().workshop;
     assert!(workshop.count("SELECT count(*) FROM part WHERE kind = 'golden'") > 0);
     // Rig time: a test with confirmation measurements would take longer.

@@ -41,7 +41,7 @@ const PIECES: [(&str, &str); 4] = [
 /// A lot that did not run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let lots = order.run_all()?;
-    let adaptive = order.recipe.ends_with("-adaptive");
+    let adaptive = order.recipe.name.ends_with("-adaptive");
     let mean_bar = if adaptive { ADAPTIVE_MEAN_S } else { TEST_S };
     let (pieces, about) = (pieces(&lots), order.about());
     let title = format!("where a cycle goes, mean per part: {about}");

@@ -37,7 +37,7 @@ const AGAIN: f64 = 0.98;
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let lots = order.run_all()?;
     let (rows, risks): (Vec<Figure>, Vec<Option<(f64, f64)>>) = order
-        .admitted
+        .admitted()
         .iter()
         .map(|(parameter, limits)| predicted(*parameter, limits, &lots))
         .unzip();
@@ -105,14 +105,15 @@ fn chance(readings: &[Reading]) -> Option<DecisionRisk> {
 
 /// Runs lots whose mean operate voltage lies one standard deviation inside its limit.
 fn at_limit(order: &Order, lots: &[Lot]) -> anyhow::Result<Vec<Figure>> {
+    let admitted = order.admitted();
     let known = |(parameter, _): &&(Parameter, _)| *parameter == Parameter::OperateVoltage;
-    let limits = order.admitted.iter().find(known).map(|(_, limits)| limits);
+    let limits = admitted.iter().find(known).map(|(_, limits)| limits);
     let usual = chance(&readings(Parameter::OperateVoltage, lots));
     let (Some(limits), Some(usual)) = (limits.filter(|it| it.end().is_finite()), usual) else {
         return Ok(Vec::new());
     };
     let mean = limits.end() - usual.sd;
-    let of_lot = LOT_V / order.nominal_v;
+    let of_lot = LOT_V / order.nominal_v();
     let recipe = vec![("test.expected_operate_v", mean.into())];
     let variant = Variant::erring(BAUDS[0], recipe)
         .in_world(vec![("lot.operate_v_mean", (mean * of_lot).into())]);

@@ -119,7 +119,7 @@ fn report(order: &Order, it: &Counts, instants: &[f64]) -> Report {
     let chart = Chart::new(title, "ms", Vec::new(), quartiles);
     let about = format!(
         "{} lots of {} killed at random instants",
-        order.lots, order.recipe
+        order.lots, order.recipe.name
     );
     Report::new("kill", about, vec![bars, information], chart)
 }

@@ -52,12 +52,9 @@ mod verification;
 use anyhow::bail;
 use clap::ValueEnum;
 pub use collision::study as collision;
-use config::load_recipe;
 pub use gantt::svg as cycle_gantt;
-use machine::dut::em_relay::Parameter;
 pub use order::Order;
 pub use output::Report;
-use std::path::Path;
 pub use transient::{USUAL_RTOL, study as transient};
 
 /// The studies, in the order of the list that `relayrig study` prints.
@@ -145,27 +142,4 @@ impl Study {
             }
         }
     }
-}
-
-/// Returns the nominal coil voltage of the recipe, V; NaN for a kind without one.
-///
-/// # Errors
-/// A recipe that does not load.
-pub fn nominal_v(config: &Path, recipe: &str) -> anyhow::Result<f64> {
-    let part = load_recipe(config, recipe)?.device.part();
-    Ok(part.nominal_v.unwrap_or(f64::NAN))
-}
-
-/// Returns the range that the recipe admits for every parameter; a limit that it does not set is infinite.
-///
-/// # Errors
-/// A recipe that does not load.
-pub fn admitted(config: &Path, recipe: &str) -> anyhow::Result<lot::Admitted> {
-    let limits = load_recipe(config, recipe)?.limits;
-    let range = |parameter: &Parameter| {
-        let limit = limits.of(*parameter);
-        let low = limit.low.unwrap_or(f64::NEG_INFINITY);
-        (*parameter, low..=limit.high.unwrap_or(f64::INFINITY))
-    };
-    Ok(Parameter::ALL.iter().map(range).collect())
 }

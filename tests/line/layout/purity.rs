@@ -86,7 +86,7 @@ fn pure_modules_use_neither_clock_nor_io_nor_async() {
 const UNSAFE: [&str; 6] = ["{", "fn", "impl", "trait", "extern", "("];
 
 #[test]
-fn only_the_collision_core_may_be_unsafe() {
+fn unsafe_code_is_in_the_collision_core_only() {
     let keyword = concat!("un", "safe");
     let is_code = |code: &str| {
         UNSAFE.iter().any(|next| {

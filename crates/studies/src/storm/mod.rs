@@ -21,16 +21,16 @@ use super::output::Report;
 use super::pool;
 use anyhow::Context;
 use app::exit::Exit;
-use config::{Plant, load_recipe};
+use config::Plant;
 use history::{Archive, Filter};
 use judge::Case;
 use life::{End, Runner};
-use machine::dut::{Calibration, Recipe};
+use machine::dut::Calibration;
 use report::{Counts, Outcome, report};
 use rigsim::{Options, SharedRig};
 use scenario::{CEASES_US, Life, RIGS, Scenario};
 use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 use std::time::Instant;
 use tempfile::TempDir;
 use tracing::subscriber::{NoSubscriber, with_default};
@@ -45,7 +45,6 @@ const CALM_PARTS: u64 = 2;
 struct Storm<'a> {
     order: &'a Order,
     plant: Plant,
-    recipe: Arc<Recipe>,
     folder: TempDir,
     calibrations: [OnceLock<Calibration>; RIGS as usize],
 }
@@ -73,7 +72,6 @@ impl<'a> Storm<'a> {
         Ok(Self {
             order,
             plant: Plant::load(&order.config)?,
-            recipe: Arc::new(load_recipe(&order.config, &order.recipe)?),
             folder,
             calibrations: Default::default(),
         })
@@ -153,7 +151,6 @@ impl<'a> Storm<'a> {
         let wiring = &self.plant.wiring;
         let reaction = wiring.longest_reaction();
         let watchdog = Span::ms(wiring.bus.host_watchdog_ms as u64);
-        let limits = self.order.admitted.iter();
         Ok(Case {
             lives,
             bodies: rig.bodies(),
@@ -161,9 +158,7 @@ impl<'a> Storm<'a> {
             touched: rig.crashes(),
             rows: archive.query(&all)?,
             alarms: archive.alarms(&Filter::default())?,
-            limits: limits
-                .map(|(key, range)| (key.name(), *range.start(), *range.end()))
-                .collect(),
+            limits: self.order.admitted(),
             faults: scenario.faults.clone(),
             disturbed_us: scenario.disturbed_us.clone(),
             reaction,
@@ -175,7 +170,7 @@ impl<'a> Storm<'a> {
     fn runner<'b>(&'b self, rig: &'b SharedRig, db: &'b Path) -> Runner<'b> {
         Runner {
             plant: &self.plant,
-            recipe: &self.recipe,
+            recipe: &self.order.recipe,
             db,
             rig,
         }
@@ -192,7 +187,7 @@ impl<'a> Storm<'a> {
             config_dir: self.order.config.clone(),
             world: Some(self.order.world.clone().unwrap_or(storms)),
             seed,
-            recipe: self.order.recipe.clone(),
+            recipe: self.order.recipe.name.clone(),
             parts: None,
             reference_parts,
             faults: faults.to_vec(),

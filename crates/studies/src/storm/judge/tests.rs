@@ -7,6 +7,7 @@ use crate::storm::life::{EPOCH_US, End, EndedLife};
 use crate::storm::operator::Answered;
 use app::exit::{Cause, Exit};
 use history::{Alarm, AlarmState, Moment, Part};
+use machine::dut::em_relay::Parameter;
 use rigsim::truth::{BodyTruth, PartTruth, Place};
 use serde_json::json;
 use units::{RigTime, Span};
@@ -121,7 +122,7 @@ fn sound() -> Case {
             row("two", 1, 37, "fail", "voltage", Some(41)),
         ],
         alarms: vec![alarm("one", "part_dropped", 13)],
-        limits: vec![("coil_resistance_ohm", 360.0, 440.0)],
+        limits: vec![(Parameter::CoilResistance, 360.0..=440.0)],
         faults: Vec::new(),
         disturbed_us: vec![22 * S],
         reaction: Span::ms(250),
@@ -313,7 +314,7 @@ fn a_defect_that_passed_is_found() {
 #[test]
 fn a_part_that_passed_beyond_a_limit_is_found() {
     found(
-        |case| case.limits[0].2 = 390.0,
+        |case| case.limits[0].1 = 360.0..=390.0,
         "passed with a true coil_resistance_ohm of 400",
     );
 }
