@@ -14,18 +14,12 @@ const SHOWN: usize = 10;
 
 /// Result of one seed: counts, and the trace only of a seed that breaks a rule, since a case is large.
 pub struct Outcome {
-    /// Seed.
-    pub seed: u64,
-    /// Size of the case.
-    pub counts: Counts,
-    /// Broken rules.
-    pub violations: Vec<String>,
-    /// Faults, in the form of `--fault`.
-    pub faults: Vec<String>,
-    /// Lines of the trace; empty for a seed that the report does not show.
-    pub trace: Vec<String>,
-    /// Digest of the whole trace.
-    pub digest: u64,
+    pub(super) seed: u64,
+    pub(super) counts: Counts,
+    pub(super) violations: Vec<String>,
+    pub(super) faults: Vec<String>,
+    pub(super) trace: Vec<String>,
+    pub(super) digest: u64,
 }
 
 /// Size of a case.
