@@ -5,9 +5,11 @@
 use anyhow::{Context, bail};
 use app::exit::Exit;
 use clap::ValueEnum;
+use config::load_recipe;
 use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use studies::{Order, Report, Study};
 
 /// A study, or the list of them.
@@ -26,7 +28,7 @@ use studies::{Order, Report, Study};
 
 Exit status: 0 every bar is kept, 1 a bar is missed, 2 bad input.")]
 pub struct StudyArgs {
-    /// What to study; without it the studies are listed
+    /// Study to run; without it the command lists the studies
     #[arg(value_enum, value_name = "NAME")]
     pub name: Option<Study>,
     /// One JSON object per figure, then a summary
@@ -88,9 +90,7 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<Exit> {
     let order = Order {
         program: std::env::current_exe().context("finding this program")?,
         config: config.to_owned(),
-        recipe: args.recipe.clone(),
-        admitted: studies::admitted(config, &args.recipe)?,
-        nominal_v: studies::nominal_v(config, &args.recipe)?,
+        recipe: Arc::new(load_recipe(config, &args.recipe)?),
         world: args.world.clone(),
         faults: Vec::new(),
         lots: args.seeds.unwrap_or(lots),

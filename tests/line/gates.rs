@@ -83,7 +83,7 @@ fn too_many_failed_parts_hold_the_lot() {
     let workshop = with_lot("gates_discarded", "discard_limit_pct = 5.0\n");
     workshop.change("config/sim.toml", "rate_pct = 4.0", "rate_pct = 75.0");
     run(&workshop, 40, "").with_status(3);
-    // Two of forty are 5 %; the third ended the run, which nobody watches. If it was still on its way to the bin, that is told too.
+    // Two of forty are 5 %; the third ends the unattended run. If it is on its way to the bin then, `bin_beam` follows.
     let told = workshop.texts("SELECT code FROM alarm WHERE code != 'bin_beam'");
     assert_eq!(told, ["lot_discard_limit"]);
     let failed = "SELECT count(*) FROM part WHERE kind = 'lot' AND verdict = 'fail'";

@@ -83,18 +83,8 @@ fn a_locked_history_stops_feeding_and_loses_no_part() {
         "{said}"
     );
     other.execute_batch("ROLLBACK").unwrap();
-    let landed: Vec<_> = objects(&told)
-        .into_iter()
-        .filter(|it| it["type"] == "part" && it["bin"] != "")
-        .collect();
-    assert!(landed.len() >= 3, "{told}");
-    for part in landed {
-        let (seq, bin) = (&part["seq"], part["bin"].as_str().unwrap());
-        let rows = format!(
-            "SELECT count(*) FROM part WHERE kind = 'lot' AND seq = {seq} AND bin = '{bin}'"
-        );
-        assert_eq!(workshop.count(&rows), 1, "{part}");
-    }
+    let landed = workshop.landed_parts_with_rows(&objects(&told));
+    assert!(landed >= 3, "{told}");
     workshop.run("history check").with_status(0);
     workshop.run(&format!("{LOT} --count 2")).with_status(0);
 }

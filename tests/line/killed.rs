@@ -28,14 +28,14 @@ impl Drop for Rig {
 impl Rig {
     /// Starts the rig with its ports linked in `ports`; `faults` are further arguments.
     pub fn start(workshop: &Workshop, faults: &str) -> Self {
-        // A rig that tells nothing any more would keep the test waiting for ever.
+        // Without the limit a silent rig would block the test.
         let mut process = workshop.start_for(
             "120",
             &format!("sim --seed 1 --link ports --journal {faults}"),
         );
         let told = BufReader::new(process.stdout.take().unwrap());
         let mut rig = Self { process, told };
-        let lines = rig.next().expect("a rig that tells its ports");
+        let lines = rig.next().expect("a rig that prints its ports");
         assert!(lines["lines"].is_object(), "{lines}");
         rig
     }
@@ -48,7 +48,7 @@ impl Rig {
     }
 
     /// Returns the outputs of each digital module when the first watchdog expires.
-    fn left_by_its_host(&mut self) -> BTreeMap<String, f64> {
+    fn outputs_before_expiry(&mut self) -> BTreeMap<String, f64> {
         let told = std::iter::from_fn(|| self.next());
         let outputs = told
             .take_while(|told| told["type"] != "expired")
@@ -120,7 +120,7 @@ const TRIES: usize = 20;
 /// after the kill.
 fn killed_in_the_middle(workshop: &Workshop, attempt: usize, watched: usize) -> Option<Vec<Value>> {
     let mut rig = Rig::start(workshop, "");
-    // What an attempt leaves in its history is not to hinder the next.
+    // Each attempt has its own history, so that an open lot does not refuse the next one.
     let mut controller = workshop.start(&format!(
         "--db attempt-{attempt}.db run --lot A --recipe jzc-22f-012 \
          --line measure=ports/measure --line motion=ports/motion"
@@ -132,7 +132,7 @@ fn killed_in_the_middle(workshop: &Workshop, attempt: usize, watched: usize) -> 
         return None;
     }
     let expired = rig.expiries(watched);
-    // Whatever expired while the controller lived heard a request of it behind.
+    // A watchdog that expires before the kill has an earlier last request than the others.
     let mut last_requests = expired.iter().map(|told| &told["last_request_us"]);
     let last = last_requests.next_back()?;
     let after_the_kill = last_requests.all(|other| other == last);
@@ -181,7 +181,7 @@ fn stopped_twice(workshop: &Workshop) -> Option<(Rig, i32, String)> {
 }
 
 #[test]
-fn ctrl_c_twice_makes_outputs_safe_at_once_keeps_the_rows_and_ends_with_4() {
+fn ctrl_c_twice_makes_outputs_safe_and_keeps_rows() {
     let (workshop, (mut rig, status, said)) = (0..TRIES)
         .find_map(|_| {
             let workshop = Workshop::new("ctrl-c-twice");
@@ -189,9 +189,9 @@ fn ctrl_c_twice_makes_outputs_safe_at_once_keeps_the_rows_and_ends_with_4() {
         })
         .expect("a machine with a second to spare");
     assert_eq!(status, 4, "{said}");
-    // Left by its own hand: no watchdog had to do it.
+    // The controller itself switches off: no watchdog has expired.
     let safe = watched(&workshop);
-    let left = rig.left_by_its_host();
+    let left = rig.outputs_before_expiry();
     assert_eq!(left.get("board_do"), Some(&0.0), "{left:?}");
     for (module, bits) in left {
         let safe = safe.get(&module).copied().unwrap_or_default();

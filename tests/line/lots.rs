@@ -189,7 +189,7 @@ const BIN_OF_DEFECT: &[(&str, &str)] = &[
     ("missing", "retest"),
 ];
 
-/// Returns the bin of a defect; some entries cover NC and NO.
+/// Number of defects of the simulated rig; the entry `stuck` of [`BIN_OF_DEFECT`] covers NC and NO.
 const KINDS_OF_DEFECT: usize = 13;
 
 #[test]
@@ -208,7 +208,7 @@ fn every_defect_goes_to_the_bin_of_its_cause() {
         let known = BIN_OF_DEFECT
             .iter()
             .find(|(start, _)| defect.starts_with(start));
-        let (_, bin) = known.unwrap_or_else(|| panic!("no bin is agreed for the defect {defect}"));
+        let (_, bin) = known.unwrap_or_else(|| panic!("no bin for the defect {defect}"));
         assert_eq!(
             text(part, "bin"),
             *bin,
@@ -220,7 +220,7 @@ fn every_defect_goes_to_the_bin_of_its_cause() {
 }
 
 #[test]
-fn a_void_part_says_why() {
+fn a_part_that_does_not_pass_has_reasons() {
     for part in spoiled()
         .parts
         .iter()
@@ -252,11 +252,7 @@ fn every_part_has_rows_down_to_raw_replies() {
     let bare = "SELECT count(*) FROM measurement AS m WHERE value IS NOT NULL AND NOT EXISTS
         (SELECT 1 FROM sample AS s WHERE s.part_id = m.part_id AND s.parameter_id = m.parameter_id
          AND s.raw <> '' AND s.line <> '' AND s.module <> '')";
-    assert_eq!(
-        workshop.count(bare),
-        0,
-        "a value without the bytes it came from"
-    );
+    assert_eq!(workshop.count(bare), 0, "a value without its raw reply");
     assert_eq!(
         workshop.count("SELECT count(*) FROM run WHERE closed_at_us IS NULL"),
         0
@@ -268,10 +264,10 @@ fn every_part_has_rows_down_to_raw_replies() {
 }
 
 #[test]
-fn golden_parts_come_first_and_end_in_retest() {
+fn reference_parts_come_first_and_end_in_retest() {
     let workshop = &twelve().workshop;
     assert!(workshop.count("SELECT count(*) FROM part WHERE kind = 'golden'") > 0);
-    // Rig time: no limit is proven while they teach, and none of them is tested a second time for that.
+    // Rig time: a test with confirmation measurements would take longer.
     let again = "SELECT count(*) FROM part WHERE kind = 'golden' AND test_s > 1.2";
     assert_eq!(workshop.count(again), 0);
     assert_eq!(
@@ -341,7 +337,7 @@ fn the_other_coil_voltages_run_as_well() {
 }
 
 #[test]
-fn the_history_tells_of_the_lot() {
+fn the_history_lists_the_lot() {
     let workshop = &twelve().workshop;
     let listed = workshop.run("history list").with_status(0);
     assert!(listed.stdout.contains("jzc-22f-012"), "{listed}");

@@ -14,10 +14,10 @@
 //! - [`picture`]: the drawing in README.md matches `config/scene.toml`.
 //! - `protocol`: every command of every module, written, answered and read; settings, INIT*.
 //! - `stories`: scripts of troubles and orders with their expected course.
-//! - `storm`: random transactions under every fault of a line at once, judged by the fingerprint of each value.
+//! - `storm`: random transactions under all faults of a line; the fingerprint of each value names its origin.
 //! - `tempest`: the whole program under faults, orders and kills, judged by the simulated rig.
 //! - `unplugged`: a port that vanishes while a lot runs.
-//! - [`rows`]: four recipes, five seeds, forty parts each, compared with what was recorded.
+//! - [`rows`]: recorded rows of six recipes, five seeds, forty parts each.
 //! - `serve`: lots started, refused and continued at the page.
 //! - [`troubles`]: faults of the rig by name, with the alarm of each.
 

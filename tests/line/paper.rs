@@ -99,7 +99,7 @@ fn only_what_a_backup_holds_is_pruned() {
     assert_eq!(workshop.count(parts), 20, "the sheet lacks reference parts");
     workshop.run("history backup copy.db").with_status(0);
     workshop.run(prune).with_status(0);
-    assert_eq!(workshop.count(parts), 20, "nobody said --yes");
+    assert_eq!(workshop.count(parts), 20, "without --yes");
     workshop.run(&format!("{prune} --yes")).with_status(0);
     assert_eq!(workshop.count(parts), 0);
     let kept = workshop

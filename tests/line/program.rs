@@ -141,7 +141,7 @@ impl Workshop {
     pub fn change(&self, file: &str, from: &str, to: &str) -> usize {
         let text = self.read(file);
         let found: Vec<usize> = text.match_indices(from).map(|(at, _)| at).collect();
-        assert_eq!(found.len(), 1, "{from:?} must stand once in {file}");
+        assert_eq!(found.len(), 1, "{file}: expected {from:?} once");
         self.write(file, &text.replace(from, to));
         text[..found[0]].matches('\n').count() + 1
     }
@@ -150,6 +150,20 @@ impl Workshop {
     pub fn count(&self, query: &str) -> i64 {
         let history = rusqlite::Connection::open(self.folder.join("relayrig.db")).unwrap();
         history.query_row(query, [], |row| row.get(0)).unwrap()
+    }
+
+    /// Checks that each part of `output` with a bin has one row with this bin; returns the number of these parts.
+    #[cfg(all(feature = "sim", unix))]
+    pub fn landed_parts_with_rows(&self, output: &[Value]) -> usize {
+        let landed = |it: &&Value| it["type"] == "part" && it["bin"] != "";
+        let check = |part: &Value| {
+            let (seq, bin) = (&part["seq"], part["bin"].as_str().unwrap());
+            let rows = format!(
+                "SELECT count(*) FROM part WHERE kind = 'lot' AND seq = {seq} AND bin = '{bin}'"
+            );
+            assert_eq!(self.count(&rows), 1, "{part}");
+        };
+        output.iter().filter(landed).map(check).count()
     }
 
     /// Returns a column of texts from the history.

@@ -43,7 +43,7 @@ fn meant(model: &str, request: &str) -> Vec<Command> {
 fn every_module_answers_every_command() {
     let mut broken = Vec::new();
     for model in models() {
-        // With INIT* grounded the newer ones take every command.
+        // With INIT* grounded the modules of series M-7000 accept every command.
         let init = model.starts_with("M-");
         let text =
             format!("baud = 9600\n[[module]]\naddress = 1\nmodel = \"{model}\"\ninit = {init}");
@@ -131,8 +131,8 @@ fn no_factory_command_can_be_written() {
 // ---- the line task of the controller over a simulated bench ---------------------------------------------------------
 
 /// Sends commands in order. Returns each result with the number of EEPROM writes so far.
-fn told(modules: &str, checksum: bool, commands: &[Command]) -> Vec<(Answer, u64)> {
-    let talk = async {
+fn exchanged(modules: &str, checksum: bool, commands: &[Command]) -> Vec<(Answer, u64)> {
+    let exchange = async {
         let rig = SharedRig::new(bench::build_text(&format!("baud = 9600\n{modules}")).unwrap());
         let (_, plug) = wire::plugs(&rig).remove(0);
         let (ask, asked) = mpsc::channel(1);
@@ -147,7 +147,7 @@ fn told(modules: &str, checksum: bool, commands: &[Command]) -> Vec<(Answer, u64
             asked,
             answer,
         ));
-        let mut told = Vec::new();
+        let mut results = Vec::new();
         for command in commands {
             let request = Request {
                 ticket: 0,
@@ -156,16 +156,16 @@ fn told(modules: &str, checksum: bool, commands: &[Command]) -> Vec<(Answer, u64
             };
             ask.send(request).await.unwrap();
             let answer = answers.recv().await.unwrap();
-            told.push((answer, rig.eeprom_writes()));
+            results.push((answer, rig.eeprom_writes()));
         }
-        told
+        results
     };
     tokio::runtime::Builder::new_current_thread()
         .enable_time()
         .start_paused(true)
         .build()
         .unwrap()
-        .block_on(talk)
+        .block_on(exchange)
 }
 
 #[test]
@@ -180,14 +180,14 @@ fn an_unchanged_setting_is_not_written_to_the_eeprom() {
             let [command] = settings[..] else {
                 continue;
             };
-            let told = told(&module, false, &[command, command]);
-            let [(first, once), (second, twice)] = &told[..] else {
-                panic!("{told:?}")
+            let results = exchanged(&module, false, &[command, command]);
+            let [(first, once), (second, twice)] = &results[..] else {
+                panic!("{results:?}")
             };
             let name = format!("{model} {request}");
             assert_eq!(first.outcome, Ok(Reply::Accepted), "{name}");
             assert_eq!(second.outcome, Ok(Reply::Accepted), "{name}");
-            assert_eq!(once, twice, "{name}: written though it stood");
+            assert_eq!(once, twice, "{name}: an unchanged setting was written");
             counted += once;
         }
     }
@@ -206,21 +206,25 @@ fn only_an_alarm_that_is_on_is_switched_off() {
         Counter::DisableAlarmOf(zero),
     ];
     let module = "[[module]]\naddress = 1\nmodel = \"I-7080\"";
-    let told = told(module, false, &asked.map(|ask| ask.to(Address(1))));
-    assert!(told.iter().all(|(it, _)| it.outcome == Ok(Reply::Accepted)));
-    let writes: Vec<u64> = told.iter().map(|(_, writes)| *writes).collect();
+    let results = exchanged(module, false, &asked.map(|ask| ask.to(Address(1))));
+    assert!(
+        results
+            .iter()
+            .all(|(it, _)| it.outcome == Ok(Reply::Accepted))
+    );
+    let writes: Vec<u64> = results.iter().map(|(_, writes)| *writes).collect();
     assert_eq!(writes, [1, 2, 2]);
 }
 
 #[test]
 fn a_silent_module_is_never_configured() {
     let mask = AnalogIn::WriteMask(0x0F).to(Address(1));
-    let told = told(
+    let results = exchanged(
         "[[module]]\naddress = 2\nmodel = \"I-7017\"",
         false,
         &[mask],
     );
-    let (answer, writes) = &told[0];
+    let (answer, writes) = &results[0];
     let text = answer.outcome.as_ref().unwrap_err().to_string();
     assert!(text.contains("ReadMask"), "{text}");
     assert_eq!((*writes, answer.command), (0, mask));
@@ -244,7 +248,7 @@ const GROUNDED: &str =
     "[[module]]\naddress = 4\nmodel = \"I-7017\"\nbaud = 115200\nchecksum = true\ninit = true";
 
 #[test]
-fn with_init_grounded_a_module_is_found_at_00_without_checksum_and_tells_what_it_has_stored() {
+fn a_grounded_module_answers_at_00_with_stored_settings() {
     let name = Common::WriteName(ModuleName::new("NEST").unwrap()).to(Address(0));
     let asked = [
         Common::ReadInitPin.to(Address(4)),
@@ -254,26 +258,26 @@ fn with_init_grounded_a_module_is_found_at_00_without_checksum_and_tells_what_it
         Common::ReadConfig.to(Address(0)),
         name,
     ];
-    let told = told(GROUNDED, false, &asked);
+    let results = exchanged(GROUNDED, false, &asked);
     let stored = |config| {
         Ok(Reply::Config {
             address: Address(4),
             config,
         })
     };
-    assert_eq!(told[0].0.outcome, Ok(Reply::Flag(false)));
-    assert_eq!(told[1].0.outcome, stored(word(0x08, 115_200, 0x40)));
+    assert_eq!(results[0].0.outcome, Ok(Reply::Flag(false)));
+    assert_eq!(results[1].0.outcome, stored(word(0x08, 115_200, 0x40)));
     assert_eq!(
-        (told[2].0.outcome.clone(), told[2].1),
+        (results[2].0.outcome.clone(), results[2].1),
         (Ok(Reply::Accepted), 0)
     );
     assert_eq!(
-        (told[3].0.outcome.clone(), told[3].1),
+        (results[3].0.outcome.clone(), results[3].1),
         (Ok(Reply::Accepted), 1)
     );
-    assert_eq!(told[4].0.outcome, stored(word(0x08, 9_600, 0x00)));
-    // The reply carries the stored address: nobody at 00 has said so.
-    assert!(told[5].0.outcome.is_err(), "{:?}", told[5].0);
+    assert_eq!(results[4].0.outcome, stored(word(0x08, 9_600, 0x00)));
+    // The reply carries the stored address 04, so that it is no answer of address 00.
+    assert!(results[5].0.outcome.is_err(), "{:?}", results[5].0);
 }
 
 #[test]
@@ -284,14 +288,14 @@ fn rate_and_checksum_change_with_init_grounded_only() {
         set(4, 4, word(0x08, 9_600, 0x40)),
         set(4, 4, word(0x09, 9_600, 0x02)),
     ];
-    let told = told(open, false, &changes);
-    for (answer, writes) in &told[..2] {
+    let results = exchanged(open, false, &changes);
+    for (answer, writes) in &results[..2] {
         let text = answer.outcome.as_ref().unwrap_err().to_string();
         assert!(text.contains(&ReplyError::Refused.to_string()), "{text}");
         assert_eq!(*writes, 0);
     }
     assert_eq!(
-        (told[2].0.outcome.clone(), told[2].1),
+        (results[2].0.outcome.clone(), results[2].1),
         (Ok(Reply::Accepted), 1)
     );
 }

@@ -163,7 +163,7 @@ fn the_page_starts_one_lot_after_another() {
     served.until_state("Complete");
     served.start_lot("B", 1);
     served.until_complete("B", 1);
-    assert_eq!(served.interrupted(), 0, "nothing was stopped");
+    assert_eq!(served.interrupted(), 0, "no lot was stopped");
 
     let states =
         "SELECT name || ' ' || state FROM lot JOIN lot_state ON lot_id = lot.id ORDER BY name";

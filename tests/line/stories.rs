@@ -22,14 +22,14 @@ fn scripts() -> Vec<PathBuf> {
 }
 
 #[test]
-fn every_trouble_goes_as_its_story_says() {
+fn every_story_takes_its_expected_course() {
     let left = Mutex::new(scripts());
     let broken = Mutex::new(Vec::new());
     std::thread::scope(|scope| {
         for _ in 0..AT_ONCE {
             scope.spawn(|| {
                 while let Some(script) = { left.lock().unwrap().pop() } {
-                    broken.lock().unwrap().extend(told_otherwise(&script));
+                    broken.lock().unwrap().extend(differences(&script));
                 }
             });
         }
@@ -39,7 +39,7 @@ fn every_trouble_goes_as_its_story_says() {
 }
 
 /// Plays a script and returns every difference from the expected course.
-fn told_otherwise(script: &Path) -> Vec<String> {
+fn differences(script: &Path) -> Vec<String> {
     let name = script.file_stem().unwrap().to_string_lossy();
     let workshop = Workshop::new(&format!("story-{name}"));
     let said = workshop.run(&format!("story {} --truth t.jsonl", script.display()));
@@ -53,7 +53,7 @@ fn told_otherwise(script: &Path) -> Vec<String> {
     }
     if fs::read_to_string(&file).ok().as_deref() != Some(said.stdout.as_str()) {
         broken.push(format!(
-            "{name}: told otherwise than in {} (RELAYRIG_RENEW=1 writes it anew):\n{}",
+            "{name}: differs from {} (RELAYRIG_RENEW=1 rewrites the file):\n{}",
             file.display(),
             said.stdout
         ));
@@ -70,7 +70,7 @@ fn misplaced(name: &str, workshop: &Workshop) -> Vec<String> {
             "SELECT count(*) FROM part WHERE kind = 'lot' AND seq = {seq} AND bin = '{bin}'"
         );
         (workshop.count(&row) != 1)
-            .then(|| format!("{name}: part {seq} lies in {bin}, its row does not say so"))
+            .then(|| format!("{name}: part {seq} lies in {bin}, its row names another bin"))
     };
     objects(&workshop.read("t.jsonl"))
         .iter()

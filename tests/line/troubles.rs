@@ -45,13 +45,8 @@ fn every_fault_ends_as_the_table_says() {
     let table = table();
     let (first, second) = table.split_at(table.len() / 2);
     let broken = std::thread::scope(|scope| {
-        let beside = scope.spawn(|| {
-            second
-                .iter()
-                .flat_map(told_otherwise)
-                .collect::<Vec<String>>()
-        });
-        let mut broken: Vec<String> = first.iter().flat_map(told_otherwise).collect();
+        let beside = scope.spawn(|| second.iter().flat_map(differences).collect::<Vec<String>>());
+        let mut broken: Vec<String> = first.iter().flat_map(differences).collect();
         broken.extend(beside.join().unwrap());
         broken
     });
@@ -59,7 +54,7 @@ fn every_fault_ends_as_the_table_says() {
 }
 
 /// Returns every difference between a run under this fault and the table.
-fn told_otherwise(trouble: &Trouble) -> Vec<String> {
+fn differences(trouble: &Trouble) -> Vec<String> {
     let (workshop, said) = strike(
         &format!("fault-{}", trouble.fault.replace('/', "-")),
         trouble.fault,
@@ -87,7 +82,7 @@ fn lost_rows(fault: &str, workshop: &Workshop, said: &Said) -> Vec<String> {
         .count();
     let rows = workshop.count("SELECT count(*) FROM part WHERE kind = 'lot'");
     if i64::try_from(told).unwrap() > rows {
-        lost.push(format!("{fault}: {told} parts told, {rows} rows kept"));
+        lost.push(format!("{fault}: {told} parts on stdout, {rows} rows"));
     }
     if said
         .objects()
@@ -122,7 +117,7 @@ fn cause_otherwise(workshop: &Workshop, said: &Said) -> Option<String> {
     let listed = workshop.run("history list --json").objects().pop()?;
     let kept = listed["cause"].as_str().unwrap_or_default();
     let same = kept == cause && listed["ended"] == summary["ended"];
-    (!same).then(|| format!("the history keeps {listed}, the summary tells {summary}"))
+    (!same).then(|| format!("history {listed}, summary {summary}"))
 }
 
 #[test]
@@ -163,7 +158,7 @@ fn a_module_of_another_type_is_refused() {
 
 #[test]
 fn a_fault_that_is_none_is_refused() {
-    for fault in ["jam_pushr", "drop=much", "silence=nobody@1"] {
+    for fault in ["jam_pushr", "drop=much", "silence=no_module@1"] {
         let (workshop, said) = strike("no-such-fault", fault);
         let said = said.with_status(2);
         assert_eq!(said.stdout, "");

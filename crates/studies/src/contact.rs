@@ -5,7 +5,7 @@
 //!   it falls with the root of the number of closures.
 //! - Seconds are those of all stages that read a contact; the same stages measure times and bounce.
 
-use super::figure::Figure;
+use super::figure::{Figure, rms};
 use super::lot::Lot;
 use super::method::{self, BAUDS, TimedParameter};
 use super::order::Order;
@@ -137,10 +137,8 @@ fn repeatability(name: String, lots: &[Lot], timed: TimedParameter, bodies: u64)
             Some(100.0 * spread.sd()? / spread.mean()?)
         })
         .collect();
-    let n = relative.len() as f64;
-    let rms = (relative.iter().map(|it| it * it).sum::<f64>() / n).sqrt();
-    Figure::new(name, relative.len() as u64, Some(rms), "%")
-        .with("seconds", timed.seconds(lots).mean())
+    let (n, rms) = (relative.len() as u64, rms(relative.into_iter()));
+    Figure::new(name, n, rms, "%").with("seconds", timed.seconds(lots).mean())
 }
 
 /// Compares early stop with a fixed number of closures: early stop reads a part far from its limit once, one near the limit

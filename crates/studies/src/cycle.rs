@@ -1,4 +1,4 @@
-//! Rig time of a test and of a cycle, and where it goes.
+//! Rig time of a test and of a cycle, and its pieces.
 //!
 //! A cycle runs from nest exit to nest exit. The cycle without the test is mechanics; the part of the test that the rows
 //! do not name is `rest`. Shares are means over parts that have both times, so that the pieces add up to the mean cycle.
@@ -41,7 +41,7 @@ const PIECES: [(&str, &str); 4] = [
 /// A lot that did not run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let lots = order.run_all()?;
-    let adaptive = order.recipe.ends_with("-adaptive");
+    let adaptive = order.recipe.name.ends_with("-adaptive");
     let mean_bar = if adaptive { ADAPTIVE_MEAN_S } else { TEST_S };
     let (pieces, about) = (pieces(&lots), order.about());
     let title = format!("where a cycle goes, mean per part: {about}");

@@ -17,8 +17,6 @@ use super::order::Order;
 use super::output::Report;
 use super::risk::DecisionRisk;
 use super::variant::Variant;
-use anyhow::Context as _;
-use config::load_recipe;
 use machine::dut::em_relay::Parameter;
 use quality::Spread;
 use quality::spread::median;
@@ -38,16 +36,16 @@ const AGAIN: f64 = 0.98;
 /// A lot that did not run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let lots = order.run_all()?;
-    let rows: Vec<Figure> = order
-        .admitted
+    let (rows, risks): (Vec<Figure>, Vec<Option<(f64, f64)>>) = order
+        .admitted()
         .iter()
         .map(|(parameter, limits)| predicted(*parameter, limits, &lots))
-        .collect();
+        .unzip();
     let about = order.about();
     let title = format!("rejects of good parts that the rule predicts: {about}");
     let chart = Chart::of(title, "ppm", Vec::new(), &rows);
-    let sum = |what: fn(&Figure) -> Option<f64>| rows.iter().filter_map(what).sum::<f64>() / PPM;
-    let risks = (sum(false_accept), sum(|row| row.value));
+    let sum = |all: (f64, f64), it: (f64, f64)| (all.0 + it.0, all.1 + it.1);
+    let risks = risks.into_iter().flatten().fold((0.0, 0.0), sum);
     let groups = vec![
         counted("", &lots, risks),
         at_limit(order, &lots)?,
@@ -57,28 +55,24 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     Ok(Report::new("decision", about, groups, chart))
 }
 
-fn false_accept(row: &Figure) -> Option<f64> {
-    let mut more = row.more.iter();
-    more.find(|(key, _)| *key == "false_accept")
-        .and_then(|(_, value)| *value)
-}
-
-/// Returns the false rejects and accepts that the rule predicts for one parameter, parts per million, with and without
-/// guard band.
-fn predicted(parameter: Parameter, limits: &RangeInclusive<f64>, lots: &[Lot]) -> Figure {
+/// Returns the false rejects and accepts that the rule predicts for one parameter, with and without guard band: a row in
+/// parts per million, and the probabilities of a false accept and a false reject with guard band.
+fn predicted(
+    parameter: Parameter,
+    limits: &RangeInclusive<f64>,
+    lots: &[Lot],
+) -> (Figure, Option<(f64, f64)>) {
     let readings = readings(parameter, lots);
     let chance = chance(&readings);
-    let with = |guard: f64| chance.and_then(|it| it.of(limits, guard));
-    let ppm = |chance: Option<f64>| chance.map(|it| it * PPM);
-    Figure::new(
-        parameter.name(),
-        readings.len() as u64,
-        ppm(with(1.0).map(|it| it.1)),
-        "ppm",
-    )
-    .with("false_accept", ppm(with(1.0).map(|it| it.0)))
-    .with("unguarded_reject", ppm(with(0.0).map(|it| it.1)))
-    .with("unguarded_accept", ppm(with(0.0).map(|it| it.0)))
+    let [guarded, unguarded] = [1.0, 0.0].map(|guard| chance?.of(limits, guard));
+    let accept = |risk: Option<(f64, f64)>| risk.map(|it| it.0 * PPM);
+    let reject = |risk: Option<(f64, f64)>| risk.map(|it| it.1 * PPM);
+    let (name, n) = (parameter.name(), readings.len() as u64);
+    let row = Figure::new(name, n, reject(guarded), "ppm")
+        .with("false_accept", accept(guarded))
+        .with("unguarded_reject", reject(unguarded))
+        .with("unguarded_accept", accept(unguarded));
+    (row, guarded)
 }
 
 fn readings(parameter: Parameter, lots: &[Lot]) -> Vec<Reading> {
@@ -111,20 +105,15 @@ fn chance(readings: &[Reading]) -> Option<DecisionRisk> {
 
 /// Runs lots whose mean operate voltage lies one standard deviation inside its limit.
 fn at_limit(order: &Order, lots: &[Lot]) -> anyhow::Result<Vec<Figure>> {
+    let admitted = order.admitted();
     let known = |(parameter, _): &&(Parameter, _)| *parameter == Parameter::OperateVoltage;
-    let limits = order.admitted.iter().find(known).map(|(_, limits)| limits);
+    let limits = admitted.iter().find(known).map(|(_, limits)| limits);
     let usual = chance(&readings(Parameter::OperateVoltage, lots));
     let (Some(limits), Some(usual)) = (limits.filter(|it| it.end().is_finite()), usual) else {
         return Ok(Vec::new());
     };
     let mean = limits.end() - usual.sd;
-    let recipe = load_recipe(&order.config, &order.recipe)?;
-    let nominal_v = recipe
-        .device
-        .part()
-        .nominal_v
-        .context("the study needs a recipe of a relay")?;
-    let of_lot = LOT_V / nominal_v;
+    let of_lot = LOT_V / order.nominal_v();
     let recipe = vec![("test.expected_operate_v", mean.into())];
     let variant = Variant::erring(BAUDS[0], recipe)
         .in_world(vec![("lot.operate_v_mean", (mean * of_lot).into())]);

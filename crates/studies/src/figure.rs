@@ -128,6 +128,11 @@ pub fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     Spread::of(&values.collect::<Vec<f64>>()).mean()
 }
 
+/// Returns the root of the mean square; `None` without values.
+pub fn rms(values: impl Iterator<Item = f64>) -> Option<f64> {
+    mean(values.map(|it| it * it)).map(f64::sqrt)
+}
+
 /// Formats a value to five digits, without an exponent.
 pub fn shown(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {

@@ -41,7 +41,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     let wanted = GenerateOptions {
         parts: order.parts,
         seed: 1,
-        recipe: order.recipe.clone(),
+        recipe: order.recipe.name.clone(),
         until: None,
     };
     let bar = progress(Some(order.parts), PIECES);
@@ -68,7 +68,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     let sheet = sheets(order, &db)?;
     let title = format!("wall time of queries over {n} parts");
     let chart = Chart::of(title, "ms", vec![50.0, 300.0], &reading);
-    let about = format!("{n} made-up parts of {}", order.recipe);
+    let about = format!("{n} made-up parts of {}", order.recipe.name);
     Ok(Report::new(
         "history",
         about,

@@ -53,7 +53,7 @@ pub fn play(order: &Order, folder: &Path, script: &str, seed: u64) -> anyhow::Re
         .arg(&file)
         .arg("--journal")
         .arg(&journal);
-    command.args(["--recipe", &order.recipe, "--seed", &seed.to_string()]);
+    command.args(["--recipe", &order.recipe.name, "--seed", &seed.to_string()]);
     let output =
         finished(&mut command, &[0, 1]).with_context(|| format!("the story with seed {seed}"))?;
     let text = std::fs::read_to_string(&journal)?;

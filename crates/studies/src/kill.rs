@@ -28,7 +28,7 @@ const LONGEST_MS: u64 = 1_500;
 /// Every third round counts the time from the start of the process.
 const FROM_START: u64 = 3;
 /// Longest wait for the first part of a lot; then the kill follows all the same.
-const PATIENCE: Duration = Duration::from_secs(30);
+const FIRST_PART_TIMEOUT: Duration = Duration::from_secs(30);
 /// Interval at which the study looks for the first part.
 const LOOK: Duration = Duration::from_millis(5);
 /// Parts of a lot: more than it can test before the kill.
@@ -81,19 +81,19 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
 
 fn report(order: &Order, it: &Counts, instants: &[f64]) -> Report {
     let bars = vec![
-        Figure::none("told parts without their row", it.reported, it.lost),
+        Figure::none("printed parts without their row", it.reported, it.lost),
         Figure::none(
-            "told parts with another verdict or bin",
+            "printed parts with another verdict or bin",
             it.reported,
             it.other,
         ),
         Figure::none(
-            "lots whose numbers have a gap or a double",
+            "lots whose numbers have a gap or a duplicate",
             order.lots,
             it.gaps,
         ),
         Figure::none(
-            "told parts that failed and have no curve",
+            "printed parts that failed and have no curve",
             it.reported,
             it.without_curve,
         ),
@@ -105,7 +105,11 @@ fn report(order: &Order, it: &Counts, instants: &[f64]) -> Report {
         ),
     ];
     let information = vec![
-        Figure::count("kills before a part was told", order.lots, Some(it.early)),
+        Figure::count(
+            "kills before the first printed part",
+            order.lots,
+            Some(it.early),
+        ),
         Figure::count("rows of parts", order.lots, Some(it.rows)),
     ];
     let spread = quality::Ordered::of(instants);
@@ -115,7 +119,7 @@ fn report(order: &Order, it: &Counts, instants: &[f64]) -> Report {
     let chart = Chart::new(title, "ms", Vec::new(), quartiles);
     let about = format!(
         "{} lots of {} killed at random instants",
-        order.lots, order.recipe
+        order.lots, order.recipe.name
     );
     Report::new("kill", about, vec![bars, information], chart)
 }
@@ -136,7 +140,7 @@ fn run_and_kill(
     let mut child = start_lot(order, db, (&name(round), ENDLESS), round + 1, file.into())?;
     if !round.is_multiple_of(FROM_START) {
         let born = Instant::now();
-        while std::fs::metadata(&out)?.len() == 0 && born.elapsed() < PATIENCE {
+        while std::fs::metadata(&out)?.len() == 0 && born.elapsed() < FIRST_PART_TIMEOUT {
             std::thread::sleep(LOOK);
         }
     }

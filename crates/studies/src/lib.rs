@@ -1,9 +1,9 @@
-//! Figures that anyone can reprint.
+//! Reproducible figures of the rig, each beside the bar that it must keep.
 //!
 //! A study runs lots on the simulated rig in virtual time, each in a process of this very program, compares the rows
-//! with what the specimens really were (`--truth`), and prints every figure beside the bar that it must keep.
+//! with the truth about the parts (`--truth`), and prints the figures.
 //!
-//! - Lot `n` of a study runs with seed `n`, so that one `relayrig run` repeats what is behind a figure.
+//! - Lot `n` of a study runs with seed `n`, so that one `relayrig run` repeats the lot of a figure.
 //! - A good part is one without a defect; only good parts count for errors and coverage. A good part drawn beyond a
 //!   limit is rightly rejected: the figures about bins count it neither as good nor as defective, and a row of its own
 //!   counts these parts.
@@ -52,18 +52,15 @@ mod verification;
 use anyhow::bail;
 use clap::ValueEnum;
 pub use collision::study as collision;
-use config::load_recipe;
 pub use gantt::svg as cycle_gantt;
-use machine::dut::em_relay::Parameter;
 pub use order::Order;
 pub use output::Report;
-use std::path::Path;
 pub use transient::{USUAL_RTOL, study as transient};
 
 /// The studies, in the order of the list that `relayrig study` prints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Study {
-    /// Error of every parameter against the truth, and where parts went
+    /// Error of every parameter against the truth, and bins of the parts
     Accuracy,
     /// Seconds against error of the coil resistance: settling, scans, self-heating, temperature
     Coil,
@@ -73,7 +70,7 @@ pub enum Study {
     Contact,
     /// How often the stated uncertainty covers the truth
     Coverage,
-    /// Rig time of a test and of a cycle, and where it goes
+    /// Rig time of a test and of a cycle, and its pieces
     Cycle,
     /// Speed of the history on a made-up file
     History,
@@ -145,27 +142,4 @@ impl Study {
             }
         }
     }
-}
-
-/// Returns the nominal coil voltage of the recipe, V; NaN for a kind without one.
-///
-/// # Errors
-/// A recipe that does not load.
-pub fn nominal_v(config: &Path, recipe: &str) -> anyhow::Result<f64> {
-    let part = load_recipe(config, recipe)?.device.part();
-    Ok(part.nominal_v.unwrap_or(f64::NAN))
-}
-
-/// Returns the range that the recipe admits for every parameter; a limit that it does not set is infinite.
-///
-/// # Errors
-/// A recipe that does not load.
-pub fn admitted(config: &Path, recipe: &str) -> anyhow::Result<lot::Admitted> {
-    let limits = load_recipe(config, recipe)?.limits;
-    let range = |parameter: &Parameter| {
-        let limit = limits.of(*parameter);
-        let low = limit.low.unwrap_or(f64::NEG_INFINITY);
-        (*parameter, low..=limit.high.unwrap_or(f64::INFINITY))
-    };
-    Ok(Parameter::ALL.iter().map(range).collect())
 }

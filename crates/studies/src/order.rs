@@ -3,8 +3,11 @@
 use super::lot::{Admitted, Lot};
 use super::pool::{self, LOTS_AT_ONCE};
 use anyhow::{Context, ensure};
+use machine::dut::Recipe;
+use machine::dut::em_relay::Parameter;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::sync::Arc;
 use std::time::Instant;
 use tempfile::TempDir;
 
@@ -18,12 +21,8 @@ pub struct Order {
     pub program: PathBuf,
     /// Directory of the configuration.
     pub config: PathBuf,
-    /// Recipe of every lot.
-    pub recipe: String,
-    /// Range that the recipe admits, by parameter.
-    pub admitted: Admitted,
-    /// Nominal coil voltage of the recipe, V; NaN for a kind without one.
-    pub nominal_v: f64,
+    /// Recipe of every lot; it sets the limits of the truth even where a [`super::variant`] changes its file.
+    pub recipe: Arc<Recipe>,
     /// World of the simulated rig; `None` uses the one of the configuration.
     pub world: Option<PathBuf>,
     /// Faults of the simulated rig, in the form of `--fault`.
@@ -39,6 +38,21 @@ pub struct Order {
 }
 
 impl Order {
+    /// Returns the nominal coil voltage of the recipe, V; NaN for a kind without one.
+    pub fn nominal_v(&self) -> f64 {
+        self.recipe.device.part().nominal_v.unwrap_or(f64::NAN)
+    }
+
+    /// Returns the range that the recipe admits for every parameter; a limit that it does not set is infinite.
+    pub fn admitted(&self) -> Admitted {
+        let range = |parameter: &Parameter| {
+            let limit = self.recipe.limits.of(*parameter);
+            let low = limit.low.unwrap_or(f64::NEG_INFINITY);
+            (*parameter, low..=limit.high.unwrap_or(f64::INFINITY))
+        };
+        Parameter::ALL.iter().map(range).collect()
+    }
+
     /// Describes the lots for the head of a report.
     pub fn about(&self) -> String {
         let world = self
@@ -47,7 +61,7 @@ impl Order {
             .map_or_else(|| "the default world".into(), |it| it.display().to_string());
         format!(
             "{} x {} parts of {} in {world}",
-            self.lots, self.parts, self.recipe
+            self.lots, self.parts, self.recipe.name
         )
     }
 
@@ -81,7 +95,7 @@ impl Order {
         let wall_s = began.elapsed().as_secs_f64();
         let rows = String::from_utf8_lossy(&output.stdout);
         let mut lot = Lot::read(seed, &rows, &std::fs::read_to_string(&truth)?)?;
-        lot.mark_out_of_limits(&self.admitted);
+        lot.mark_out_of_limits(&self.admitted());
         Ok(Lot {
             errors_logged: String::from_utf8_lossy(&output.stderr).lines().count() as u64,
             wall_s,
@@ -101,7 +115,7 @@ impl Order {
     /// JSON; errors alone are logged.
     pub fn rig_command(&self, action: &str, db: &Path, seed: u64) -> Command {
         let mut command = self.command(db, "error");
-        command.args([action, "--sim", "--json", "--recipe", &self.recipe]);
+        command.args([action, "--sim", "--json", "--recipe", &self.recipe.name]);
         command.args(["--seed", &seed.to_string()]);
         if let Some(world) = &self.world {
             command.arg("--world").arg(world);

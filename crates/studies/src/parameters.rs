@@ -28,7 +28,7 @@ const CHART_FROM_PCT: f64 = 80.0;
 /// # Errors
 /// A lot that did not run.
 pub fn accuracy(order: &Order) -> anyhow::Result<Report> {
-    let nominal_v = order.nominal_v;
+    let nominal_v = order.nominal_v();
     let row = |parameter: Parameter, errors: &Pooled| {
         let (n, rms) = (errors.n(), errors.median_rms());
         Figure::new(parameter.name(), n, rms, unit(parameter))

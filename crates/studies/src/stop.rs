@@ -95,7 +95,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
         reactions.chain([bound]).collect(),
         vec![
             Figure::none("bodies that touched", lots, sum(|it| it.touched)),
-            Figure::none("lots that did not go on", lots, sum(|it| it.unfinished)),
+            Figure::none("lots that did not complete", lots, sum(|it| it.unfinished)),
         ],
     ];
     let stops = order.lots * order.parts;

@@ -90,7 +90,9 @@ impl Variant {
         let folder = TempDir::new()?;
         let to = folder.path().join("config");
         copy(&order.config, &to)?;
-        let recipe = to.join("recipes").join(format!("{}.toml", order.recipe));
+        let recipe = to
+            .join("recipes")
+            .join(format!("{}.toml", order.recipe.name));
         edit(&recipe, |table| set_all(table, &self.recipe))?;
         edit(&to.join("rig.toml"), |rig| self.change_rig(rig))?;
         if self.exact {

@@ -3,12 +3,12 @@
 //! The study calibrates every rig once and verifies it on other days: the errors of the rig stay, while noise, operations
 //! and temperatures of the reference parts change (fault `noise_seed`). A verification checks that every factor lies
 //! within [`K_JOINT`] standard uncertainties of both measurements together. With independent factors and exact
-//! uncertainties one of fourteen factors is outside in about one verification of thirty. The bar is that rate plus three
+//! uncertainties one of fifteen factors is outside in about one verification of 25. The bar is that rate plus three
 //! standard deviations of a count. Further rows show the scatter of each factor divided by its stated uncertainty: a ratio
 //! above 1 means that the stated uncertainty is too small.
 
 use super::chart::Chart;
-use super::figure::{Bar, Figure};
+use super::figure::{Bar, Figure, rms};
 use super::order::{Order, finished};
 use super::output::Report;
 use super::pool::{self, LOTS_AT_ONCE};
@@ -86,13 +86,7 @@ fn report(order: &Order, days: &[Day]) -> Report {
     .with("chosen", Some(100.0 * chosen_failure_rate))
     .bar(Bar::AtMost((1e4 * allowed).round() / 100.0));
     let names: Vec<&String> = days.first().into_iter().flat_map(Day::keys).collect();
-    let scatter = |name: &&String| {
-        let squares = days
-            .iter()
-            .filter_map(|day| day.get(*name))
-            .map(|off| off * off);
-        Some((squares.sum::<f64>() / n).sqrt())
-    };
+    let scatter = |name: &&String| rms(days.iter().filter_map(|day| day.get(*name).copied()));
     let factor = |name: &&String| {
         let text = format!("{name}: scatter against stated");
         Figure::new(text, days.len() as u64, scatter(name), "")

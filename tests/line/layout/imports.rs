@@ -39,10 +39,10 @@ const MACHINE: &[(&str, &[&str])] = &[
     ("rig", &["guard"]),
     ("instrument", &["rig"]),
     ("dut", &["form", "gauge", "instrument", "rig"]),
-    ("handling", &["dut", "gauge", "guard", "instrument", "rig"]),
+    ("handling", &["dut", "guard", "instrument", "rig"]),
     (
         "station",
-        &["dut", "gauge", "guard", "handling", "instrument", "rig"],
+        &["dut", "guard", "handling", "instrument", "rig"],
     ),
     ("view", &["dut"]),
 ];

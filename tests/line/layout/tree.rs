@@ -115,7 +115,7 @@ pub fn assert_none(broken: &[String]) {
 }
 
 #[test]
-fn comments_and_addresses_are_told_apart() {
+fn comments_and_addresses_are_distinguished() {
     assert_eq!(without_comment("    /// uses std::fs"), "");
     assert_eq!(without_comment("let a = 1; // std::fs"), "let a = 1;");
     assert_eq!(

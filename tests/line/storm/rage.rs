@@ -3,8 +3,8 @@
 //!
 //! The line task runs over an in-process stream in virtual time. The rules:
 //!
-//! - a reading must come from the module and channel that were asked (else it is *foreign*), and have been true
-//!   between question and answer (else *stale*; analog inputs: within the age of a free-running conversion);
+//! - a reading must come from the module and channel of the request (else it is *foreign*), and have been true
+//!   between request and answer (else *stale*; analog inputs: within the age of a free-running conversion);
 //! - an accepted write must have been carried out (else *hollow*);
 //! - a failure must name line, address and command (else *nameless*);
 //! - every request must be answered within [`PATIENCE`] of rig time (else it *hangs*).
@@ -39,8 +39,8 @@ pub const EVERY_FAULT: [&str; 13] = [
     "port_lost=0.01/20",
 ];
 
-/// Grace for late replies, ms: what a line waits in silence after a time-out. Replies that come later than time-out
-/// and grace cannot be told from the next one, whatever a host does. The two late faults together make 220 ms.
+/// Silence of a line after a time-out, ms. No host can distinguish a reply later than time-out and silence from the next
+/// one. The two late faults together make 220 ms.
 const GRACE_MS: u64 = 200;
 
 /// Longest time until an answer, of rig time: two tries, each with time-out, noisy silence and a lost port. One
@@ -288,13 +288,13 @@ fn kind(error: &LineError) -> &'static str {
         LineError::NeverSilent { .. } => "line never silent",
         LineError::PortLost { .. } => "port lost",
         LineError::OutOfStep { .. } => "reply of unknown origin",
-        LineError::Contradicted { .. } => "another value when asked again",
+        LineError::Contradicted { .. } => "another value at the second read",
     }
 }
 
 fn names_itself(error: &LineError, command: &Command) -> bool {
     let text = error.to_string();
-    // What writes a setting asks for it first: then that is what failed.
+    // A command that writes a setting reads it first, and the reading may fail.
     let mut asked = [Some(*command), command.setting()].into_iter().flatten();
     text.contains(fingerprint::LINE) && asked.any(|it| text.contains(&it.to_string()))
 }
@@ -320,7 +320,7 @@ fn found(answer: &Answer, reply: &Reply, line: &FingerprintLine) -> Found {
             .map(|(channel, reading)| analog(answer, address, channel as u8, reading.value))
             .find(|found| !matches!(found, Found::True))
             .unwrap_or(Found::True),
-        (Command::Counter(_, Counter::Read(n)), Reply::Count(count)) => told(
+        (Command::Counter(_, Counter::Read(n)), Reply::Count(count)) => found_unless(
             fingerprint::origin_of_count(*count) == (address, n.get()),
             Found::Foreign,
         ),
@@ -328,11 +328,11 @@ fn found(answer: &Answer, reply: &Reply, line: &FingerprintLine) -> Found {
             word(answer, address, bits.word())
         }
         (Command::Digital(..), Reply::Bits(bits)) => read_back(answer, address, bits.word(), line),
-        (Command::Digital(_, Digital::Write(written)), Reply::Accepted) => told(
+        (Command::Digital(_, Digital::Write(written)), Reply::Accepted) => found_unless(
             carried(answer, address, written.bits(), line),
             Found::Hollow,
         ),
-        (Command::AnalogOut(_, AnalogOut::Write { level, .. }), Reply::Accepted) => told(
+        (Command::AnalogOut(_, AnalogOut::Write { level, .. }), Reply::Accepted) => found_unless(
             carried(answer, address, level.steps() as u16, line),
             Found::Hollow,
         ),
@@ -343,8 +343,8 @@ fn found(answer: &Answer, reply: &Reply, line: &FingerprintLine) -> Found {
     }
 }
 
-fn told(is_true: bool, else_it_is: Found) -> Found {
-    if is_true { Found::True } else { else_it_is }
+fn found_unless(is_true: bool, wrong: Found) -> Found {
+    if is_true { Found::True } else { wrong }
 }
 
 fn analog(answer: &Answer, address: u8, channel: u8, value: Value) -> Found {
@@ -357,7 +357,7 @@ fn analog(answer: &Answer, address: u8, channel: u8, value: Value) -> Found {
     }
     let taken = answer.answered_at.since(answer.requested_at).0;
     let distance = fingerprint::distance_of_analog_us(code, answer.requested_at.0);
-    told(distance <= CONVERSION_US + taken, Found::Stale)
+    found_unless(distance <= CONVERSION_US + taken, Found::Stale)
 }
 
 /// Checks that a word of inputs was taken after the request.
@@ -367,7 +367,7 @@ fn word(answer: &Answer, address: u8, word: u16) -> Found {
     }
     let taken = answer.answered_at.since(answer.requested_at).0;
     let age = fingerprint::age_of_word_us(word, answer.answered_at.0);
-    told(age <= taken + fingerprint::WORD_STEP_US, Found::Stale)
+    found_unless(age <= taken + fingerprint::WORD_STEP_US, Found::Stale)
 }
 
 /// Checks that a read-back matches the outputs during the request; a restart after the answer does not count.
@@ -375,7 +375,7 @@ fn read_back(answer: &Answer, address: u8, word: u16, line: &FingerprintLine) ->
     if fingerprint::origin_of_word(word) != address {
         return Found::Foreign;
     }
-    told(carried(answer, address, word, line), Found::Stale)
+    found_unless(carried(answer, address, word, line), Found::Stale)
 }
 
 fn carried(answer: &Answer, address: u8, word: u16, line: &FingerprintLine) -> bool {

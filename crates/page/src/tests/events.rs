@@ -4,7 +4,7 @@ use super::*;
 use axum::body::BodyDataStream;
 use futures_util::StreamExt;
 use std::time::Duration;
-use tokio::time::Instant;
+use tokio::time::{Instant, interval_at};
 
 async fn stream(fixture: &Fixture) -> BodyDataStream {
     let request = Request::get("/api/events").body(Body::empty()).unwrap();
@@ -58,9 +58,11 @@ async fn an_idle_rig_sends_one_view_a_second() {
     let mut stream = stream(&fixture).await;
     next(&mut stream).await.unwrap();
     let (began, mut views) = (Instant::now(), 0);
+    let period = Duration::from_millis(50);
     let turns = async {
+        let mut turns = interval_at(began + period, period);
         loop {
-            tokio::time::sleep(Duration::from_millis(50)).await;
+            turns.tick().await;
             fixture.view.send_modify(|view| {
                 view.at_us += 50_000;
                 view.machine

@@ -1,7 +1,7 @@
 //! `relayrig study collision`: speed against error of every way to check a move.
 //!
-//! The study asks every method about moves of five kinds in a scene of 1,000 bodies (`world`), with the exact truth about
-//! each move:
+//! The study asks every method about moves of five kinds in a scene of 1,000 bodies (`scene`), with the exact truth about
+//! each move (`world`):
 //! - the method of the paper, rebuilt (`paper`), at steps of 10, 1, 0.1 and 0.01 mm;
 //! - swept boxes: the swept query of the collision core over bounding boxes in place of the shapes, so that the shapes are
 //!   the only difference;
@@ -16,6 +16,7 @@ mod outline;
 mod paper;
 mod peer;
 mod report;
+mod scene;
 mod score;
 mod small_world;
 #[cfg(test)]
@@ -96,7 +97,7 @@ fn methods(world: &World) -> anyhow::Result<Vec<Method>> {
             Box::new(move |test_move: &world::TestMove| stepping.first_contact(test_move, step_mm));
         method(&format!("paper, step {step_mm} mm"), query)
     };
-    let boxes = |bodies: &[lpm::exact::Body]| bodies.iter().map(world::boxed).collect::<Vec<_>>();
+    let boxes = |bodies: &[lpm::exact::Body]| bodies.iter().map(scene::boxed).collect::<Vec<_>>();
     let double = peer::double::Peer::new(&world.elements, &world.parts);
     let single = peer::single::Peer::new(&world.elements, &world.parts);
     let mut methods: Vec<Method> = STEPS_MM.map(stepping).into();
@@ -126,7 +127,7 @@ fn swept(elements: &[lpm::exact::Body], parts: &[lpm::exact::Body]) -> anyhow::R
         let inserted = model.insert(&name, &shape, &pose);
         inserted.context("building the scene of the study")?;
     }
-    let mover = Mover::new(&world::compound(parts)).context("building the mover of the study")?;
+    let mover = Mover::new(&scene::compound(parts)).context("building the mover of the study")?;
     Ok(Box::new(move |test_move| {
         match model.first_contact(&mover, &test_move.order()) {
             Answer::Clear => None,

@@ -39,10 +39,10 @@ pub struct Stepping {
     layers: Vec<Layer>,
     columns: usize,
     parts: Vec<Prepared>,
-    /// Number of the last question that tested each element: an element may lie in several layers and cells.
-    asked: Vec<u64>,
-    /// Number of questions so far; each is one part at one pose.
-    questions: u64,
+    /// Number of the last query that tested each element: an element may lie in several layers and cells.
+    tested: Vec<u64>,
+    /// Number of queries so far; each is one part at one pose.
+    queries: u64,
 }
 
 impl Stepping {
@@ -57,8 +57,8 @@ impl Stepping {
             layers: layers(&elements, columns),
             columns,
             parts: prepared_bodies(parts),
-            asked: vec![0; elements.len()],
-            questions: 0,
+            tested: vec![0; elements.len()],
+            queries: 0,
             elements,
         }
     }
@@ -78,20 +78,20 @@ impl Stepping {
     }
 
     fn collides(&mut self, at: [f64; 3]) -> bool {
-        let mut asked = std::mem::take(&mut self.asked);
-        let mut question = self.questions;
+        let mut tested = std::mem::take(&mut self.tested);
+        let mut query = self.queries;
         let found = self.parts.iter().any(|part| {
-            question += 1;
+            query += 1;
             let low = [0, 1, 2].map(|axis| part.low[axis] + at[axis]);
             let high = [0, 1, 2].map(|axis| part.high[axis] + at[axis]);
             self.numbers(low, high).any(|number| {
-                let (element, last) = (&self.elements[number], &mut asked[number]);
-                std::mem::replace(last, question) != question
+                let (element, last) = (&self.elements[number], &mut tested[number]);
+                std::mem::replace(last, query) != query
                     && element.meets_silhouette(low, high)
                     && element.meets(part, [at[0], at[1]])
             })
         });
-        (self.asked, self.questions) = (asked, question);
+        (self.tested, self.queries) = (tested, query);
         found
     }
 

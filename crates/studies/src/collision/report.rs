@@ -1,12 +1,14 @@
 //! The report: results of all moves as figures and plots.
 
-use super::score::{Outcome, quantile};
+use super::score::Outcome;
 use super::small_world::SmallWorldCounts;
 use super::world::{KINDS, TestMove};
 use super::{OURS, ROUNDING_MM};
 use crate::chart::Chart;
-use crate::figure::{Bar, Figure};
+use crate::figure::{Bar, Figure, mean};
 use crate::scatter::{Point, Scatter};
+use quality::spread::median;
+use quality::{Ordered, Spread};
 
 /// A method with its results.
 pub(super) struct Scored {
@@ -16,13 +18,12 @@ pub(super) struct Scored {
 
 impl Scored {
     fn times(&self, share: f64) -> Option<f64> {
-        let mut times: Vec<f64> = self.outcomes.iter().map(|it| it.us).collect();
-        quantile(&mut times, share)
+        let times: Vec<f64> = self.outcomes.iter().map(|it| it.us).collect();
+        Ordered::of(&times).quantile(share)
     }
 
     fn mean_us(&self) -> Option<f64> {
-        let sum: f64 = self.outcomes.iter().map(|it| it.us).sum();
-        (!self.outcomes.is_empty()).then(|| sum / self.outcomes.len() as f64)
+        mean(self.outcomes.iter().map(|it| it.us))
     }
 
     fn count(&self, is: impl Fn(&Outcome) -> bool) -> u64 {
@@ -51,7 +52,8 @@ impl Scored {
 
     /// Returns the absolute error that 99 of 100 contacts stay below, mm.
     fn error_mm(&self) -> Option<f64> {
-        quantile(&mut self.late_mm().map(f64::abs).collect::<Vec<_>>(), 0.99)
+        let errors: Vec<f64> = self.late_mm().map(f64::abs).collect();
+        Ordered::of(&errors).quantile(0.99)
     }
 
     fn latest_mm(&self) -> f64 {
@@ -114,12 +116,14 @@ pub(super) fn missed_by_kind(scored: &[Scored]) -> Vec<Figure> {
 pub(super) fn bodies_near(moves: &[TestMove]) -> Vec<Figure> {
     let row = |kind: usize| {
         let of_kind = moves.iter().filter(|it| it.kind == kind);
-        let mut near: Vec<f64> = of_kind.map(|it| it.near as f64).collect();
-        let mean = near.iter().sum::<f64>() / near.len() as f64;
-        let name = format!("bodies near a move: {}", KINDS[kind]);
-        Figure::new(name, near.len() as u64, Some(mean), "")
-            .with("median", quantile(&mut near, 0.5))
-            .with("most", quantile(&mut near, 1.0))
+        let near: Vec<f64> = of_kind.map(|it| it.near as f64).collect();
+        let (spread, name) = (
+            Spread::of(&near),
+            format!("bodies near a move: {}", KINDS[kind]),
+        );
+        Figure::new(name, spread.n(), spread.mean(), "")
+            .with("median", median(&near))
+            .with("most", spread.max())
     };
     (0..KINDS.len()).map(row).collect()
 }

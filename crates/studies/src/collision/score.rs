@@ -75,10 +75,3 @@ pub fn clock_us() -> f64 {
     let one = || Instant::now().elapsed().as_secs_f64();
     1e6 * (0..1_000).map(|_| one()).fold(f64::INFINITY, f64::min)
 }
-
-/// Returns the value at the rank nearest to `share` (0 to 1); `None` without values.
-pub fn quantile(values: &mut [f64], share: f64) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    let last = values.len().checked_sub(1)?;
-    values.get((share * last as f64).round() as usize).copied()
-}

@@ -2,9 +2,9 @@
 #![allow(clippy::unwrap_used)]
 use super::outline::Outline;
 use super::paper::Stepping;
-use super::score::quantile;
+use super::scene::thinned;
 use super::small_world::{SmallWorldCounts, check_all};
-use super::world::{TestMove, World, thinned};
+use super::world::{TestMove, World};
 use super::*;
 use crate::scatter::{Point, Scatter};
 use lpm::exact::{Body, first_contact};
@@ -51,7 +51,7 @@ fn boxes_block_the_corner_beside_a_cylinder() {
     );
     assert_eq!(Stepping::new(&post, &pin).first_contact(&beside, 1.0), None);
     let mut exact = swept(&post, &pin).unwrap();
-    let mut boxes = swept(&post.map(|it| world::boxed(&it)), &pin).unwrap();
+    let mut boxes = swept(&post.map(|it| scene::boxed(&it)), &pin).unwrap();
     assert_eq!((exact(&beside), boxes(&beside)), (None, Some(0.0)));
 }
 
@@ -102,13 +102,6 @@ fn the_smallest_world_is_judged_without_a_wrong_answer() {
 }
 
 #[test]
-fn a_quantile_is_one_of_the_values() {
-    assert_eq!(quantile(&mut [3.0, 1.0, 2.0], 0.5), Some(2.0));
-    assert_eq!(quantile(&mut [3.0, 1.0, 2.0], 0.99), Some(3.0));
-    assert_eq!(quantile(&mut [], 0.5), None);
-}
-
-#[test]
 fn a_plot_marks_wrong_methods_and_draws_zero_error() {
     let point = |name: &str, x: f64, y: f64, wrong: u64| Point {
         name: name.to_owned(),
@@ -145,16 +138,16 @@ fn the_peer_disagrees_about_touches_alone() {
         };
         let from = [digit(1, 13) - 6, digit(0, 13) - 6, digit(2, 9) - 4].map(|it| it * MM);
         let run = [digit(2, 25) - 12, digit(1, 25) - 12, digit(0, 5) - 2].map(|it| it * MM);
-        let asked = test_move(from, run);
+        let order = test_move(from, run);
         let truth = first_contact(&element, &mover.moved(from), run);
-        let ours = swept(&[element], &[mover]).unwrap()(&asked);
+        let ours = swept(&[element], &[mover]).unwrap()(&order);
         assert_eq!(
             ours.is_some(),
             truth.is_some(),
-            "{element:?} {mover:?} {asked:?}"
+            "{element:?} {mover:?} {order:?}"
         );
-        let double = peer::double::Peer::new(&[element], &[mover]).first_contact(&asked);
-        let single = peer::single::Peer::new(&[element], &[mover]).first_contact(&asked);
+        let double = peer::double::Peer::new(&[element], &[mover]).first_contact(&order);
+        let single = peer::single::Peer::new(&[element], &[mover]).first_contact(&order);
         for peer in [double, single] {
             if peer.is_some() != ours.is_some() {
                 disagreements += 1;
@@ -163,15 +156,15 @@ fn the_peer_disagrees_about_touches_alone() {
                 assert_eq!(
                     (peer, thin),
                     (None, None),
-                    "{element:?} {mover:?} {asked:?}"
+                    "{element:?} {mover:?} {order:?}"
                 );
             }
         }
         if let (Some(peer), Some(ours)) = (double, ours) {
-            let apart_mm = (peer - ours).abs() * asked.length_mm();
+            let apart_mm = (peer - ours).abs() * order.length_mm();
             assert!(
                 apart_mm < 0.01,
-                "{apart_mm} mm: {element:?} {mover:?} {asked:?}"
+                "{apart_mm} mm: {element:?} {mover:?} {order:?}"
             );
         }
     }

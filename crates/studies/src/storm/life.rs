@@ -14,8 +14,7 @@ use app::simulated::LiveRig;
 use app::source::{RigSource, Simulated};
 use bus::Pace;
 use config::Plant;
-use machine::dut::Calibration;
-use machine::dut::Recipe;
+use machine::dut::{Calibration, Recipe};
 use rigsim::SharedRig;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -82,12 +81,7 @@ impl Runner<'_> {
     /// # Errors
     /// A rig without faults whose calibration fails.
     pub fn calibrated(&self) -> anyhow::Result<Calibration> {
-        let life = Life {
-            count: 0,
-            attended: false,
-            killed_after_us: None,
-            pause_us: 0,
-        };
+        let life = Life::calm(0, 0);
         let mut found = OnceLock::new();
         let run = ("calibration", Purpose::Calibration, self.source(None));
         let end = self.play(run, &life, None, &mut found)?.0;

@@ -12,26 +12,25 @@
 mod judge;
 mod life;
 mod operator;
+mod report;
 mod scenario;
 mod trace;
 
-use super::chart::Chart;
-use super::figure::{Bar, Figure};
 use super::order::Order;
 use super::output::Report;
 use super::pool;
 use anyhow::Context;
 use app::exit::Exit;
-use config::{Plant, load_recipe};
+use config::Plant;
 use history::{Archive, Filter};
 use judge::Case;
 use life::{End, Runner};
 use machine::dut::Calibration;
-use machine::dut::Recipe;
+use report::{Counts, Outcome, report};
 use rigsim::{Options, SharedRig};
 use scenario::{CEASES_US, Life, RIGS, Scenario};
 use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 use std::time::Instant;
 use tempfile::TempDir;
 use tracing::subscriber::{NoSubscriber, with_default};
@@ -41,55 +40,11 @@ use units::Span;
 const CALM: u64 = 3;
 /// Parts of a lot without faults.
 const CALM_PARTS: u64 = 2;
-/// Most seeds that the report shows; the figures count all of them.
-const SHOWN: usize = 10;
-
-/// Result of one seed: counts, and the trace only of a seed that breaks a rule, since a case is large.
-struct Outcome {
-    seed: u64,
-    counts: Counts,
-    violations: Vec<String>,
-    faults: Vec<String>,
-    trace: Vec<String>,
-    digest: u64,
-}
-
-/// Size of a case.
-#[derive(Debug, Clone, Copy, Default)]
-struct Counts {
-    lives: u64,
-    kills: u64,
-    completed: u64,
-    bodies: u64,
-    rows: u64,
-    alarms: u64,
-    orders: u64,
-    motions: u64,
-    rig_us: u64,
-}
-
-impl Counts {
-    fn of(case: &Case) -> Self {
-        let ended = |end: &End| case.lives.iter().filter(|it| it.end == *end).count() as u64;
-        Self {
-            lives: case.lives.len() as u64,
-            kills: ended(&End::Killed),
-            completed: ended(&End::Exit(Exit::Done)),
-            bodies: case.bodies.len() as u64,
-            rows: case.rows.len() as u64,
-            alarms: case.alarms.len() as u64,
-            orders: case.lives.iter().map(|it| it.answers.len() as u64).sum(),
-            motions: case.driven.len() as u64,
-            rig_us: case.lives.last().map_or(0, |life| life.ended_us),
-        }
-    }
-}
 
 /// Inputs of all seeds.
 struct Storm<'a> {
     order: &'a Order,
     plant: Plant,
-    recipe: Arc<Recipe>,
     folder: TempDir,
     calibrations: [OnceLock<Calibration>; RIGS as usize],
 }
@@ -117,7 +72,6 @@ impl<'a> Storm<'a> {
         Ok(Self {
             order,
             plant: Plant::load(&order.config)?,
-            recipe: Arc::new(load_recipe(&order.config, &order.recipe)?),
             folder,
             calibrations: Default::default(),
         })
@@ -171,12 +125,7 @@ impl<'a> Storm<'a> {
         rig.cancel_faults();
         for n in 1..=CALM {
             let pause_us = CEASES_US.saturating_sub(rig.now_us()) + 1_000_000;
-            let life = Life {
-                count: CALM_PARTS,
-                attended: false,
-                killed_after_us: None,
-                pause_us,
-            };
+            let life = Life::calm(CALM_PARTS, pause_us);
             let lot = format!("calm-{n}");
             lives.push(runner.run_life(&lot, &life, calibration.clone(), operator_dice.apart())?);
             let last = lives.last();
@@ -202,7 +151,6 @@ impl<'a> Storm<'a> {
         let wiring = &self.plant.wiring;
         let reaction = wiring.longest_reaction();
         let watchdog = Span::ms(wiring.bus.host_watchdog_ms as u64);
-        let limits = self.order.admitted.iter();
         Ok(Case {
             lives,
             bodies: rig.bodies(),
@@ -211,9 +159,7 @@ impl<'a> Storm<'a> {
             overdrives: rig.overdrives(),
             rows: archive.query(&all)?,
             alarms: archive.alarms(&Filter::default())?,
-            limits: limits
-                .map(|(key, range)| (key.name(), *range.start(), *range.end()))
-                .collect(),
+            limits: self.order.admitted(),
             faults: scenario.faults.clone(),
             disturbed_us: scenario.disturbed_us.clone(),
             reaction,
@@ -225,21 +171,26 @@ impl<'a> Storm<'a> {
     fn runner<'b>(&'b self, rig: &'b SharedRig, db: &'b Path) -> Runner<'b> {
         Runner {
             plant: &self.plant,
-            recipe: &self.recipe,
+            recipe: &self.order.recipe,
             db,
             rig,
         }
     }
 
-    fn rig(&self, seed: u64, golden: bool, faults: &[String]) -> anyhow::Result<SharedRig> {
+    fn rig(
+        &self,
+        seed: u64,
+        reference_parts: bool,
+        faults: &[String],
+    ) -> anyhow::Result<SharedRig> {
         let storms = self.folder.path().join("world.toml");
         Ok(rigsim::build(&Options {
             config_dir: self.order.config.clone(),
             world: Some(self.order.world.clone().unwrap_or(storms)),
             seed,
-            recipe: self.order.recipe.clone(),
+            recipe: self.order.recipe.name.clone(),
             parts: None,
-            reference_parts: golden,
+            reference_parts,
             faults: faults.to_vec(),
         })?)
     }
@@ -255,57 +206,4 @@ impl<'a> Storm<'a> {
         let found = self.runner(&calm, &apart).calibrated()?;
         Ok(self.calibrations[place].get_or_init(|| found).clone())
     }
-}
-
-fn report(order: &Order, outcomes: &[Outcome], minutes: f64) -> Report {
-    let n = outcomes.len() as u64;
-    let violations = outcomes
-        .iter()
-        .filter(|it| !it.violations.is_empty())
-        .count() as u64;
-    let sum = |of: fn(&Counts) -> u64| outcomes.iter().map(|it| of(&it.counts)).sum::<u64>();
-    let hours = sum(|it| it.rig_us) as f64 / 3.6e9;
-    let lives = sum(|it| it.lives);
-    let about = |name: &str, of: u64, count: u64| Figure::count(name, of, Some(count));
-    let rule = Figure::count("seeds that broke a rule", n, Some(violations));
-    let counts = vec![
-        about("kills of the controller", lives, sum(|it| it.kills)),
-        about("lots completed", lives, sum(|it| it.completed)),
-        about("bodies", n, sum(|it| it.bodies)),
-        about("rows", n, sum(|it| it.rows)),
-        about("alarms", n, sum(|it| it.alarms)),
-        about("orders", n, sum(|it| it.orders)),
-        about("motions", n, sum(|it| it.motions)),
-    ];
-    let per_minute = Some(hours / minutes);
-    let pace = Figure::new("virtual hours per minute of wall time", n, per_minute, "h");
-    let digests = outcomes.iter().map(|it| format!("{:016x}", it.digest));
-    let digest = trace::digest(digests);
-    let mut notes = vec![format!("digest of all traces: {digest:016x}")];
-    let shows = |it: &&Outcome| order.seed.is_some() || !it.violations.is_empty();
-    let worth = outcomes.iter().filter(shows).take(SHOWN);
-    notes.extend(worth.map(|it| shown(order, it)));
-    let alarms = |it: &Outcome| (format!("seed {}", it.seed), Some(it.counts.alarms as f64));
-    let title = format!("alarms by seed: {}", order.about());
-    let chart = Chart::new(title, "", Vec::new(), outcomes.iter().take(40).map(alarms));
-    let groups = vec![vec![rule.bar(Bar::AtMost(0.0))], counts, vec![pace]];
-    Report::new("storm", order.about(), groups, chart).noted(notes)
-}
-
-fn shown(order: &Order, it: &Outcome) -> String {
-    let seed = it.seed;
-    // A report of one seed shows the whole trace.
-    let last = match order.seed {
-        Some(_) => it.trace.join("\n  "),
-        None => trace::last(&it.trace).join("\n  "),
-    };
-    let what = match it.violations.as_slice() {
-        [] => "no rule broken".to_owned(),
-        some => some.join("; "),
-    };
-    format!(
-        "seed {seed}: {what}\n  faults: {}\n  {last}\n  again: relayrig study storm --seed {seed} --parts {}",
-        it.faults.join(" "),
-        order.parts,
-    )
 }

@@ -48,6 +48,18 @@ pub struct Life {
     pub pause_us: u64,
 }
 
+impl Life {
+    /// Returns a life without operator and kill.
+    pub fn calm(count: u64, pause_us: u64) -> Self {
+        Self {
+            count,
+            attended: false,
+            killed_after_us: None,
+            pause_us,
+        }
+    }
+}
+
 /// Everything that a seed determines.
 #[derive(Debug, Clone)]
 pub struct Scenario {

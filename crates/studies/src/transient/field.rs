@@ -38,20 +38,20 @@ impl<'a> Field<'a> {
         anyhow!("{path}: found {found}, expected {expected}")
     }
 
+    /// Returns the path of a member.
+    fn below(&self, key: &str) -> String {
+        let dot = if self.path.is_empty() { "" } else { "." };
+        format!("{}{dot}{key}", self.path)
+    }
+
     /// Returns a member; `None` when it is absent or null.
     ///
     /// # Errors
     /// The field is not an object.
     pub fn member(&self, key: &str) -> anyhow::Result<Option<Field<'a>>> {
-        let dot = if self.path.is_empty() { "" } else { "." };
-        Ok(self
-            .object()?
-            .get(key)
-            .filter(|value| !value.is_null())
-            .map(|value| Field {
-                path: format!("{}{dot}{key}", self.path),
-                value,
-            }))
+        let value = self.object()?.get(key).filter(|value| !value.is_null());
+        let path = self.below(key);
+        Ok(value.map(|value| Field { path, value }))
     }
 
     /// Returns a required member.
@@ -59,9 +59,8 @@ impl<'a> Field<'a> {
     /// # Errors
     /// The member is absent or null, or the field is not an object.
     pub fn must(&self, key: &str, expected: &str) -> anyhow::Result<Field<'a>> {
-        let dot = if self.path.is_empty() { "" } else { "." };
-        self.member(key)?
-            .ok_or_else(|| anyhow!("{}{dot}{key}: missing, expected {expected}", self.path))
+        let missing = || anyhow!("{}: missing, expected {expected}", self.below(key));
+        self.member(key)?.ok_or_else(missing)
     }
 
     /// Returns all members.
@@ -69,10 +68,9 @@ impl<'a> Field<'a> {
     /// # Errors
     /// A member whose name is not in `known`, or a field that is not an object.
     pub fn members(&self, known: &[&str]) -> anyhow::Result<Vec<(&'a str, Field<'a>)>> {
-        let dot = if self.path.is_empty() { "" } else { "." };
         let mut all = Vec::new();
         for (key, value) in self.object()? {
-            let path = format!("{}{dot}{key}", self.path);
+            let path = self.below(key);
             if !known.contains(&key.as_str()) {
                 bail!("{path}: unknown, expected one of {}", known.join(", "));
             }

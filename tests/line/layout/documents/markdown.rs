@@ -1,6 +1,6 @@
 //! Takes a Markdown text apart: quoted words, links, headings, table cells, command lines.
 
-/// Returns what stands between single back-ticks, with its line from 1.
+/// Returns the text between single back-ticks, with its line from 1.
 pub fn quoted(text: &str) -> Vec<(usize, String)> {
     let mut found = Vec::new();
     for (number, line) in numbered(text) {

@@ -165,7 +165,7 @@ const NC: (&[CardStep], Stage) = (
 static TABLE: [Facts; Parameter::ALL.len()] = [
     Facts::of("coil_resistance_ohm", COIL, (&[CardStep::Coil], Stage::Coil), Expected::Coil, 0.12),
     Facts::of("operate_voltage_v", VOLTAGE, RISING, Expected::Threshold(Direction::Rising), 0.075),
-    Facts::of("release_voltage_v", VOLTAGE, FALLING, Expected::Threshold(Direction::Falling), 0.035),
+    Facts::of("release_voltage_v", VOLTAGE, FALLING, Expected::Threshold(Direction::Falling), 0.03333),
     Facts::of("operate_time_ms", TIME, OPERATE, Expected::usual(4.7, 0.25, 0.008), 0.02),
     Facts::of("release_time_ms", TIME, RELEASE, Expected::usual(2.9, 0.15, 0.008), 0.02),
     Facts::of("operate_bounce_ms", TIME, OPERATE, Expected::lognormal(0.4, 0.4, 0.012), 0.05),

@@ -53,7 +53,7 @@ pub fn owners(case: &Case) -> (Vec<(&Part, usize)>, Vec<String>) {
             Some(number) => owners.push((row, number)),
             None => {
                 let (kind, seq, lot) = (&row.kind, row.seq, &row.lot);
-                violations.push(format!("row {kind} {seq} of {lot} is nobody's"));
+                violations.push(format!("row {kind} {seq} of {lot} has no body"));
             }
         }
     }
@@ -119,7 +119,7 @@ fn misplaced(case: &Case, body: &BodyTruth, rows: &[&Part]) -> Option<String> {
     match place {
         Place::Bin(bin) if body.clung => (!is_counted(case, let_go_us(body), bin)).then(|| {
             format!(
-                "came into {bin} with another one at {} and no alarm says so",
+                "came into {bin} with another one at {} and no alarm declares it",
                 seconds(*at_us)
             )
         }),
@@ -130,7 +130,7 @@ fn misplaced(case: &Case, body: &BodyTruth, rows: &[&Part]) -> Option<String> {
         )),
         Place::Floor => (!is_declared(case, *at_us)).then(|| {
             format!(
-                "lies on the floor since {} and no alarm says so",
+                "lies on the floor since {} and no alarm declares it",
                 seconds(*at_us)
             )
         }),
@@ -162,10 +162,10 @@ fn in_a_bin(
             seconds(at_us)
         ));
     };
-    let asked = row.bin.as_deref().unwrap_or_default();
-    if asked != bin {
+    let named = row.bin.as_deref().unwrap_or_default();
+    if named != bin {
         return Some(format!(
-            "lies in {bin}, row {} of {} says {asked}",
+            "lies in {bin}, row {} of {} says {named}",
             row.seq, row.lot
         ));
     }
@@ -174,7 +174,7 @@ fn in_a_bin(
         Some(seen) => Some(format!("lies in {bin}, was seen in {seen}")),
         None if is_declared(case, let_go_us.saturating_sub(OPENING_US)) => None,
         None => Some(format!(
-            "lies in {bin} since {}, its row does not know it",
+            "lies in {bin} since {}, its row has no landing",
             seconds(at_us)
         )),
     }
@@ -198,12 +198,12 @@ fn is_counted(case: &Case, at_us: u64, bin: &str) -> bool {
         })
 }
 
-fn has_alarm(case: &Case, at_us: u64, tells: impl Fn(&Alarm) -> bool) -> bool {
+fn has_alarm(case: &Case, at_us: u64, is_wanted: impl Fn(&Alarm) -> bool) -> bool {
     let noticed_us = at_us + NOTICED_US;
     let is_reported = |life: &EndedLife| {
         let until_us = noticed_us.max(life.began_us + NOTICED_US);
         let mut alarms = case.alarms_of(life);
-        alarms.any(|(raised_us, alarm)| (at_us..=until_us).contains(&raised_us) && tells(alarm))
+        alarms.any(|(raised_us, alarm)| (at_us..=until_us).contains(&raised_us) && is_wanted(alarm))
     };
     let own = case
         .life_at(at_us)
@@ -239,7 +239,7 @@ fn responsible_lives<'a>(
 fn name(body: &BodyTruth) -> String {
     let kind = match (body.clung, body.is_reference) {
         (true, _) => "second body",
-        (false, true) => "golden part",
+        (false, true) => "reference part",
         (false, false) => "part",
     };
     let since = body.path.first().map_or(0, |(at, _)| *at);

@@ -17,6 +17,7 @@ mod tests;
 mod values;
 
 use super::life::{EPOCH_US, EndedLife};
+use crate::lot::Admitted;
 use history::{Alarm, Moment, Part};
 use rigsim::truth::{BodyTruth, Overdrive};
 use units::Span;
@@ -42,8 +43,8 @@ pub struct Case {
     pub faults: Vec<String>,
     /// Instants from which a safety input was open.
     pub disturbed_us: Vec<u64>,
-    /// Limits of the recipe: key, low, high; infinite where there is none.
-    pub limits: Vec<(&'static str, f64, f64)>,
+    /// Ranges that the recipe admits.
+    pub limits: Admitted,
     /// Longest reaction to a safety input that the configuration promises.
     pub reaction: Span,
     /// Longest reaction when lines or modules have faults: outputs wait for the host watchdogs.

@@ -7,6 +7,7 @@ use crate::storm::life::{EPOCH_US, End, EndedLife};
 use crate::storm::operator::Answered;
 use app::exit::{Cause, Exit};
 use history::{Alarm, AlarmState, Moment, Part};
+use machine::dut::em_relay::Parameter;
 use rigsim::truth::{BodyTruth, Overdrive, PartTruth, Place};
 use serde_json::json;
 use units::{RigTime, Span};
@@ -122,7 +123,7 @@ fn sound() -> Case {
             row("two", 1, 37, "fail", "voltage", Some(41)),
         ],
         alarms: vec![alarm("one", "part_dropped", 13)],
-        limits: vec![("coil_resistance_ohm", 360.0, 440.0)],
+        limits: vec![(Parameter::CoilResistance, 360.0..=440.0)],
         faults: Vec::new(),
         disturbed_us: vec![22 * S],
         reaction: Span::ms(250),
@@ -207,7 +208,7 @@ fn a_body_that_landed_by_two_rows_is_found() {
 fn a_row_without_a_body_is_found() {
     found(
         |case| case.rows.push(row("two", 2, 55, "void", "retest", None)),
-        "is nobody's",
+        "has no body",
     );
 }
 
@@ -216,11 +217,11 @@ fn a_landing_without_a_confirmation_is_found() {
     let forget = |case: &mut Case| {
         case.rows[2].landed_bin = None;
     };
-    found(forget, "its row does not know it");
+    found(forget, "its row has no landing");
 }
 
 #[test]
-fn the_next_life_declares_a_part_lost_at_the_kill() {
+fn the_next_life_declares_a_part_lost_at_kill() {
     let mut case = sound();
     case.lives[0].ended_us = 6 * S - 1;
     case.lives[0].end = End::Killed;
@@ -231,7 +232,7 @@ fn the_next_life_declares_a_part_lost_at_the_kill() {
     case.rows.truncate(1);
     (case.rows[0].landed_bin, case.rows[0].landed_at) = (None, None);
     (case.alarms, case.driven, case.disturbed_us) = (Vec::new(), Vec::new(), Vec::new());
-    assert!(case.violations()[0].contains("its row does not know it"));
+    assert!(case.violations()[0].contains("its row has no landing"));
     case.alarms.push(alarm("two", "part_lost", 8));
     assert_eq!(case.violations(), Vec::<String>::new());
 }
@@ -266,7 +267,7 @@ fn a_late_alarm_declares_no_earlier_loss() {
 fn an_undeclared_part_on_the_floor_is_found() {
     found(
         |case| case.alarms[0].code = "door_open".into(),
-        "lies on the floor since 12.000 s and no alarm",
+        "lies on the floor since 12.000 s and no alarm declares it",
     );
 }
 
@@ -328,7 +329,7 @@ fn a_defect_that_passed_is_found() {
 #[test]
 fn a_part_that_passed_beyond_a_limit_is_found() {
     found(
-        |case| case.limits[0].2 = 390.0,
+        |case| case.limits[0].1 = 360.0..=390.0,
         "passed with a true coil_resistance_ohm of 400",
     );
 }

@@ -9,8 +9,8 @@ use machine::dut::em_relay::Parameter;
 use rigsim::truth::PartTruth;
 use serde_json::Value;
 
-/// Least distance from its truth, in expanded uncertainties (k = 2), at which a value must belong to another body. A right
-/// value is this far off less than once in 10^9 storms of 10^6 values.
+/// Least distance from its truth, in expanded uncertainties (k = 2), at which a value must belong to another body: eight
+/// standard deviations, which a normal error exceeds once in 8 * 10^14 values.
 const FOREIGN_K: f64 = 4.0;
 /// Distance from a limit, in expanded uncertainties, from which a true value is clearly inside or outside.
 const CLEAR_K: f64 = 2.0;
@@ -25,7 +25,7 @@ pub fn violations(case: &Case) -> Vec<String> {
         let truth = serde_json::to_value(&body.part).unwrap_or_default();
         let readings: Vec<Reading> = Parameter::ALL
             .iter()
-            .filter_map(|parameter| Reading::of(parameter.name(), row, &truth))
+            .filter_map(|parameter| Reading::of(*parameter, row, &truth))
             .collect();
         let found = foreign_value(&readings, &body.part)
             .into_iter()
@@ -37,20 +37,26 @@ pub fn violations(case: &Case) -> Vec<String> {
 
 /// A measured value and its truth.
 struct Reading {
-    key: &'static str,
+    parameter: Parameter,
     value: f64,
     expanded: f64,
     truth: f64,
 }
 
 impl Reading {
-    fn of(key: &'static str, row: &Part, truth: &Value) -> Option<Self> {
+    fn of(parameter: Parameter, row: &Part, truth: &Value) -> Option<Self> {
+        let key = parameter.name();
         Some(Self {
-            key,
+            parameter,
             value: row.values.get(key)?.as_f64()?,
             expanded: row.uncertainty.get(key)?.as_f64()?,
             truth: truth[key].as_f64()?,
         })
+    }
+
+    /// Returns the bin of a part that fails this parameter.
+    fn bin(&self) -> &'static str {
+        self.parameter.facts().definition.bin.name()
     }
 }
 
@@ -58,56 +64,43 @@ fn foreign_value(readings: &[Reading], part: &PartTruth) -> Option<String> {
     // The resistance of an unstable contact differs at every closure: it has no single truth.
     let unstable = part.defect == Some("unstable_contact");
     let far = |it: &&Reading| {
-        let defined = !(unstable && it.key.starts_with("contact"));
+        let defined = !(unstable && it.bin() == "contact");
         defined && (it.value - it.truth).abs() > FOREIGN_K * it.expanded
     };
     let it = readings.iter().find(far)?;
-    let (key, value, truth, u) = (it.key, it.value, it.truth, it.expanded);
+    let (key, value, truth, u) = (it.parameter.name(), it.value, it.truth, it.expanded);
     Some(format!(
         "{key} {value} +- {u} cannot be of a part with {truth}"
     ))
 }
 
 fn misjudged(case: &Case, row: &Part, readings: &[Reading], part: &PartTruth) -> Option<String> {
-    let limit = |key: &str| case.limits.iter().find(|limit| limit.0 == key);
-    let clear = |it: &Reading| {
-        limit(it.key).is_none_or(|(_, low, high)| {
-            it.truth - low > CLEAR_K * it.expanded && high - it.truth > CLEAR_K * it.expanded
+    // Least distance inside its range, above 0 inside.
+    let inside = |it: &Reading| {
+        let own = case.limits.iter().find(|(known, _)| *known == it.parameter);
+        own.map_or(f64::INFINITY, |(_, range)| {
+            (it.truth - range.start()).min(range.end() - it.truth)
         })
     };
-    let beyond = |it: &&Reading| {
-        limit(it.key).is_some_and(|(_, low, high)| {
-            low - it.truth > CLEAR_K * it.expanded || it.truth - high > CLEAR_K * it.expanded
-        })
-    };
+    let clear = |it: &Reading| inside(it) > CLEAR_K * it.expanded;
+    let beyond = |it: &&Reading| -inside(it) > CLEAR_K * it.expanded;
     match (row.verdict.as_str(), part.defect) {
         ("pass", Some(defect)) => Some(format!("passed with {defect}")),
         ("pass", None) => readings
             .iter()
             .find(beyond)
-            .map(|it| format!("passed with a true {} of {}", it.key, it.truth)),
+            .map(|it| format!("passed with a true {} of {}", it.parameter.name(), it.truth)),
         (_, Some(defect)) => {
             let right = bin_of(defect).unwrap_or("");
-            let asked = row.bin.as_deref().unwrap_or("");
+            let named = row.bin.as_deref().unwrap_or("");
             let near = readings.iter().any(|it| !clear(it) && !beyond(&it));
-            (asked != right && !near && !also_beyond(asked, readings, &beyond))
-                .then(|| format!("{defect} belongs to {right}, its row says {asked}"))
+            let also_beyond = || readings.iter().filter(beyond).any(|it| it.bin() == named);
+            (named != right && !near && !also_beyond())
+                .then(|| format!("{defect} belongs to {right}, its row says {named}"))
         }
         (_, None) => readings
             .iter()
             .all(clear)
             .then(|| format!("a good part failed: {:?}", row.reasons)),
     }
-}
-
-/// Returns true when a true value lies beyond a limit that belongs to the bin `asked`.
-fn also_beyond(asked: &str, readings: &[Reading], beyond: &dyn Fn(&&Reading) -> bool) -> bool {
-    let of_bin = |key: &str| match asked {
-        "coil" => key.starts_with("coil"),
-        "voltage" => key.contains("voltage"),
-        "time" => key.contains("time") || key.contains("bounce"),
-        "contact" => key.starts_with("contact"),
-        _ => false,
-    };
-    readings.iter().filter(beyond).any(|it| of_bin(it.key))
 }
