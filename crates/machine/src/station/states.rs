@@ -10,7 +10,7 @@ use crate::handling::feeder::Permits;
 use crate::handling::output::{Interrupted, Judged, NestJob};
 use crate::handling::recovery::Recovery;
 use crate::handling::{Move, NestId, Place};
-use crate::instrument::act::{Doing, Runner};
+use crate::instrument::act::{Runner, RunnerState};
 use crate::rig::bin::Bin;
 use texts::Message;
 use units::{RigTime, Span};
@@ -315,17 +315,17 @@ impl Station {
     ) {
         let done = inputs.job.as_ref().map(|job| &job.done);
         match runner.step(now, done, inputs.image) {
-            Doing::Job(job) => {
+            RunnerState::Job(job) => {
                 let nest = NestId::FIRST;
                 output.rig.job = Some(NestJob { nest, job });
             }
-            Doing::Wait(until) => output.rig.wake_at = Some(until),
-            Doing::Busy => {}
-            Doing::Trouble(why) => {
+            RunnerState::Wait(until) => output.rig.wake_at = Some(until),
+            RunnerState::Busy => {}
+            RunnerState::Trouble(why) => {
                 let fault = Message::new("fault", "line").with("detail", why);
                 output.notes.trouble.push(Alarm::calibration(&fault));
             }
-            Doing::Done => {
+            RunnerState::Done => {
                 if let Err(why) = self.conclude_references(now, &runner) {
                     let alarm = Alarm::calibration(&why.message());
                     output.notes.trouble.push(alarm);
