@@ -47,9 +47,9 @@ pub trait KindCharacteristic {
 /// One measured quantity of one kind. Sorts by kind, then in the order of reports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Characteristic {
-    /// Of an electromagnetic relay.
+    /// Characteristic of an electromagnetic relay.
     EmRelay(em_relay::Parameter),
-    /// Of a resistor.
+    /// Characteristic of a resistor.
     Resistor(resistor::Parameter),
 }
 

@@ -46,9 +46,9 @@ impl Entry {
 /// One finding of a test, by kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Finding {
-    /// Of a relay test.
+    /// Finding of a relay test.
     EmRelay(em_relay::Finding),
-    /// Of a resistor test.
+    /// Finding of a resistor test.
     Resistor(resistor::Finding),
 }
 

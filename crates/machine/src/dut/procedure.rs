@@ -77,9 +77,9 @@ pub trait TestProcedure {
 /// A test under way, by kind.
 #[derive(Debug)]
 pub enum Procedure {
-    /// Of an electromagnetic relay.
+    /// Test of an electromagnetic relay.
     EmRelay(Box<em_relay::measure::Test>),
-    /// Of a resistor.
+    /// Test of a resistor.
     Resistor(Box<resistor::Test>),
 }
 

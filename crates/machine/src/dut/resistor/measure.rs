@@ -70,7 +70,7 @@ impl Device {
         })
     }
 
-    /// Selects the range while all sources are at zero, and goes no further without it.
+    /// Returns the acts that select the range while all sources are at zero; without the range the runner skips the rest.
     fn range_acts(&self) -> Vec<Act> {
         let range = self.range.iter();
         let acts = range.flat_map(|(selector, range)| {

@@ -40,7 +40,7 @@ fn device(limits: &str) -> Device {
     }
 }
 
-/// Tests a part that of `ohm`; `None` reads over range. Returns the test and the number of readings.
+/// Tests a part of `ohm`; `None` reads over range. Returns the test and the number of readings.
 fn tested(limits: &str, ohm: Option<f64>) -> (Procedure, usize) {
     let mut mock = MockRig::at_rest();
     let device = device(limits);
