@@ -14,7 +14,6 @@ const TOP: &[&str] = &[
     "LICENSE-APACHE",
     "LICENSE-MIT",
     "README.md",
-    "clippy.toml",
     "config",
     "crates",
     "docs",

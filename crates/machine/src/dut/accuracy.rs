@@ -1,8 +1,8 @@
-//! What the makers of the instruments promise, from `config/rig.toml`.
+//! Accuracies that the makers of the instruments specify, from `config/rig.toml`.
 
 use serde::Deserialize;
 
-/// What the makers promise before calibration: half widths, unless said otherwise.
+/// Accuracies before calibration: half widths, unless a field names a standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct AccuracySettings {
     /// Gain of analog inputs, % of reading.
@@ -32,17 +32,17 @@ pub struct AccuracySettings {
     pub conversions_per_s: f64,
 }
 
-/// Nominal voltage of the coils whose scatter a rig's file states. Whatever makes a threshold scatter acts on the current, so
-/// that in volts it goes with the coil.
+/// Nominal voltage of the coils that `operation_scatter_mv` is stated for. The current of a threshold scatters, so its volts
+/// scale with the nominal voltage.
 const SCATTERING_COIL_V: f64 = 12.0;
 
 impl AccuracySettings {
-    /// Standard deviation of a threshold from operation to operation, volts, of a coil of this nominal voltage.
+    /// Returns the standard deviation of a threshold from operation to operation, volts, for a coil of this nominal voltage.
     pub fn operation_v(&self, nominal_v: f64) -> f64 {
         self.operation_scatter_mv / 1e3 * nominal_v / SCATTERING_COIL_V
     }
 
-    /// Of an I-7021P that nobody has looked at.
+    /// Returns the refresh interval assumed for an I-7021P where the file states none.
     fn usual_refresh_ms() -> f64 {
         1.0
     }
@@ -50,24 +50,11 @@ impl AccuracySettings {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::dut::em_relay::tests::context;
 
     #[test]
-    fn the_threshold_of_a_coil_of_half_the_voltage_scatters_by_half_as_many_volts() {
-        let accuracy = AccuracySettings {
-            ai_gain_pct: 0.1,
-            ai_offset_pct_of_range: 0.05,
-            ai_noise_lsb: 0.5,
-            ao_gain_pct: 0.05,
-            ao_offset_mv: 2.0,
-            ao_slope_pct: 0.2,
-            ao_refresh_ms: 1.0,
-            gate_delay_us: 10.0,
-            rtd_k: 0.1,
-            part_minus_track_k: 0.15,
-            operation_scatter_mv: 2.0,
-            conversions_per_s: 75.0,
-        };
+    fn operation_scatter_is_proportional_to_nominal_voltage() {
+        let accuracy = context().accuracy;
         let volts = [24.0, 12.0, 6.0].map(|nominal_v| accuracy.operation_v(nominal_v));
         assert_eq!(volts, [0.004, 0.002, 0.001]);
     }

@@ -1,4 +1,4 @@
-//! What the instruments of a rig were found to do, for any kind: dates and factors.
+//! Calibration of a rig for any kind: dates and factors.
 
 use super::em_relay;
 use crate::gauge::factor::Named;
@@ -8,12 +8,12 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Calibration {
-    /// Of the coil board.
+    /// Factors of the coil board, for relays.
     EmRelay(em_relay::Calibration),
 }
 
 impl Calibration {
-    /// Returns what every kind of calibration says of itself.
+    /// Returns the data that every kind of calibration has.
     pub fn facts(&self) -> CalibrationFacts {
         match self {
             Self::EmRelay(relay) => relay.facts(),
@@ -21,7 +21,7 @@ impl Calibration {
     }
 }
 
-/// What every kind of calibration says of itself.
+/// Data that every kind of calibration has.
 #[derive(Debug, Clone)]
 pub struct CalibrationFacts {
     /// When the factors were found, microseconds since 1970 UTC.

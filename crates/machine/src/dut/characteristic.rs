@@ -14,23 +14,22 @@ use std::ops::Deref;
 use texts::Lang;
 use units::{Celsius, Unit};
 
-/// What the program knows of a characteristic.
+/// Constant data of a characteristic.
 #[derive(Debug, Clone, Copy)]
 pub struct Definition {
     /// Key with the unit as suffix.
     pub key: &'static str,
     /// Unit in which values and limits are written.
     pub unit: Unit,
-    /// What a mean of several readings speaks of.
+    /// Meaning of the mean of several readings.
     pub mean_of: MeanOf,
     /// Bin of a part that fails this one.
     pub bin: Bin,
 }
 
-/// A characteristic of a kind. The defaults are those of one that does not depend on temperature and that curves say nothing
-/// of.
+/// A characteristic of a kind. The defaults suit one that is independent of temperature and that curves do not bound.
 pub trait KindCharacteristic {
-    /// Returns what is fixed about it.
+    /// Returns its constant data.
     fn definition(&self) -> &'static Definition;
 
     /// Returns the factor that converts a result at temperature `_from` to `_to`.
@@ -48,9 +47,9 @@ pub trait KindCharacteristic {
 /// One measured quantity of one kind. Sorts by kind, then in the order of reports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Characteristic {
-    /// Of an electromagnetic relay.
+    /// Characteristic of an electromagnetic relay.
     EmRelay(em_relay::Parameter),
-    /// Of a resistor.
+    /// Characteristic of a resistor.
     Resistor(resistor::Parameter),
 }
 

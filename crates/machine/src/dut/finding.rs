@@ -1,11 +1,11 @@
-//! Findings of every kind: what a test finds beside figures, as data.
+//! Findings of every kind: the results of a test that are no figures, as data.
 
 use super::characteristic::Characteristic;
 use super::verdict::Bin;
 use super::{Kind, em_relay, resistor};
 use crate::gauge::Side;
 
-/// What is fixed about a finding.
+/// Constant data of a finding.
 #[derive(Debug, Clone, Copy)]
 pub struct Entry {
     /// Code in rows and exports.
@@ -17,7 +17,7 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// The part is bad.
+    /// Returns the entry of a finding that proves the part bad.
     pub const fn fail(code: &'static str, bin: Bin) -> Self {
         Self {
             bin: Some(bin),
@@ -25,7 +25,7 @@ impl Entry {
         }
     }
 
-    /// The part cannot be judged.
+    /// Returns the entry of a finding that leaves the part unjudged.
     pub const fn void(code: &'static str) -> Self {
         Self {
             code,
@@ -34,7 +34,7 @@ impl Entry {
         }
     }
 
-    /// The part is bad, and its value lies beyond its limit on this side.
+    /// Adds the characteristic whose limit the finding proves exceeded, and the side.
     pub fn proves(self, characteristic: impl Into<Characteristic>, side: Side) -> Self {
         Self {
             proves: Some((characteristic.into(), side)),
@@ -46,9 +46,9 @@ impl Entry {
 /// One finding of a test, by kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Finding {
-    /// Of a relay test.
+    /// Finding of a relay test.
     EmRelay(em_relay::Finding),
-    /// Of a resistor test.
+    /// Finding of a resistor test.
     Resistor(resistor::Finding),
 }
 
@@ -58,7 +58,7 @@ impl Finding {
         Kind::ALL.into_iter().flat_map(Kind::findings)
     }
 
-    /// Returns what is fixed about it.
+    /// Returns its constant data.
     pub fn entry(self) -> Entry {
         match self {
             Self::EmRelay(finding) => finding.entry(),

@@ -1,12 +1,11 @@
-//! What a rig's instruments were found to do, and what its reference parts are certified to be: for people to read, of
-//! every kind alike.
+//! Factors of a calibration and certificates of reference parts, for people to read; alike for every kind.
 
 use super::calibration::Calibration;
 use super::characteristic::Characteristic;
 use super::em_relay::settings::{Certified, ReferencePart};
 use crate::gauge::factor::Named;
 
-/// What the certificate of a reference part says.
+/// Certificate of a reference part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {
     /// Serial number.

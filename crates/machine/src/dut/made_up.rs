@@ -1,40 +1,40 @@
-//! What made-up parts of a kind look like, for trying a history: how values scatter, and what a test would have seen.
+//! Made-up parts of a kind, for trying a history: the scatter of their values, and the signals that a test records.
 
 use super::Characteristic;
 use crate::gauge::Budget;
 use crate::instrument::trace::Signal;
 
-/// What made-up parts of a recipe look like: means from the recipe where it knows them, else those of the default world.
+/// Statistics of made-up parts of a recipe; a mean that the recipe does not state is that of the default simulated world.
 #[derive(Debug, Clone)]
 pub struct MadeUp {
-    /// Of every characteristic, in the order of reports.
+    /// Scatter of each characteristic, in the order of reports.
     pub scatter: Vec<(Characteristic, Scatter)>,
-    /// As many as a test of the default recipe has.
+    /// Recorded signals, with as many samples as a test of the default recipe has.
     pub looks: Vec<Looks>,
 }
 
-/// How a characteristic scatters over a lot, and how well a value is known.
+/// Scatter of a characteristic over a lot, and the uncertainty of a value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scatter {
-    /// Of the values.
+    /// Mean of the values.
     pub mean: f64,
     /// Standard deviation of the values, or of their logarithm.
     pub sd: f64,
-    /// The logarithm scatters, about the logarithm of the mean.
+    /// True when the logarithm is normally distributed, around the logarithm of the mean.
     pub logarithmic: bool,
     /// Standard uncertainty of a value.
     pub u: f64,
-    /// Budget as a run stores it.
+    /// Uncertainty budget of a value.
     pub budget: Budget,
 }
 
-/// Looks at one signal, equally far apart.
+/// Samples of one signal, equally spaced in time.
 #[derive(Debug, Clone, Copy)]
 pub struct Looks {
-    /// At what.
+    /// The signal.
     pub signal: Signal,
-    /// How many.
+    /// Number of samples.
     pub count: i64,
-    /// Value of the look with this number, from 0.
+    /// Returns the value of the sample with this number, from 0.
     pub value: fn(i64) -> f64,
 }

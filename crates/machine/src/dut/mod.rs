@@ -64,7 +64,7 @@ impl Kind {
     /// The names of recipes, in the order of [`Self::ALL`].
     pub const NAMES: &'static [&'static str] = &[Self::EmRelay.name(), Self::Resistor.name()];
 
-    /// Returns what is fixed about it.
+    /// Returns the constant data of the kind.
     pub const fn definition(self) -> &'static KindDefinition {
         match self {
             Self::EmRelay => &em_relay::DEFINITION,
@@ -105,6 +105,8 @@ pub struct KindDefinition {
     pub name: &'static str,
     /// Keys that a recipe may have.
     pub sections: keys::Sections,
+    /// Bins of parts that fail, worst first.
+    pub bins: &'static [Bin],
     /// Its characteristics, in the order of reports.
     pub characteristics: fn() -> Vec<Characteristic>,
     /// Names of the stages of its test.

@@ -6,17 +6,17 @@ use super::record::{Stop, TestRecord};
 use super::verdict::Verdict;
 use super::{Kind, em_relay, resistor};
 use crate::gauge::Judgement;
-use crate::instrument::act::{Doing, JobDone};
+use crate::instrument::act::{JobDone, RunnerState};
 use crate::rig::image::Image;
 use crate::rig::supply::RangeMismatch;
 use std::ops::{Deref, DerefMut};
 use units::{RigTime, Span};
 
-/// What a test wants from its surroundings.
+/// Progress of a test after a step.
 #[derive(Debug)]
 pub enum Progress {
-    /// As the runner of the present stage says.
-    Doing(Doing),
+    /// The test goes on; the runner of its stage is in this state.
+    Running(RunnerState),
     /// The part is judged.
     Judged,
 }
@@ -77,9 +77,9 @@ pub trait TestProcedure {
 /// A test under way, by kind.
 #[derive(Debug)]
 pub enum Procedure {
-    /// Of an electromagnetic relay.
+    /// Test of an electromagnetic relay.
     EmRelay(Box<em_relay::measure::Test>),
-    /// Of a resistor.
+    /// Test of a resistor.
     Resistor(Box<resistor::Test>),
 }
 

@@ -37,14 +37,14 @@ pub enum Stop {
     Fail(Reason),
     /// It cannot be judged.
     Void(Reason),
-    /// The rig was in trouble: what it has measured of the part so far, good or bad, proves nothing.
+    /// The rig was in trouble, which voids every result of the part, good or bad.
     Trouble(Reason),
 }
 
 /// Observations of a test of one kind, from which the kind learns.
 #[derive(Debug, Clone, Default)]
 pub enum Own {
-    /// Nothing: the kind learns from results alone, or the part was not tested.
+    /// No observations: the kind learns from results alone, or the part was not tested.
     #[default]
     Nothing,
     /// Ramps and conditions of an electromagnetic relay.
@@ -61,7 +61,7 @@ pub struct TestRecord<T = Own> {
     pub trace: Trace,
     /// Where the time went.
     pub spent: Spent,
-    /// Rig time by what it was spent on.
+    /// Rig time of each stage by its key.
     pub stages: BTreeMap<&'static str, Span>,
     /// Observations of the kind.
     pub own: T,

@@ -3,14 +3,14 @@
 use super::{Characteristic, Kind, Recipe};
 use units::Celsius;
 
-/// What stored values refer to: of the recipe that was in force.
+/// Conditions that stored values refer to, from the recipe of their test.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Basis {
-    /// What was measured.
+    /// Kind of the part.
     pub kind: Kind,
-    /// Nominal voltage of the part, V; none of a kind that has none.
+    /// Nominal voltage of the part, V; `None` for a kind without one.
     pub nominal_v: Option<f64>,
-    /// Temperature that results are brought to.
+    /// Temperature that results are converted to.
     pub reference: Celsius,
 }
 
@@ -20,14 +20,14 @@ const NOMINAL: &str = "nominal_v";
 /// Why values cannot be judged by a recipe.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Misfit {
-    /// What the recipe needs: the first half of a sentence.
+    /// Demand of the recipe: the first half of a sentence.
     pub wanted: String,
-    /// How the part was measured: the second half.
+    /// Condition of the measurement: the second half.
     pub found: String,
 }
 
 impl Basis {
-    /// From the stored text of a recipe; none when it does not say. A text that names no kind is of the first one.
+    /// Returns the basis in the stored text of a recipe; `None` when a key is missing. A text without a kind describes a relay.
     pub fn of(recipe: &str) -> Option<Self> {
         let recipe: toml::Table = recipe.parse().ok()?;
         let kind = recipe.get("kind").and_then(toml::Value::as_str);
@@ -47,7 +47,7 @@ impl Basis {
         })
     }
 
-    /// Of a recipe that is loaded.
+    /// Returns the basis of a loaded recipe.
     pub fn of_recipe(recipe: &Recipe) -> Self {
         Self {
             kind: recipe.device.kind(),
@@ -56,7 +56,7 @@ impl Basis {
         }
     }
 
-    /// Why values on this basis cannot be judged by `recipe`; none when they can.
+    /// Returns why values on this basis cannot be judged by `recipe`; `None` when they can.
     pub fn misfit(&self, recipe: &Recipe) -> Option<Misfit> {
         let (name, kind) = (&recipe.name, recipe.device.kind());
         if self.kind != kind {
@@ -73,7 +73,7 @@ impl Basis {
         })
     }
 
-    /// Factor from a stored value to the one that `recipe` would have stored.
+    /// Returns the factor from a stored value to the one that `recipe` would have stored.
     pub fn factor(&self, of: Characteristic, recipe: &Recipe) -> f64 {
         let wanted = recipe.device.part().reference;
         of.conversion(self.reference, wanted)

@@ -1,19 +1,21 @@
 //! The verdict of a part from its results, and its bin.
 //!
-//! Several failures go to the bin of the first in the order coil, contact, voltage, time.
+//! A part with several failures goes to the worst of their bins, in the order that its kind declares.
 
+use super::Kind;
 use super::characteristic::Characteristic;
-use super::em_relay::bins;
 use super::reason::{Code, Reason};
 use super::record::Stop;
 use crate::gauge::Judgement;
 pub use crate::rig::bin::Bin;
 
-/// Rank when several limits fail: the smallest wins.
-pub(super) fn rank(bin: Bin) -> usize {
-    let by_rank = bins::BY_RANK;
-    let known = by_rank.into_iter().position(|known| known == bin);
-    known.unwrap_or(by_rank.len())
+/// Returns the rank of a bin among those of its kind, 0 for the worst; the greatest rank for a bin of no kind.
+fn rank(bin: Bin) -> usize {
+    let of_kind = |kind: Kind| kind.definition().bins.iter().position(|it| *it == bin);
+    Kind::ALL
+        .into_iter()
+        .find_map(of_kind)
+        .unwrap_or(usize::MAX)
 }
 
 /// The conclusion of a test on its part.
@@ -126,7 +128,7 @@ impl Verdict {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dut::em_relay::Parameter;
+    use crate::dut::em_relay::{Parameter, bins};
     use crate::gauge::Side;
 
     fn all() -> Vec<Characteristic> {

@@ -16,7 +16,7 @@ use super::turn::Turn;
 use crate::dut::Device;
 use crate::dut::device::TestOrder;
 use crate::dut::procedure::{Procedure, Progress};
-use crate::instrument::act::{Doing, JobDone};
+use crate::instrument::act::{JobDone, RunnerState};
 use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
 use units::{RigTime, Second};
@@ -188,12 +188,12 @@ fn testing(
     done: Option<&JobDone>,
 ) -> bool {
     match test.step(turn.now, done, turn.image) {
-        Progress::Doing(Doing::Job(job)) => {
+        Progress::Running(RunnerState::Job(job)) => {
             assert!(turn.rig.job.is_none(), "two jobs in one turn");
             turn.rig.job = Some(NestJob { nest: id, job });
         }
-        Progress::Doing(Doing::Wait(until)) => turn.rig.wake_at = Some(until),
-        Progress::Doing(Doing::Busy | Doing::Done | Doing::Trouble(_)) => {}
+        Progress::Running(RunnerState::Wait(until)) => turn.rig.wake_at = Some(until),
+        Progress::Running(RunnerState::Busy | RunnerState::Done | RunnerState::Trouble(_)) => {}
         Progress::Judged => {
             if let Some(mismatch) = test.range_mismatch() {
                 turn.report(Trouble::SupplyRange(mismatch.clone()));

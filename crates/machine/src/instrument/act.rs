@@ -91,12 +91,12 @@ pub enum Act {
         /// Longest wait.
         within: Span,
     },
-    /// Reads a word until inputs have these states; where they have not by the end of the time, the acts after this one
-    /// are left out.
+    /// Reads a word until inputs have these states; if they do not within the time, the runner skips the acts after this
+    /// one.
     Agree {
         /// The inputs, all of the word, each with its state.
         expected: Vec<(DigitalInput, bool)>,
-        /// Inputs kept from the last look.
+        /// Inputs recorded at the last poll.
         word: Arc<Word>,
         /// Longest wait.
         within: Span,
@@ -127,14 +127,14 @@ pub struct JobDone {
     pub trouble: Option<String>,
 }
 
-/// Request of the runner to its caller.
+/// State of a runner after a step.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Doing {
-    /// Start this job; report it with [`JobDone`].
+pub enum RunnerState {
+    /// The caller must start this job and report it with [`JobDone`].
     Job(Job),
     /// A job is under way.
     Busy,
-    /// Nothing to do until this time.
+    /// No act is due before this time.
     Wait(RigTime),
     /// All acts are done.
     Done,
@@ -226,16 +226,18 @@ impl Runner {
     }
 
     /// Advances as far as possible. `done` reports the requested job, once.
-    pub fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Doing {
+    pub fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> RunnerState {
         if self.pending {
-            let Some(done) = done else { return Doing::Busy };
+            let Some(done) = done else {
+                return RunnerState::Busy;
+            };
             if let Some(trouble) = &done.trouble {
-                return Doing::Trouble(trouble.clone());
+                return RunnerState::Trouble(trouble.clone());
             }
             self.pending = false;
             self.since = done.at;
             if let Err(trouble) = self.keep(image, now) {
-                return Doing::Trouble(trouble.to_string());
+                return RunnerState::Trouble(trouble.to_string());
             }
         }
         while let Some(act) = &self.current {
@@ -264,7 +266,7 @@ impl Runner {
                 Act::Wait(span) => {
                     let until = self.since + *span;
                     if now < until {
-                        return Doing::Wait(until);
+                        return RunnerState::Wait(until);
                     }
                     self.since = until;
                     self.next();
@@ -280,19 +282,19 @@ impl Runner {
                     };
                     let until = self.mark + *span + longer;
                     if now < until {
-                        return Doing::Wait(until);
+                        return RunnerState::Wait(until);
                     }
                     self.since = self.since.max(until);
                     self.next();
                 }
             }
         }
-        Doing::Done
+        RunnerState::Done
     }
 
-    fn request(&mut self, job: Job) -> Doing {
+    fn request(&mut self, job: Job) -> RunnerState {
         self.pending = true;
-        Doing::Job(job)
+        RunnerState::Job(job)
     }
 
     /// Returns the time spent so far.
@@ -302,32 +304,25 @@ impl Runner {
 
     fn next(&mut self) {
         let took = self.since.since(self.began);
+        let rest = |span: &Span| Span(span.0.saturating_sub(self.since_mark.0));
+        let spent = &mut self.spent;
         let least = match &self.current {
-            Some(Act::Wait(span)) => *span,
-            Some(
-                Act::WaitSinceMark(span) | Act::RampSinceMark(span) | Act::ConvertSinceMark(span),
-            ) => Span(span.0.saturating_sub(self.since_mark.0)),
-            Some(Act::Until { .. }) => took,
-            Some(
-                Act::Set(_)
-                | Act::Level(_)
-                | Act::Ramp(_)
-                | Act::Read(_)
-                | Act::Agree { .. }
-                | Act::Mask(_)
-                | Act::Mark,
-            )
-            | None => Span(0),
-        };
-        self.spent.bound += least;
-        self.since_mark = match &self.current {
-            Some(Act::Mark) => Span(0),
-            Some(_) | None => self.since_mark + least,
-        };
-        if !matches!(&self.current, Some(Act::Until { .. } | Act::Mark)) {
-            self.looked = None;
-        }
-        match &self.current {
+            Some(Act::Wait(span)) => {
+                spent.settling += took;
+                *span
+            }
+            Some(Act::WaitSinceMark(span) | Act::RampSinceMark(span)) => {
+                spent.settling += took;
+                rest(span)
+            }
+            Some(Act::ConvertSinceMark(span)) => {
+                spent.conversion += took;
+                rest(span)
+            }
+            Some(Act::Until { .. }) => {
+                spent.ramp += took;
+                took
+            }
             Some(
                 Act::Set(_)
                 | Act::Level(_)
@@ -335,13 +330,19 @@ impl Runner {
                 | Act::Read(_)
                 | Act::Agree { .. }
                 | Act::Mask(_),
-            ) => self.spent.bus += took,
-            Some(Act::Wait(_) | Act::WaitSinceMark(_) | Act::RampSinceMark(_)) => {
-                self.spent.settling += took
+            ) => {
+                spent.bus += took;
+                Span(0)
             }
-            Some(Act::ConvertSinceMark(_)) => self.spent.conversion += took,
-            Some(Act::Until { .. }) => self.spent.ramp += took,
-            Some(Act::Mark) | None => {}
+            Some(Act::Mark) | None => Span(0),
+        };
+        spent.bound += least;
+        self.since_mark = match &self.current {
+            Some(Act::Mark) => Span(0),
+            Some(_) | None => self.since_mark + least,
+        };
+        if !matches!(&self.current, Some(Act::Until { .. } | Act::Mark)) {
+            self.looked = None;
         }
         self.current = self.acts.next();
         self.began = self.since;
@@ -356,10 +357,9 @@ impl Runner {
                 word,
                 within,
             }) => {
-                let stale = || Unread::Stale(word.name);
-                let active = image.answered_input(point, now).ok_or_else(stale)?;
-                let states = word.states(image, now).ok_or_else(stale)?;
-                self.readings.trace.word(word.name, &states, self.since);
+                let active = image.answered_input(point, now);
+                let active = active.ok_or(Unread::Stale(word.name))?;
+                let states = self.poll(&word, image, now)?;
                 if !active && self.since.since(self.began) < within {
                     self.looked = Some(self.since);
                     return Ok(());
@@ -373,9 +373,7 @@ impl Runner {
                 word,
                 within,
             }) => {
-                let stale = || Unread::Stale(word.name);
-                let states = word.states(image, now).ok_or_else(stale)?;
-                self.readings.trace.word(word.name, &states, self.since);
+                let states = self.poll(&word, image, now)?;
                 let mut each = expected.iter();
                 let agree = each.all(|(it, on)| image.answered_input(*it, now) == Some(*on));
                 if !agree && self.since.since(self.began) < within {
@@ -390,13 +388,9 @@ impl Runner {
                 let wiring = image.wiring();
                 self.readings.trace.switched(wiring, &outputs, self.since);
             }
-            Some(Act::Level(outputs)) => {
-                let wiring = image.wiring();
-                self.readings.trace.commanded(wiring, &outputs, self.since);
-            }
+            Some(Act::Level(outputs)) => self.commanded(&outputs, image),
             Some(Act::Ramp(outputs)) => {
-                let wiring = image.wiring();
-                self.readings.trace.commanded(wiring, &outputs, self.since);
+                self.commanded(&outputs, image);
                 let after = self.since.since(self.marked_from);
                 self.late = self.late.max(Span(after.0.saturating_sub(PROMPT.0)));
             }
@@ -412,6 +406,18 @@ impl Runner {
         }
         self.next();
         Ok(())
+    }
+
+    /// Reads a word and adds it to the trace.
+    fn poll(&mut self, word: &Word, image: &Image, now: RigTime) -> Result<Vec<bool>, Unread> {
+        let states = word.states(image, now).ok_or(Unread::Stale(word.name))?;
+        self.readings.trace.word(word.name, &states, self.since);
+        Ok(states)
+    }
+
+    fn commanded(&mut self, outputs: &[(AnalogOutput, Volt)], image: &Image) {
+        let trace = &mut self.readings.trace;
+        trace.commanded(image.wiring(), outputs, self.since);
     }
 }
 

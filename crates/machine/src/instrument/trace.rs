@@ -22,8 +22,8 @@ pub struct Signal {
     pub unit: &'static str,
     /// Resolution of stored values: a tenth of a step of the converter, or less.
     pub step: f64,
-    /// True for a signal that is stored at its changes only.
-    stands: bool,
+    /// True for a signal of bits, of which the trace keeps only changes.
+    changes_only: bool,
 }
 
 impl Signal {
@@ -33,7 +33,7 @@ impl Signal {
             name,
             unit: "V",
             step: 1e-5,
-            stands: false,
+            changes_only: false,
         }
     }
 
@@ -43,7 +43,7 @@ impl Signal {
             name: quantity.name,
             unit: quantity.unit,
             step: quantity.step,
-            stands: false,
+            changes_only: false,
         }
     }
 
@@ -53,7 +53,7 @@ impl Signal {
             name,
             unit: "",
             step: 1.0,
-            stands: false,
+            changes_only: false,
         }
     }
 
@@ -63,7 +63,7 @@ impl Signal {
             name,
             unit: "",
             step: 1.0,
-            stands: true,
+            changes_only: true,
         }
     }
 }
@@ -143,7 +143,7 @@ impl Trace {
     }
 
     fn add(&mut self, signal: Signal, at: RigTime, value: f64) {
-        if signal.stands {
+        if signal.changes_only {
             let samples = self.samples.iter_mut().rev();
             let mut before = samples.filter(|it| it.signal == signal);
             if let (Some(last), Some(earlier)) = (before.next(), before.next())

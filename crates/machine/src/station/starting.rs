@@ -5,7 +5,7 @@ use super::trouble::Alarm;
 use super::turn::{Inputs, TurnOutput};
 use crate::handling::output::NestJob;
 use crate::handling::{Move, NestId};
-use crate::instrument::act::{Doing, Runner};
+use crate::instrument::act::{Runner, RunnerState};
 use texts::Message;
 use units::RigTime;
 
@@ -65,17 +65,17 @@ impl Station {
     ) {
         let done = inputs.job.as_ref().map(|job| &job.done);
         match runner.step(now, done, inputs.image) {
-            Doing::Job(job) => {
+            RunnerState::Job(job) => {
                 let nest = NestId::FIRST;
                 output.rig.job = Some(NestJob { nest, job });
             }
-            Doing::Wait(until) => output.rig.wake_at = Some(until),
-            Doing::Busy => {}
-            Doing::Trouble(why) => {
+            RunnerState::Wait(until) => output.rig.wake_at = Some(until),
+            RunnerState::Busy => {}
+            RunnerState::Trouble(why) => {
                 let fault = Message::new("fault", "line").with("detail", why);
                 output.notes.trouble.push(Alarm::calibration(&fault));
             }
-            Doing::Done => {
+            RunnerState::Done => {
                 if let Err(why) = self.conclude_references(now, &runner) {
                     let alarm = Alarm::calibration(&why.message());
                     output.notes.trouble.push(alarm);

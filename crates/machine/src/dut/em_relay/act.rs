@@ -37,8 +37,8 @@ pub enum Act {
     Read(Read),
     /// Selects the range of the supply with this code; the board takes it once the drive is off and all sources are at zero.
     SelectRange(u8),
-    /// Reads the board until it is in the range with this code; the acts after this one are left out where it is not by
-    /// the end of the wait. A rig with one range reads the board once.
+    /// Reads the board until it is in the range with this code; if the wait ends first, the runner skips the acts after
+    /// this one. A rig with one range reads the board once.
     ConfirmRange {
         /// Code of the range.
         code: u8,

@@ -8,7 +8,7 @@
 //! | release time | from the last switch-off to the last sample with NC open |
 //!
 //! A bound is neither corrected nor converted to the reference temperature, so it decides only with the margin
-//! [`MARGIN`].
+//! [`DOUBT`].
 
 use super::Parameter;
 use super::points::{AnalogOut, BOARD, DigitalOut};
@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn without_curves_nothing_is_proven() {
+    fn without_curves_there_is_no_bound() {
         for parameter in Parameter::ALL {
             assert_eq!(at_least(&[], parameter, 12.0), None);
         }

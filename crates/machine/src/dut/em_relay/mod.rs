@@ -66,6 +66,7 @@ use super::KindDefinition;
 pub const DEFINITION: KindDefinition = KindDefinition {
     name: "em_relay",
     sections: keys::recipe::SECTIONS,
+    bins: &bins::BY_RANK,
     characteristics: || Parameter::ALL.map(Into::into).to_vec(),
     stages: || measure::Stage::ALL.map(measure::Stage::name).to_vec(),
     findings: || Finding::ALL.map(Into::into).to_vec(),

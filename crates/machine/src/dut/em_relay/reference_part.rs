@@ -13,8 +13,8 @@ use crate::dut::em_relay::overshoot::OvershootModel;
 use crate::dut::em_relay::probe_contact::Trend;
 use crate::dut::em_relay::scale::Scale;
 use crate::dut::em_relay::settings::{Certified, ReferencePart};
+use crate::dut::em_relay::threshold::Direction;
 use crate::gauge::Factor;
-use crate::gauge::Reading;
 use texts::{Lang, Message};
 use thiserror::Error;
 use units::{Celsius, Ohm, Unit, Volt};
@@ -130,9 +130,9 @@ impl Misfit {
 #[derive(Debug, Clone)]
 struct Shift {
     serial: String,
-    operate_v: f64,
-    release_v: f64,
-    /// Coarse minus fine indications, operate and release; NaN without a coarse ramp.
+    /// Fine indication minus certificate of each direction, V.
+    fine_v: [f64; 2],
+    /// Coarse minus fine indication of each direction, V; NaN without a coarse ramp.
     coarse_v: [f64; 2],
 }
 
@@ -153,10 +153,6 @@ impl ReferenceRun {
         observed: &Observed,
     ) -> Result<(), Misfit> {
         let serial = &part.serial;
-        let without = |characteristic| Misfit::Without {
-            serial: serial.clone(),
-            characteristic,
-        };
         let track = observed.track.ok_or_else(|| Misfit::WithoutTemperature {
             serial: serial.clone(),
         })?;
@@ -165,8 +161,10 @@ impl ReferenceRun {
             ramp.and_then(|it| Some((it.coarse.indicated - it.fine?).0))
                 .unwrap_or(f64::NAN)
         };
-        let operate = fine(observed.operate).ok_or_else(|| without(Parameter::OperateVoltage))?;
-        let release = fine(observed.release).ok_or_else(|| without(Parameter::ReleaseVoltage))?;
+        let operate =
+            fine(observed.operate).ok_or_else(|| without(part, Parameter::OperateVoltage))?;
+        let release =
+            fine(observed.release).ok_or_else(|| without(part, Parameter::ReleaseVoltage))?;
         check_coil(part, record)?;
         observed
             .probe_contact
@@ -175,8 +173,10 @@ impl ReferenceRun {
         let at_part = |certified: Certified| certified.value / to_reference(track, reference);
         self.shifts.push(Shift {
             serial: serial.clone(),
-            operate_v: operate.0 - at_part(part.operate_voltage_v),
-            release_v: release.0 - at_part(part.release_voltage_v),
+            fine_v: [
+                operate.0 - at_part(part.operate_voltage_v),
+                release.0 - at_part(part.release_voltage_v),
+            ],
             coarse_v: [over(observed.operate), over(observed.release)],
         });
         Ok(())
@@ -185,37 +185,23 @@ impl ReferenceRun {
     /// Returns the overshoot from all reference parts; the error names the outlier.
     pub fn overshoots(
         &self,
-        sets: &[ReferencePart],
+        parts: &[ReferencePart],
         accuracy: &AccuracySettings,
         coarse: (OvershootModel, OvershootModel),
     ) -> Result<Overshoots, Misfit> {
-        let operate = self.fine(
-            |shift| shift.operate_v,
-            |part| part.operate_voltage_v,
-            sets,
-            accuracy,
-        )?;
-        let release = self.fine(
-            |shift| shift.release_v,
-            |part| part.release_voltage_v,
-            sets,
-            accuracy,
-        )?;
+        let of = |direction, coarse| -> Result<Overshoot, Misfit> {
+            let certified = parts.iter().map(|part| part.threshold(direction).value);
+            Ok(Overshoot {
+                fine_v: self.fine(direction, parts, accuracy)?,
+                at_v: certified.sum::<f64>() / parts.len().max(1) as f64,
+                at_coarse_v: self.over(direction),
+                coarse,
+                judges: false,
+            })
+        };
         Ok(Overshoots {
-            operate: Overshoot {
-                fine_v: operate,
-                at_v: mean(sets, |part| part.operate_voltage_v),
-                at_coarse_v: self.over(0),
-                coarse: coarse.0,
-                judges: false,
-            },
-            release: Overshoot {
-                fine_v: release,
-                at_v: mean(sets, |part| part.release_voltage_v),
-                at_coarse_v: self.over(1),
-                coarse: coarse.1,
-                judges: false,
-            },
+            operate: of(Direction::Rising, coarse.0)?,
+            release: of(Direction::Falling, coarse.1)?,
         })
     }
 
@@ -227,14 +213,17 @@ impl ReferenceRun {
     /// Returns the mean of fine indication minus certificate so far, operate and release.
     pub fn fine_v(&self) -> Option<(f64, f64)> {
         let n = self.shifts.len() as f64;
-        let mean = |shift: fn(&Shift) -> f64| self.shifts.iter().map(shift).sum::<f64>() / n;
-        (n > 0.0).then(|| (mean(|it| it.operate_v), mean(|it| it.release_v)))
+        let mean = |at: usize| self.shifts.iter().map(|it| it.fine_v[at]).sum::<f64>() / n;
+        (n > 0.0).then(|| (mean(0), mean(1)))
     }
 
     /// Returns the mean of coarse minus fine indication over the parts with both, 0 without any.
-    fn over(&self, direction: usize) -> f64 {
+    fn over(&self, direction: Direction) -> f64 {
         let both = || {
-            let each = self.shifts.iter().map(|shift| shift.coarse_v[direction]);
+            let each = self
+                .shifts
+                .iter()
+                .map(|shift| shift.coarse_v[direction as usize]);
             each.filter(|it| it.is_finite())
         };
         both().sum::<f64>() / both().count().max(1) as f64
@@ -242,8 +231,7 @@ impl ReferenceRun {
 
     fn fine(
         &self,
-        shift: fn(&Shift) -> f64,
-        certified: fn(&ReferencePart) -> Certified,
+        direction: Direction,
         parts: &[ReferencePart],
         accuracy: &AccuracySettings,
     ) -> Result<Factor, Misfit> {
@@ -253,6 +241,7 @@ impl ReferenceRun {
                 measured: self.shifts.len(),
             });
         }
+        let shift = |it: &Shift| it.fine_v[direction as usize];
         let mean = self.shifts.iter().map(shift).sum::<f64>() / n;
         let nominal_v = parts.first().map_or(f64::NAN, |part| part.nominal_v);
         let band = Scale::new(nominal_v, 1.0).of_coil(BAND);
@@ -267,7 +256,7 @@ impl ReferenceRun {
             });
         }
         let of_part = |part: &ReferencePart| {
-            let value = certified(part);
+            let value = part.threshold(direction);
             let kelvin =
                 value.value * accuracy.part_minus_track_k * relative_per_kelvin(Celsius(23.0));
             value.u.powi(2) + kelvin.powi(2) + accuracy.operation_v(part.nominal_v).powi(2)
@@ -277,23 +266,21 @@ impl ReferenceRun {
     }
 }
 
-fn mean(parts: &[ReferencePart], certified: fn(&ReferencePart) -> Certified) -> f64 {
-    parts.iter().map(|part| certified(part).value).sum::<f64>() / parts.len().max(1) as f64
+fn without(part: &ReferencePart, characteristic: Parameter) -> Misfit {
+    Misfit::Without {
+        serial: part.serial.clone(),
+        characteristic,
+    }
 }
 
 fn check_coil<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<(), Misfit> {
-    let serial = &part.serial;
-    let coil = record
-        .result(Parameter::CoilResistance)
-        .ok_or_else(|| Misfit::Without {
-            serial: serial.clone(),
-            characteristic: Parameter::CoilResistance,
-        })?;
+    let coil = record.result(Parameter::CoilResistance);
+    let coil = coil.ok_or_else(|| without(part, Parameter::CoilResistance))?;
     let certified = part.coil_resistance_ohm;
     let allowed = 2.0 * coil.budget.combined().hypot(certified.u) * 2.0;
     if (coil.value - certified.value).abs() > allowed {
         return Err(Misfit::OtherCoil {
-            serial: serial.clone(),
+            serial: part.serial.clone(),
             ohm: coil.value,
             certified_ohm: certified.value,
             allowed_ohm: allowed,
@@ -308,26 +295,16 @@ const CHECK_K: f64 = 3.0;
 
 /// Compares the results of a reference part with its certificate; the error names the result that disagrees.
 pub fn check<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<(), Misfit> {
-    let certified = [
-        (Parameter::CoilResistance, part.coil_resistance_ohm),
-        (Parameter::OperateVoltage, part.operate_voltage_v),
-        (Parameter::ReleaseVoltage, part.release_voltage_v),
-    ];
-    let serial = &part.serial;
-    for (parameter, certified) in certified {
-        let found = record
-            .result(parameter)
-            .filter(Reading::is_usable)
-            .ok_or_else(|| Misfit::Without {
-                serial: serial.clone(),
-                characteristic: parameter,
-            })?;
+    let [operate, release, coil] = part.certified();
+    for (parameter, certified) in [coil, operate, release] {
+        let found = record.usable(parameter);
+        let found = found.ok_or_else(|| without(part, parameter))?;
         let allowed = CHECK_K * found.budget.combined().hypot(certified.u);
         let off = found.value - certified.value;
         let within = off.abs() <= allowed;
         if !within {
             return Err(Misfit::Reads {
-                serial: serial.clone(),
+                serial: part.serial.clone(),
                 characteristic: parameter,
                 found: found.value,
                 unit: found.unit,
@@ -339,7 +316,7 @@ pub fn check<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<(), Misf
     Ok(())
 }
 
-/// Returns the overshoot before the reference parts are complete: it places ramps, with infinite uncertainty.
+/// Returns the overshoot before the reference parts are complete: it places ramps, and its uncertainty is infinite.
 pub fn interim(coarse: OvershootModel, fine_v: f64) -> Overshoot {
     Overshoot {
         fine_v: Factor::new(fine_v, f64::INFINITY),

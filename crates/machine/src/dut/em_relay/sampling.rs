@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn what_all_closures_share_does_not_shrink() {
+    fn closures_do_not_average_their_shared_uncertainty() {
         assert!(!sampling(0).is_clear(&[95.0; 20], 2.0, &LIMIT));
         assert!(sampling(0).is_clear(&[95.0; 20], 1.0, &LIMIT));
     }

@@ -1,8 +1,8 @@
-//! Voltages of the procedure for any coil in any range of the supply.
+//! Scales the voltages of the procedure to the coil and to the range of the supply.
 //!
-//! The constants of this kind are those of a 12 V coil in the range of factor 1. What belongs to the relay (thresholds,
-//! their scatter) goes with the nominal voltage. What belongs to the supply (the window of the board, the way of a ramp in
-//! a given time) goes with the factor of the range.
+//! The constants of this kind are those of a 12 V coil in the range of factor 1. Voltages of the relay (thresholds,
+//! their scatter) scale with the nominal voltage. Voltages of the supply (the window of the board, the way of a ramp in a
+//! given time) scale with the factor of the range.
 
 use units::Volt;
 
@@ -17,7 +17,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Of a coil of this nominal voltage in a range of this factor.
+    /// Makes the scale of a coil of this nominal voltage in a range of this factor.
     pub fn new(nominal_v: f64, factor: f64) -> Self {
         Self {
             coil: nominal_v / STATED_FOR_V,

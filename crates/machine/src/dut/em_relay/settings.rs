@@ -1,6 +1,7 @@
 //! References, calibration interval and reference parts, from `config/rig.toml` and `config/golden.toml`.
 
 use super::Parameter;
+use super::threshold::Direction;
 use crate::dut::instruments::Certificate;
 use serde::{Deserialize, Serialize};
 
@@ -62,6 +63,14 @@ pub struct ReferencePart {
 }
 
 impl ReferencePart {
+    /// Returns the certified threshold of a direction, V.
+    pub fn threshold(&self, direction: Direction) -> Certified {
+        match direction {
+            Direction::Rising => self.operate_voltage_v,
+            Direction::Falling => self.release_voltage_v,
+        }
+    }
+
     /// Returns the certified values.
     pub fn certified(&self) -> [(Parameter, Certified); 3] {
         [

@@ -77,8 +77,8 @@ pub fn quasi_static(
     let at_part = seen.0 - overshoot.fine_v.value - own.value;
     let value = at_part * to_reference(part, reference);
     let budget = Budget::default()
-        .with("golden parts", overshoot.fine_v.u)
-        .with("lag of the part", own.u)
+        .with("reference parts", overshoot.fine_v.u)
+        .with("overshoot of the part", own.u)
         .with(
             "coil temperature",
             value * uncertainty.temperature_k * relative_per_kelvin(part),

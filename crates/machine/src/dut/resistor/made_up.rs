@@ -8,7 +8,7 @@ use crate::gauge::Budget;
 /// Resistance for a recipe without both limits, ohm.
 const USUAL_OHM: f64 = 390.0;
 
-/// Scatters about the middle of the limits by a tenth of their distance.
+/// Returns values around the middle of the limits, with a tenth of their distance as standard deviation.
 pub fn made_up(limits: &Limits) -> MadeUp {
     let limit = limits.of(Parameter::Resistance);
     let (mean, sd) = match (limit.low, limit.high) {

@@ -13,7 +13,7 @@ use crate::dut::procedure::{Progress, TestProcedure};
 use crate::dut::record::{Stop, TestRecord};
 use crate::dut::{Characteristic, Kind, Procedure, Recipe};
 use crate::gauge::{Judgement, Reading};
-use crate::instrument::act::{Act, Doing, JobDone, Read, Runner, Word};
+use crate::instrument::act::{Act, JobDone, Read, Runner, RunnerState, Word};
 use crate::instrument::readings::Readings;
 use crate::rig::image::Image;
 use crate::rig::point::{MissingPoint, Point};
@@ -70,7 +70,7 @@ impl Device {
         })
     }
 
-    /// Selects the range while all sources are at zero, and goes no further without it.
+    /// Returns the acts that select the range while all sources are at zero; without the range the runner skips the rest.
     fn range_acts(&self) -> Vec<Act> {
         let range = self.range.iter();
         let acts = range.flat_map(|(selector, range)| {
@@ -265,10 +265,10 @@ impl TestProcedure for Test {
         let mut done = done;
         loop {
             match self.runner.step(now, done.take(), image) {
-                Doing::Done => {}
-                Doing::Trouble(why) => self.record.trouble(why),
-                waiting @ (Doing::Job(_) | Doing::Busy | Doing::Wait(_)) => {
-                    return Progress::Doing(waiting);
+                RunnerState::Done => {}
+                RunnerState::Trouble(why) => self.record.trouble(why),
+                waiting @ (RunnerState::Job(_) | RunnerState::Busy | RunnerState::Wait(_)) => {
+                    return Progress::Running(waiting);
                 }
             }
             self.book(now);

@@ -35,6 +35,7 @@ use super::KindDefinition;
 pub const DEFINITION: KindDefinition = KindDefinition {
     name: "resistor",
     sections: keys::SECTIONS,
+    bins: &[parameter::BIN],
     characteristics: || Parameter::ALL.map(Into::into).to_vec(),
     stages: || measure::Stage::ALL.map(measure::Stage::name).to_vec(),
     findings: || Finding::ALL.map(Into::into).to_vec(),

@@ -3,7 +3,7 @@
 
 use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut};
 use crate::handling::tests::MockRig;
-use crate::instrument::act::{Act, Doing, Job, JobDone, Read, Runner, Spent};
+use crate::instrument::act::{Act, Job, JobDone, Read, Runner, RunnerState, Spent};
 use crate::rig::point::Point;
 use units::{RigTime, Span, Volt};
 
@@ -84,11 +84,11 @@ fn every_bus_act_becomes_one_job() {
         let mock = read_once();
         let mut runner = Runner::new(vec![act], mock.now);
         let request = runner.step(mock.now, None, &mock.image);
-        assert_eq!(request, Doing::Job(job.clone()));
-        assert_eq!(runner.step(mock.now, None, &mock.image), Doing::Busy);
+        assert_eq!(request, RunnerState::Job(job.clone()));
+        assert_eq!(runner.step(mock.now, None, &mock.image), RunnerState::Busy);
         assert!(!runner.is_done(), "{job:?}");
         let answered = runner.step(mock.now, Some(&done(mock.now)), &mock.image);
-        assert_eq!(answered, Doing::Done, "{job:?}");
+        assert_eq!(answered, RunnerState::Done, "{job:?}");
         assert!(runner.is_done(), "{job:?}");
     }
 }
@@ -112,7 +112,7 @@ fn readings_are_kept_by_point() {
     for _ in reads {
         last = runner.step(mock.now, Some(&done(mock.now)), &mock.image);
     }
-    assert_eq!(last, Doing::Done);
+    assert_eq!(last, RunnerState::Done);
     let readings = &runner.readings;
     let state = |point| readings.states(points.input(point)).collect::<Vec<_>>();
     assert_eq!(state(DigitalIn::NcClosed), [true]);
@@ -156,7 +156,7 @@ fn an_unread_value_is_trouble() {
         runner.step(mock.now, None, &mock.image);
         let answered = runner.step(mock.now, Some(&done(mock.now)), &mock.image);
         let why = format!("{name} was answered without a value");
-        assert_eq!(answered, Doing::Trouble(why));
+        assert_eq!(answered, RunnerState::Trouble(why));
     }
 }
 
@@ -177,16 +177,16 @@ fn waits_count_from_reply_or_mark() {
     let at = start + Span::ms(4);
     let late = at + Span::ms(1);
     let waits = runner.step(late, Some(&done(at)), &mock.image);
-    assert_eq!(waits, Doing::Wait(start + Span::ms(14)));
+    assert_eq!(waits, RunnerState::Wait(start + Span::ms(14)));
     let again = runner.step(start + Span(13_999), None, &mock.image);
-    assert_eq!(again, Doing::Wait(start + Span::ms(14)));
+    assert_eq!(again, RunnerState::Wait(start + Span::ms(14)));
     let next = runner.step(start + Span::ms(14), None, &mock.image);
-    assert!(matches!(next, Doing::Job(_)));
+    assert!(matches!(next, RunnerState::Job(_)));
     let at = start + Span::ms(18);
     let waits = runner.step(at, Some(&done(at)), &mock.image);
-    assert_eq!(waits, Doing::Wait(start + Span::ms(50)));
+    assert_eq!(waits, RunnerState::Wait(start + Span::ms(50)));
     let last = runner.step(start + Span::ms(50), None, &mock.image);
-    assert_eq!(last, Doing::Done);
+    assert_eq!(last, RunnerState::Done);
 }
 
 #[test]
@@ -199,8 +199,11 @@ fn an_elapsed_wait_since_mark_costs_nothing() {
     ];
     let mut runner = Runner::new(acts, mock.now);
     let end = mock.now + Span::ms(30);
-    assert_eq!(runner.step(mock.now, None, &mock.image), Doing::Wait(end));
-    assert_eq!(runner.step(end, None, &mock.image), Doing::Done);
+    assert_eq!(
+        runner.step(mock.now, None, &mock.image),
+        RunnerState::Wait(end)
+    );
+    assert_eq!(runner.step(end, None, &mock.image), RunnerState::Done);
     assert_eq!(runner.spent().settling, Span::ms(30));
 }
 
@@ -220,12 +223,18 @@ fn until_polls_until_the_point_is_active() {
     for _ in 0..5 {
         mock.after(5);
         let request = runner.step(mock.now, Some(&done(mock.now)), &mock.image);
-        assert!(matches!(request, Doing::Job(Job::Read(_))), "{request:?}");
+        assert!(
+            matches!(request, RunnerState::Job(Job::Read(_))),
+            "{request:?}"
+        );
     }
     mock.set_board(DigitalIn::Latch, true);
     mock.after(5);
     let last = runner.step(mock.now, Some(&done(mock.now)), &mock.image);
-    assert_eq!((last, &*runner.readings.seen), (Doing::Done, &[true][..]));
+    assert_eq!(
+        (last, &*runner.readings.seen),
+        (RunnerState::Done, &[true][..])
+    );
     assert_eq!(runner.spent().ramp, Span::ms(30));
 }
 
@@ -246,7 +255,7 @@ fn ramp_behind_an_event(poll_ms: u64, sent_ms: u64) -> u64 {
     let mark = mock.now;
     mock.after(sent_ms);
     match runner.step(mock.now, Some(&done(mock.now)), &mock.image) {
-        Doing::Wait(until) => until.since(mark).0 / 1_000,
+        RunnerState::Wait(until) => until.since(mark).0 / 1_000,
         other => panic!("{other:?}"),
     }
 }
@@ -290,7 +299,7 @@ fn until_reports_a_stale_board_as_trouble() {
     let line = mock.wiring.module(board).line;
     let later = mock.now + mock.wiring.answer_max_age(line) + Span(1);
     let answered = runner.step(later, Some(&done(later)), &mock.image);
-    assert!(matches!(answered, Doing::Trouble(_)));
+    assert!(matches!(answered, RunnerState::Trouble(_)));
 }
 
 #[test]
@@ -306,7 +315,10 @@ fn a_job_in_trouble_ends_the_acts() {
         trouble: Some("measure 01 #01: silent".into()),
     };
     let answered = runner.step(mock.now, Some(&failed), &mock.image);
-    assert_eq!(answered, Doing::Trouble("measure 01 #01: silent".into()));
+    assert_eq!(
+        answered,
+        RunnerState::Trouble("measure 01 #01: silent".into())
+    );
     let coil = mock.points.analog(AnalogIn::CoilVoltageFine);
     assert_eq!(runner.readings.analog(coil).count(), 0);
 }
@@ -329,17 +341,17 @@ fn the_four_times_add_up_to_the_elapsed_time() {
     acts.extend(until(&mock, Span::ms(15)));
     let mut runner = Runner::new(acts, start);
     let mut doing = runner.step(start, None, &mock.image);
-    while doing != Doing::Done {
+    while doing != RunnerState::Done {
         let answer = match doing {
-            Doing::Wait(instant) => {
+            RunnerState::Wait(instant) => {
                 mock.now = instant;
                 None
             }
-            Doing::Job(_) => {
+            RunnerState::Job(_) => {
                 mock.after(4);
                 Some(done(mock.now))
             }
-            Doing::Busy | Doing::Done | Doing::Trouble(_) => panic!("{doing:?}"),
+            RunnerState::Busy | RunnerState::Done | RunnerState::Trouble(_) => panic!("{doing:?}"),
         };
         doing = runner.step(mock.now, answer.as_ref(), &mock.image);
     }
@@ -379,11 +391,11 @@ fn acts_go_on_once_the_inputs_agree() {
     runner.step(mock.now, None, &mock.image);
     mock.after(5);
     let again = runner.step(mock.now, Some(&done(mock.now)), &mock.image);
-    assert!(matches!(again, Doing::Job(Job::Read(_))), "{again:?}");
+    assert!(matches!(again, RunnerState::Job(Job::Read(_))), "{again:?}");
     mock.set_board(DigitalIn::ProbeChain, true);
     mock.after(5);
     let next = runner.step(mock.now, Some(&done(mock.now)), &mock.image);
-    assert!(matches!(next, Doing::Job(Job::Set(_))), "{next:?}");
+    assert!(matches!(next, RunnerState::Job(Job::Set(_))), "{next:?}");
 }
 
 #[test]
@@ -392,11 +404,11 @@ fn acts_end_where_the_inputs_never_agree() {
     let mut runner = Runner::new(agree_and_arm(&mock), mock.now);
     let mut doing = runner.step(mock.now, None, &mock.image);
     for _ in 0..3 {
-        assert!(matches!(doing, Doing::Job(Job::Read(_))), "{doing:?}");
+        assert!(matches!(doing, RunnerState::Job(Job::Read(_))), "{doing:?}");
         mock.after(5);
         doing = runner.step(mock.now, Some(&done(mock.now)), &mock.image);
     }
-    assert_eq!(doing, Doing::Done);
+    assert_eq!(doing, RunnerState::Done);
     let chain = mock.points.input(DigitalIn::ProbeChain);
     let seen: Vec<bool> = runner.readings.states(chain).collect();
     assert_eq!(seen, [false]);

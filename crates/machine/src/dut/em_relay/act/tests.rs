@@ -5,7 +5,7 @@ use super::{Act, Read};
 use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Counter};
 use crate::dut::em_relay::readings::Readings;
 use crate::handling::tests::MockRig;
-use crate::instrument::act::{self, Doing, Job, JobDone, Runner};
+use crate::instrument::act::{self, Job, JobDone, Runner, RunnerState};
 use dcon::Command;
 use units::{Span, Volt};
 
@@ -31,7 +31,7 @@ fn each_reading_takes_the_transactions_of_its_points() {
     ] {
         let acts = mock.points.wired(vec![Act::Read(read)], &FINE);
         let mut runner = Runner::new(acts, mock.now);
-        let Doing::Job(Job::Read(points)) = runner.step(mock.now, None, &mock.image) else {
+        let RunnerState::Job(Job::Read(points)) = runner.step(mock.now, None, &mock.image) else {
             panic!("{read:?} is no reading");
         };
         let reads = mock.wiring.reads(&points);
@@ -66,7 +66,7 @@ fn readings_follow_the_order_of_their_acts() {
     let mut runner = Runner::new(acts, mock.now);
     let mut doing = runner.step(mock.now, None, &mock.image);
     for n in 0..5_u32 {
-        assert!(matches!(doing, Doing::Job(_)), "{doing:?}");
+        assert!(matches!(doing, RunnerState::Job(_)), "{doing:?}");
         mock.after(4);
         mock.gate(Counter::Gate0, n);
         // The rig reads the second counter only twice.
@@ -82,7 +82,7 @@ fn readings_follow_the_order_of_their_acts() {
         };
         doing = runner.step(mock.now, Some(&done), &mock.image);
     }
-    assert_eq!(doing, Doing::Done);
+    assert_eq!(doing, RunnerState::Done);
     let readings = Readings::of(&runner.readings, &mock.points, None);
     assert!(readings.boards[0].nc_closed && !readings.boards[0].no_closed);
     assert!(!readings.boards[0].probe_chain && readings.boards.len() == 1);

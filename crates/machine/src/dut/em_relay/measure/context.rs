@@ -47,7 +47,7 @@ pub struct Context {
     pub accuracy: AccuracySettings,
     /// Nominal rates of the coarse and the fine ramp at the coil, volts per second.
     pub nominal_v_per_s: [f64; 2],
-    /// Range of the supply; none at factor 1 on a rig whose range nobody has chosen.
+    /// Range of the supply; `None` means factor 1 and no limits.
     pub range: Option<SupplyRange>,
     /// Resistance of the coil's two force contacts, mean over the last parts; `None` before the first part.
     pub probe_contact: Option<Ohm>,

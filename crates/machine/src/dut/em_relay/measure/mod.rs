@@ -54,7 +54,7 @@ use crate::dut::procedure::{MEASURING, Progress, TestProcedure};
 use crate::dut::record::{Own, Stop};
 use crate::dut::{self, Characteristic, Kind};
 use crate::gauge::Judgement;
-use crate::instrument::act::{Doing, JobDone, Runner};
+use crate::instrument::act::{JobDone, Runner, RunnerState};
 use crate::rig::image::Image;
 use crate::rig::sample::CountSample;
 use crate::rig::supply::RangeMismatch;
@@ -219,8 +219,8 @@ impl TestProcedure for Test {
         let mut done = done;
         loop {
             match self.runner.step(now, done.take(), image) {
-                Doing::Done => {}
-                Doing::Trouble(why) => {
+                RunnerState::Done => {}
+                RunnerState::Trouble(why) => {
                     self.abandon(why);
                     if self.stage == Stage::Off {
                         return Progress::Judged;
@@ -229,8 +229,8 @@ impl TestProcedure for Test {
                     self.stages.clear();
                     continue;
                 }
-                other @ (Doing::Job(_) | Doing::Busy | Doing::Wait(_)) => {
-                    return Progress::Doing(other);
+                other @ (RunnerState::Job(_) | RunnerState::Busy | RunnerState::Wait(_)) => {
+                    return Progress::Running(other);
                 }
             }
             self.conclude(now);

@@ -79,11 +79,8 @@ impl Expected {
     pub fn certified(context: &Context, track: Celsius, direction: Direction) -> Option<Self> {
         let (part, scale) = (context.teaching.as_ref()?, context.scale());
         let overshoot = context.overshoot(direction);
-        let certified = match direction {
-            Direction::Rising => part.operate_voltage_v,
-            Direction::Falling => part.release_voltage_v,
-        };
-        let at_part = certified.value / to_reference(track, context.reference_temperature());
+        let at_part =
+            part.threshold(direction).value / to_reference(track, context.reference_temperature());
         let sd_v = if overshoot.coarse.parts() == 0 {
             scale.of_coil(FINE_GUESS_SD).0
         } else {

@@ -40,7 +40,7 @@ fn device(limits: &str) -> Device {
     }
 }
 
-/// Tests a part that of `ohm`; `None` reads over range. Returns the test and the number of readings.
+/// Tests a part of `ohm`; `None` reads over range. Returns the test and the number of readings.
 fn tested(limits: &str, ohm: Option<f64>) -> (Procedure, usize) {
     let mut mock = MockRig::at_rest();
     let device = device(limits);
@@ -54,8 +54,8 @@ fn tested(limits: &str, ohm: Option<f64>) -> (Procedure, usize) {
     loop {
         match test.step(mock.now, done.take().as_ref(), &mock.image) {
             Progress::Judged => return (test, reads),
-            Progress::Doing(Doing::Wait(until)) => mock.now = until,
-            Progress::Doing(Doing::Job(job)) => {
+            Progress::Running(RunnerState::Wait(until)) => mock.now = until,
+            Progress::Running(RunnerState::Job(job)) => {
                 if matches!(job, crate::instrument::act::Job::Read(_)) {
                     reads += 1;
                     // Volts at the terminal: full scale reads as over range.
@@ -69,7 +69,7 @@ fn tested(limits: &str, ohm: Option<f64>) -> (Procedure, usize) {
                     trouble: None,
                 });
             }
-            Progress::Doing(Doing::Busy | Doing::Done | Doing::Trouble(_)) => {
+            Progress::Running(RunnerState::Busy | RunnerState::Done | RunnerState::Trouble(_)) => {
                 panic!("a test that waits for nothing")
             }
         }

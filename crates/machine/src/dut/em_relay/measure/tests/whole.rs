@@ -15,7 +15,7 @@ use crate::dut::recipe::KindRecipe;
 use crate::dut::verdict::{Bin, Verdict};
 use crate::gauge::budget::{Budget, Reading};
 use crate::handling::tests::MockRig;
-use crate::instrument::act::{Doing, Job, JobDone};
+use crate::instrument::act::{Job, JobDone, RunnerState};
 use crate::rig::point::Point;
 use crate::rig::sample::Sample;
 use units::{Span, Volt};
@@ -261,7 +261,7 @@ fn fails_at(job: &Job) -> Test {
     let mut done = None;
     for _ in 0..200 {
         match test.step(mock.now, done.take().as_ref(), &mock.image) {
-            Progress::Doing(Doing::Job(requested)) => {
+            Progress::Running(RunnerState::Job(requested)) => {
                 mock.after(4);
                 let trouble = (requested == *job).then(|| "module answers ?AA".to_string());
                 done = Some(JobDone {
@@ -269,11 +269,11 @@ fn fails_at(job: &Job) -> Test {
                     trouble,
                 });
             }
-            Progress::Doing(Doing::Wait(until)) => {
+            Progress::Running(RunnerState::Wait(until)) => {
                 mock.now = until;
                 mock.scan();
             }
-            Progress::Doing(other) => panic!("{other:?}"),
+            Progress::Running(other) => panic!("{other:?}"),
             Progress::Judged => return test,
         }
     }
@@ -406,7 +406,7 @@ fn nothing_is_driven_in_another_supply_range() {
     let mut done = None;
     loop {
         match test.step(mock.now, done.take().as_ref(), &mock.image) {
-            Progress::Doing(Doing::Job(requested)) => {
+            Progress::Running(RunnerState::Job(requested)) => {
                 let drives = |outputs: &[_]| outputs.contains(&(drive, true));
                 assert!(!matches!(&requested, Job::Set(outputs) if drives(outputs)));
                 mock.after(4);
@@ -415,11 +415,11 @@ fn nothing_is_driven_in_another_supply_range() {
                     trouble: None,
                 });
             }
-            Progress::Doing(Doing::Wait(until)) => {
+            Progress::Running(RunnerState::Wait(until)) => {
                 mock.now = until;
                 mock.scan();
             }
-            Progress::Doing(other) => panic!("{other:?}"),
+            Progress::Running(other) => panic!("{other:?}"),
             Progress::Judged => break,
         }
         mock.volts(AnalogIn::CoilCurrentFine, 0.0);
