@@ -10,6 +10,9 @@ use machine::form::{Form, Key, Points, Range};
 use machine::rig::fault::Fault;
 use std::path::PathBuf;
 
+/// Faults in the order of the file, those of missing keys after the others of their table.
+pub type Faults = Vec<ConfigError>;
+
 /// A parsed file.
 #[derive(Debug)]
 pub struct File {
@@ -24,7 +27,14 @@ pub struct File {
 impl File {
     /// Checks every key; fails for the first one that is missing or that `keys` does not allow.
     pub fn check(&self, keys: &[Key]) -> Result<(), ConfigError> {
-        self.table("", &self.root, keys)
+        self.faults(keys).into_iter().next().map_or(Ok(()), Err)
+    }
+
+    /// Returns a fault for every key that is missing or that `keys` does not allow.
+    pub fn faults(&self, keys: &[Key]) -> Faults {
+        let mut faults = Faults::new();
+        self.table("", &self.root, keys, &mut faults);
+        faults
     }
 
     /// Adds file and line to a fault that another module has found.
@@ -84,15 +94,15 @@ impl File {
         label
     }
 
-    fn form(&self, path: &str, node: &Node, form: &Form) -> Result<(), ConfigError> {
+    fn form(&self, path: &str, node: &Node, form: &Form, faults: &mut Faults) {
         match form {
-            Form::Table(keys) => self.table(path, node, keys),
-            Form::Named(entry) => self.named(path, node, (&[], true), entry),
-            Form::NamedWith(names, entry) => self.named(path, node, (names, true), entry),
-            Form::Each(names, entry) => self.named(path, node, (names, false), entry),
-            Form::Points(points) => self.points(path, node, points),
-            Form::List(entry) => self.list(path, node, entry),
-            Form::Numbers(count, range) => self.numbers(path, node, *count, range),
+            Form::Table(keys) => self.table(path, node, keys, faults),
+            Form::Named(entry) => self.named(path, node, (&[], true), entry, faults),
+            Form::NamedWith(names, entry) => self.named(path, node, (names, true), entry, faults),
+            Form::Each(names, entry) => self.named(path, node, (names, false), entry, faults),
+            Form::Points(points) => self.points(path, node, points, faults),
+            Form::List(entry) => self.list(path, node, entry, faults),
+            Form::Numbers(count, range) => self.numbers(path, node, *count, range, faults),
             Form::Text
             | Form::Choice(_)
             | Form::Hex(_)
@@ -100,30 +110,25 @@ impl File {
             | Form::Whole { .. }
             | Form::Listed(_)
             | Form::Flag => {
-                if plain_value_fits(&node.value, form) {
-                    Ok(())
-                } else {
-                    Err(self.value_error(path, node.describe(), form.expected()))
+                if !plain_value_fits(&node.value, form) {
+                    faults.push(self.value_error(path, node.describe(), form.expected()));
                 }
             }
         }
     }
 
-    fn table(&self, path: &str, node: &Node, keys: &[Key]) -> Result<(), ConfigError> {
+    fn table(&self, path: &str, node: &Node, keys: &[Key], faults: &mut Faults) {
         let names: Vec<&str> = keys.iter().map(|key| key.name).collect();
-        for (name, entry) in self.entries(path, node)? {
+        let entries = self.entries(path, node, faults);
+        for (name, entry) in entries {
             match keys.iter().find(|key| key.name == name) {
-                Some(key) => self.form(&join(path, name), entry, &key.form)?,
-                None => return Err(self.unknown(path, name, &names)),
+                Some(key) => self.form(&join(path, name), entry, &key.form, faults),
+                None => faults.push(self.unknown(path, name, &names)),
             }
         }
-        match keys
-            .iter()
-            .find(|key| !key.optional && node.get(key.name).is_none())
-        {
-            Some(missing) => Err(self.missing(path, missing.name, &missing.form)),
-            None => Ok(()),
-        }
+        let needed = keys.iter().filter(|key| !key.optional);
+        let needed = needed.map(|key| (key.name, &key.form));
+        self.needed(path, entries, &names, needed, faults);
     }
 
     /// Checks entries of one form: all of `needed` must exist, others may when names are `free`.
@@ -133,75 +138,83 @@ impl File {
         node: &Node,
         (needed, free): (&[&str], bool),
         form: &Form,
-    ) -> Result<(), ConfigError> {
-        for (name, entry) in self.entries(path, node)? {
+        faults: &mut Faults,
+    ) {
+        let entries = self.entries(path, node, faults);
+        for (name, entry) in entries {
             let own = join(path, name);
             if !free && !needed.contains(&name.as_str()) {
-                return Err(self.unknown(path, name, needed));
-            }
-            if free && !is_plain_name(name) {
+                faults.push(self.unknown(path, name, needed));
+            } else if free && !is_plain_name(name) {
                 let expected = "a name of lower-case letters, digits and underscores".to_owned();
-                return Err(self.value_error(&own, format!("the name \"{name}\""), expected));
+                faults.push(self.value_error(&own, format!("the name \"{name}\""), expected));
+            } else {
+                self.form(&own, entry, form, faults);
             }
-            self.form(&own, entry, form)?;
         }
-        match needed.iter().find(|name| node.get(name).is_none()) {
-            Some(missing) => Err(self.missing(path, missing, form)),
-            None => Ok(()),
-        }
+        let all = needed.iter().map(|name| (*name, form));
+        self.needed(path, entries, needed, all, faults);
     }
 
-    fn points(&self, path: &str, node: &Node, points: &Points) -> Result<(), ConfigError> {
+    fn points(&self, path: &str, node: &Node, points: &Points, faults: &mut Faults) {
         let names = points.names();
-        for (name, entry) in self.entries(path, node)? {
-            if !points.free && !names.contains(&name.as_str()) {
-                return Err(self.unknown(path, name, &names));
+        let entries = self.entries(path, node, faults);
+        for (name, entry) in entries {
+            if points.free || names.contains(&name.as_str()) {
+                self.form(&join(path, name), entry, points.entry, faults);
+            } else {
+                faults.push(self.unknown(path, name, &names));
             }
-            self.form(&join(path, name), entry, points.entry)?;
         }
-        let mut must = points.must.iter();
-        let Some(missing) = must.find(|name| node.get(name).is_none()) else {
-            return Ok(());
-        };
-        // A free name that resembles a missing one is a typing error.
-        let mut others = self.entries(path, node)?.iter().map(|(name, _)| name);
-        let slip = others
-            .find(|name| !names.contains(&name.as_str()) && nearest(name, &[missing]).is_some());
-        Err(match slip {
-            Some(name) => self.unknown(path, name, &names),
-            None => self.missing(path, missing, points.entry),
-        })
+        for missing in points.must.iter().filter(|name| node.get(name).is_none()) {
+            // A free name that resembles a missing one is a typing error.
+            faults.extend(match (points.free, slip(entries, &names, missing)) {
+                (true, Some(name)) => Some(self.unknown(path, name, &names)),
+                (false, Some(_)) => None,
+                (true | false, None) => Some(self.missing(path, missing, points.entry)),
+            });
+        }
     }
 
-    fn list(&self, path: &str, node: &Node, form: &Form) -> Result<(), ConfigError> {
-        let Value::List(items) = &node.value else {
-            return Err(self.value_error(path, node.describe(), "a list".to_owned()));
-        };
-        for (index, item) in items.iter().enumerate() {
-            self.form(&join(path, &index.to_string()), item, form)?;
-        }
-        Ok(())
-    }
-
-    fn numbers(
+    /// Reports each of `needed` that is missing, except where an unknown name resembles it, which is reported already.
+    fn needed<'a>(
         &self,
         path: &str,
-        node: &Node,
-        count: usize,
-        range: &Range,
-    ) -> Result<(), ConfigError> {
-        if !matches!(&node.value, Value::List(items) if items.len() == count) {
-            let expected = Form::Numbers(count, *range).expected();
-            return Err(self.value_error(path, node.describe(), expected));
-        }
-        self.list(path, node, &Form::Number(*range))
+        entries: &[(String, Node)],
+        names: &[&str],
+        needed: impl Iterator<Item = (&'a str, &'a Form)>,
+        faults: &mut Faults,
+    ) {
+        let missing = needed
+            .filter(|(name, _)| !entries.iter().any(|(entry, _)| entry == name))
+            .filter(|(name, _)| slip(entries, names, name).is_none());
+        faults.extend(missing.map(|(name, form)| self.missing(path, name, form)));
     }
 
-    fn entries<'a>(&self, path: &str, node: &'a Node) -> Result<&'a [(String, Node)], ConfigError> {
-        let Value::Table(entries) = &node.value else {
-            return Err(self.value_error(path, node.describe(), "a table".to_owned()));
+    fn list(&self, path: &str, node: &Node, form: &Form, faults: &mut Faults) {
+        let Value::List(items) = &node.value else {
+            return faults.push(self.value_error(path, node.describe(), "a list".to_owned()));
         };
-        Ok(entries)
+        for (index, item) in items.iter().enumerate() {
+            self.form(&join(path, &index.to_string()), item, form, faults);
+        }
+    }
+
+    fn numbers(&self, path: &str, node: &Node, count: usize, range: &Range, faults: &mut Faults) {
+        if matches!(&node.value, Value::List(items) if items.len() == count) {
+            return self.list(path, node, &Form::Number(*range), faults);
+        }
+        let expected = Form::Numbers(count, *range).expected();
+        faults.push(self.value_error(path, node.describe(), expected));
+    }
+
+    /// Returns the entries of a table; reports anything else and returns none.
+    fn entries<'a>(&self, path: &str, node: &'a Node, faults: &mut Faults) -> &'a [(String, Node)] {
+        let Value::Table(entries) = &node.value else {
+            faults.push(self.value_error(path, node.describe(), "a table".to_owned()));
+            return &[];
+        };
+        entries
     }
 
     fn unknown(&self, path: &str, name: &str, known: &[&str]) -> ConfigError {
@@ -219,6 +232,12 @@ impl File {
         };
         self.error_at(path, key, "nothing".to_owned(), form.expected())
     }
+}
+
+/// Returns the unknown name among `entries` that resembles `missing`.
+fn slip<'a>(entries: &'a [(String, Node)], names: &[&str], missing: &str) -> Option<&'a str> {
+    let mut others = entries.iter().map(|(name, _)| name.as_str());
+    others.find(|name| !names.contains(name) && nearest(name, &[missing]).is_some())
 }
 
 /// Returns how many leading names belong to the header of a table: two in `[module.rtd]`, one in `[bus]`.

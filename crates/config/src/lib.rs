@@ -19,6 +19,7 @@ mod card;
 pub mod check;
 mod edit;
 pub mod error;
+mod faults;
 pub mod keys;
 mod lot;
 pub mod nearest;
@@ -37,6 +38,7 @@ mod tests;
 
 pub use card::load_card;
 pub use error::ConfigError;
+pub use faults::{ConfigFaults, check_all};
 pub use overview::overview;
 pub use plant::Plant;
 pub use recipes::{load_recipe, recipe_names};

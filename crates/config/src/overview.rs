@@ -1,17 +1,17 @@
 //! Overview of a checked configuration, as `config check` prints it.
 
-use super::error::ConfigError;
+use super::faults::{ConfigFaults, check_all};
 use super::plant::Plant;
 use super::recipes::{load_recipe, recipe_names};
 use machine::rig::wiring::{LineId, Wiring};
 use std::path::Path;
 
-/// Loads every file and returns a text with a line per file, serial line and recipe.
+/// Checks every file and returns a text with a line per file, serial line and recipe.
 ///
 /// # Errors
-/// Fails with the first fault of the configuration.
-pub fn overview(dir: &Path) -> Result<String, ConfigError> {
-    let plant = Plant::load(dir)?;
+/// Fails with every fault of the configuration.
+pub fn overview(dir: &Path) -> Result<String, ConfigFaults> {
+    let plant = check_all(dir)?;
     let wiring = &plant.wiring;
     let mut lines = vec![format!(
         "{}: {} lines, {} modules",
@@ -60,14 +60,12 @@ fn describe_line(wiring: &Wiring, line: LineId) -> String {
     )
 }
 
-fn describe_recipe(dir: &Path, plant: &Plant, name: &str) -> Result<String, ConfigError> {
+fn describe_recipe(dir: &Path, plant: &Plant, name: &str) -> Result<String, ConfigFaults> {
     let recipe = load_recipe(dir, name)?;
-    plant.admit(&recipe)?;
     let file = dir.join("recipes").join(format!("{name}.toml"));
     let nominal_v = recipe.device.part().nominal_v;
     let reference = match nominal_v.map(|volts| plant.reference_parts.of_nominal(volts).count()) {
         None => "no reference parts needed".to_owned(),
-        Some(0) => "NO REFERENCE PARTS of its coil voltage: a lot cannot be calibrated".to_owned(),
         Some(count) => format!("{count} reference parts"),
     };
     let all = recipe.device.kind().characteristics().len();

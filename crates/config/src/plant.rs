@@ -171,7 +171,7 @@ fn load_reference_parts(path: &Path) -> Result<ReferenceSet, ConfigError> {
 
 /// Loads the scene. The guard checks it: unknown keys, bodies without size, actuators whose stroke is blocked in an empty
 /// rig.
-fn load_scene(path: &Path) -> Result<GuardSettings, ConfigError> {
+pub(super) fn load_scene(path: &Path) -> Result<GuardSettings, ConfigError> {
     let file = File::read(path.to_owned(), "the bodies around the nest")?;
     let settings: GuardSettings =
         toml::from_str(&file.text).map_err(|error| file.type_mismatch(&error))?;
