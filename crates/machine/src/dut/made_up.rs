@@ -1,4 +1,4 @@
-//! Made-up parts of a kind, for trying a history: the scatter of their values, and the signals that a test records.
+//! Made-up parts of a kind, for trying out a history: the scatter of their values, and the signals that a test records.
 
 use super::Characteristic;
 use crate::gauge::Budget;

@@ -20,7 +20,7 @@ pub enum Contact {
 pub enum Finding {
     /// No current through the coil.
     CoilOpen,
-    /// The coil draws more than the current channel reads.
+    /// The coil draws more than the current channel can read.
     CoilCurrentOverRange,
     /// NO is closed without drive.
     NoClosedAtRest,
@@ -28,7 +28,7 @@ pub enum Finding {
     NcOpenAtRest,
     /// NC stays closed at nominal voltage.
     NcDoesNotOpen,
-    /// NO stays open at nominal voltage.
+    /// NO stays open at nominal voltage until the longest wait ends.
     NoDoesNotMake,
     /// NO makes only after the longest wait.
     OperatesTooLate,

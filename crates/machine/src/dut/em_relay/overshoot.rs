@@ -18,7 +18,7 @@ use units::Volt;
 
 /// Prior scatter about the line, volts of a 12 V coil (1 sd): two operations, and the residual of reference parts that lie far apart.
 const SCATTER_V: f64 = 0.004;
-/// Weight of the prior, in parts.
+/// Weight of the prior, in parts: with this many parts learned, prior and parts weigh the same.
 const PRIOR_WEIGHT: f64 = 4.0;
 /// Standard uncertainty of the assumed overshoot of the first part, volts of a 12 V coil.
 const GUESS_SD_V: f64 = 0.05;
@@ -94,13 +94,14 @@ pub struct Predicted {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OvershootModel {
     guess_v: f64,
-    /// Nominal coil voltage relative to 12 V, which the prior is stated for.
+    /// Nominal coil voltage as a multiple of 12 V, for which the prior is stated.
     #[serde(default = "of_12_v")]
     coil: f64,
     parts: u32,
     first: [f64; RESULTS],
-    /// Sums over prior and parts: products of the terms, and of the terms with the overshoot minus the guess.
+    /// Sums over prior and parts: products of the terms with each other.
     products: [[f64; TERMS]; TERMS],
+    /// Sums over prior and parts: products of the terms with the overshoot minus the guess.
     #[serde(rename = "with_lag")]
     with_overshoot: [f64; TERMS],
     squares: f64,
@@ -133,7 +134,7 @@ impl OvershootModel {
         self.parts
     }
 
-    /// Learns from a part with both indications; ignores a part with a missing result.
+    /// Learns from a part that has both indications; ignores a part with a missing result.
     pub fn learn(&mut self, shown: &CoarseResults, fine: Volt) {
         let overshoot_v = (shown.indicated - fine).0;
         let Some(logarithms) = shown.logarithms().filter(|_| overshoot_v.is_finite()) else {
@@ -157,7 +158,7 @@ impl OvershootModel {
         self.parts += 1;
     }
 
-    /// Returns the expected overshoot of a part; with a missing result that of the first part, not `alike`.
+    /// Returns the expected overshoot of a part; for a part with a missing result that of the first part, not `alike`.
     pub fn of(&self, shown: &CoarseResults) -> Predicted {
         let logarithms = shown.logarithms().filter(|_| self.parts > 0);
         let terms = self.terms(logarithms.unwrap_or(self.first));
@@ -220,7 +221,7 @@ impl OvershootModel {
     }
 }
 
-/// Coil of a model that was stored without one.
+/// Returns the coil factor of a model that was stored without one.
 fn of_12_v() -> f64 {
     1.0
 }

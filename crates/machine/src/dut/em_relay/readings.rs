@@ -1,4 +1,4 @@
-//! Readings of a stage by kind: board inputs, scans of the coil, pairs of counters.
+//! Readings of a stage, sorted into board inputs, scans of the coil and pairs of counters.
 
 use super::points::{AnalogIn, Counter, DigitalIn, Points};
 use crate::instrument::readings::Readings as ByPoint;
@@ -10,13 +10,13 @@ use crate::rig::supply::code_of;
 pub struct BoardInputs {
     /// Coil A, coil B, COM, NO, NC: force to sense below 5 ohm.
     pub kelvin: [bool; 5],
-    /// Normally open contact is made.
+    /// True when the normally open contact is closed.
     pub no_closed: bool,
-    /// Normally closed contact is made.
+    /// True when the normally closed contact is closed.
     pub nc_closed: bool,
-    /// The contact source cannot drive its current.
+    /// True when the contact source cannot drive its current.
     pub compliance: bool,
-    /// Probes are up, by the hard-wired chain.
+    /// True when the hard-wired chain reports the probes up.
     pub probe_chain: bool,
     /// Code of the supply range; none on a rig with one range.
     pub range: Option<u8>,
@@ -39,7 +39,7 @@ pub struct CoilScan {
     pub supply: Option<Sample>,
 }
 
-/// All readings of a stage by kind, each in order.
+/// All readings of a stage, sorted by type, each type in order of time.
 #[derive(Debug, Clone, Default)]
 pub struct Readings {
     /// Board inputs.
@@ -59,7 +59,7 @@ pub struct Readings {
 }
 
 impl Readings {
-    /// Sorts the readings of a stage; `before` holds the last counts of the previous stage.
+    /// Sorts the readings of a stage by type; `before` holds the last counts of the previous stage.
     pub fn of(read: &ByPoint, points: &Points, before: Option<[CountSample; 2]>) -> Self {
         let analog = |input| analog(read, points, input);
         let count = |counter| read.counts(points.counter(counter)).cloned();

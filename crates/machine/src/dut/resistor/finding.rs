@@ -41,7 +41,7 @@ impl Finding {
         }
     }
 
-    /// Returns the reason with the names that its text holds.
+    /// Returns the reason with `detail`, the names that its text contains.
     pub fn with(self, detail: impl Into<String>) -> Reason {
         Reason {
             detail: detail.into(),

@@ -12,7 +12,7 @@ use crate::rig::fault::Fault;
 /// Current of the contact source of the board, ampere.
 const CONTACT_SOURCE_A: f64 = 1.0;
 
-/// Returns the limits beyond the reach of the test, with where the reach ends.
+/// Returns a fault for each limit beyond the reach of the test; the fault states where that reach ends.
 pub(super) fn faults(
     recipe: &RelayRecipe,
     limits: &Limits,
@@ -31,8 +31,8 @@ pub(super) fn faults(
     })
 }
 
-/// Returns the highest value that the test can find, in the unit of the parameter, and what ends it; `None` for the coil,
-/// whose current channel is checked by itself.
+/// Returns the highest value that the test can find, in the unit of the parameter, and what sets this bound. `None` for
+/// the coil resistance, whose current channel another check covers.
 fn most(parameter: Parameter, recipe: &RelayRecipe, reach: &Reach) -> Option<(f64, String)> {
     let test = &recipe.test;
     let most = match parameter {

@@ -61,7 +61,7 @@ pub(super) fn coarse_reading(
     predicted.alike.then_some(reading)
 }
 
-/// Returns the threshold from a fine ramp by the overshoot of reference parts, or from both ramps by two rates.
+/// Returns the threshold: from a fine ramp and the overshoot of reference parts, or from both ramps by their two rates.
 pub(super) fn fine_reading(
     context: &Context,
     (ramps, gate): (Ramp, Second),

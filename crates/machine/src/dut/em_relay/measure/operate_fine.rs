@@ -18,10 +18,11 @@ use units::{Span, Volt};
 
 /// First step of the approach, as a fraction of the start of the fine ramp.
 pub(super) const APPROACH: f64 = 0.93;
-/// A fine output up to here stays.
+/// Highest voltage of the fine output that the stage leaves standing instead of taking it to 0.
 const LEFT: Volt = Volt(0.02);
-/// Voltage that the level keeps of an approach, and how much less it may be for the coarse output to stay.
+/// Voltage that the coarse output must leave to the level for the first step of the approach.
 const ROOM: Volt = Volt(0.3);
+/// How far the coarse output may exceed the voltage that the approach leaves room for before the stage lowers it.
 const CLOSE: Volt = Volt(0.05);
 
 pub(super) fn acts(

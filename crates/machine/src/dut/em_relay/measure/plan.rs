@@ -43,8 +43,8 @@ impl Plan {
         }
     }
 
-    /// Returns the interval of the next fine ramp: around the first indication for a repeat. Panics without an
-    /// expectation.
+    /// Returns the interval of the next fine ramp: for a repeat that around the first indication, else the expected
+    /// one. Panics when no stage has set an expectation.
     pub fn interval(&self, record: &TestRecord, direction: Direction, scale: Scale) -> Expected {
         let repeated = record
             .ramp(direction)
