@@ -12,7 +12,7 @@ macro_rules! named {
         impl $kind {
             /// Every variant, in the order of declaration.
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
-            /// Number of variants; [`Self::index`] is below it.
+            /// Number of variants; every [`Self::index`] is below it.
             pub const COUNT: usize = Self::ALL.len();
             /// All names, in the order of [`Self::ALL`].
             pub const NAMES: &'static [&'static str] = &[$($name),+];

@@ -42,11 +42,11 @@ pub struct Blocked {
     pub at_fraction: f64,
     /// Place of the contact, mm.
     pub at: [f64; 3],
-    /// The last clear pose, mm of the stroke: the guard clears the stroke up to here, and to at most a hundredth of a
-    /// millimetre more. An actuator that can stop on its way may move here, and one that stopped beyond may back-track
-    /// to here. `None` when the start is blocked or unknown.
+    /// The last clear pose, mm of the stroke: the guard clears the stroke up to here, and refuses it at most a
+    /// hundredth of a millimetre further on. An actuator that can stop on its way may move here, and one that stopped
+    /// beyond may back-track to here. `None` when the start is blocked or unknown.
     pub last_clear_mm: Option<f64>,
-    /// Action that would make the motion possible: "raise sort z".
+    /// Action that would make the motion possible, for example "raise sort z".
     pub would_help: String,
 }
 
@@ -112,7 +112,7 @@ impl Blocked {
     }
 }
 
-/// Returns the words of the shop floor for an id.
+/// Returns the shop-floor words for an id.
 pub(super) fn words(id: &str) -> String {
     match id {
         "part_feed" => "the part coming from the magazine".to_owned(),

@@ -13,7 +13,7 @@ struct Allowed {
     by: Option<[bool; 8]>,
 }
 
-/// The table, by body number of the scene.
+/// The permissions of all pairs, indexed by the body numbers of the scene.
 #[derive(Debug, Clone)]
 pub(super) struct Rules {
     allowed: Vec<Allowed>,

@@ -1,6 +1,6 @@
 //! The feeder: steps pocket, nests, gripper and bins once per turn.
 //!
-//! Steps the sorter first and the feed last, so that a place is free before the next part moves there.
+//! The feeder steps the sorter first and the feed last, so that a place is free before the next part moves there.
 
 use super::feed::Feed;
 use super::ledger::Ledger;

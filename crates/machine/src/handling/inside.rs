@@ -74,7 +74,7 @@ impl Inside {
     }
 }
 
-/// Returns true for a sensor that shows a part, and clears it: a signal accounts for one part.
+/// Returns true when the sensor shows a part, and clears its flag: one signal accounts for one part.
 fn claim(seen: &mut bool) -> bool {
     std::mem::take(seen)
 }

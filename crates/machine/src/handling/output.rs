@@ -1,4 +1,4 @@
-//! Commands of a turn to the rig, and events of its parts.
+//! Commands that a turn gives to the rig, and events of parts in that turn.
 
 use super::ledger::Part;
 use super::moves::Move;
@@ -32,7 +32,7 @@ pub struct NestDone {
 pub struct Jog {
     /// The motion.
     pub movement: Move,
-    /// Index of its order among the answers of the turn.
+    /// Index of the order's answer among the answers of the turn.
     pub answer: usize,
 }
 
@@ -56,7 +56,7 @@ pub struct Commands {
     pub safe: bool,
     /// True to discard failed writes and verify every module again.
     pub verify: bool,
-    /// Latest time of the next turn.
+    /// Latest time at which the next turn must begin.
     pub wake_at: Option<RigTime>,
 }
 
@@ -69,7 +69,7 @@ pub struct PartEvents {
     pub interrupted: Vec<Interrupted>,
     /// Parts that left a nest in this turn.
     pub left: Vec<NestExit>,
-    /// Parts confirmed in this turn.
+    /// Parts that a beam confirmed in this turn.
     pub landed: Vec<Landed>,
 }
 

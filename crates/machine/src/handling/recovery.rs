@@ -130,7 +130,7 @@ impl Recovery {
         }
     }
 
-    /// Leaves fingers closed that hold a part; the axis takes it to its bin from its present position.
+    /// Keeps fingers closed that hold a part; the axis takes the part to its bin from its present position.
     fn leave_gripped(&mut self, ledger: &Ledger) {
         if ledger.holds(Place::Gripper) {
             self.left

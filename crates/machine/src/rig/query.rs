@@ -7,7 +7,7 @@ use dcon::{Channel, Command, DataFormat, Digital, InputForm, OutputForm, UpTo};
 use std::collections::BTreeSet;
 
 impl Module {
-    /// Returns the format of its readings; `None` unless it measures.
+    /// Returns the format of the module's readings; `None` unless it measures.
     pub fn input_form(&self) -> Option<InputForm> {
         let format = self.format?;
         if self.model.channels(Terminals::AnalogIn) > 0 {
@@ -19,7 +19,7 @@ impl Module {
         }
     }
 
-    /// Returns the format of its levels; `None` unless it has an analog output.
+    /// Returns the format of the module's levels; `None` unless it has an analog output.
     pub fn output_form(&self) -> Option<OutputForm> {
         if self.model.channels(Terminals::AnalogOut) == 0 {
             return None;
@@ -149,7 +149,8 @@ impl Wiring {
         Digital::ReadEvents { channel }.to(self.module(module).address)
     }
 
-    /// Returns the command that clears a digital input's event counter. Prefer differences modulo 65536.
+    /// Returns the command that clears a digital input's event counter. Prefer the difference of two counts modulo
+    /// 65536.
     pub fn clear_events(&self, point: impl Into<DigitalInput>) -> Command {
         let Terminal {
             module, channel, ..

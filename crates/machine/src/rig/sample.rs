@@ -19,7 +19,8 @@ pub struct Origin {
     pub command: Command,
     /// The reply as received, lead included; checksum and CR only if the line passes them on.
     pub raw: Arc<str>,
-    /// Time of the request. The conversion may be older by its conversion time, and is never newer than the reply.
+    /// Time of the request. The converted voltage may be older by the time of one conversion, and is never newer than
+    /// the reply.
     pub at: RigTime,
 }
 

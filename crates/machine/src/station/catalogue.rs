@@ -7,7 +7,7 @@ use crate::rig::stroke::ActuatorKey;
 use std::fmt;
 use texts::{Args, Lang, Message};
 
-/// Reaction of the machine to an alarm.
+/// Reaction of the machine to an alarm; each line says what the machine does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reaction {
     /// Makes the outputs safe at once.
@@ -20,14 +20,14 @@ pub enum Reaction {
     Nothing,
 }
 
-/// How the cause of an alarm ends.
+/// What ends the cause of an alarm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ClearedBy {
     /// The sensor that has shown the cause.
     Sensor,
     /// The order `clear`, `unhold` or `reset`.
     Operator,
-    /// The alarm itself: it reports an instant.
+    /// The alarm itself, because it reports an instant.
     Itself,
 }
 
@@ -36,7 +36,7 @@ pub enum ClearedBy {
 pub struct Entry {
     /// Reaction of the machine.
     pub reaction: Reaction,
-    /// How the cause ends.
+    /// What ends the cause.
     pub cleared_by: ClearedBy,
 }
 
@@ -163,7 +163,7 @@ codes! {
     RejectRateLimit = "lot_discard_limit", Hold, Operator;
     /// The contact of the probes at the coil exceeds its limit.
     ProbeContact = "probe_contact", Nothing, Operator;
-    /// Probes or jaws have reached their limit of uses.
+    /// The use count of the probes or the jaws has reached its limit.
     Worn of Wearing = "worn", Nothing, Operator;
     /// The stored calibration is not valid for a lot.
     CalibrationInvalid = "calibration_invalid", Abort, Operator;

@@ -21,9 +21,9 @@ use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
 use units::{RigTime, Span};
 
-/// Debounce time: contacts bounce for some 10 ms, a finger stays for 100.
+/// Debounce time: contacts bounce for some 10 ms, a finger stays down for 100 ms.
 const SETTLED: Span = Span::ms(30);
-/// Time down after which a button counts as stuck.
+/// Time for which a button must be down to count as stuck.
 const HELD: Span = Span::ms(5_000);
 
 /// State of the three buttons.

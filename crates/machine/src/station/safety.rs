@@ -80,7 +80,8 @@ impl Station {
         }
     }
 
-    /// Returns the alarms of the safety inputs: of an open one, and after the first scan of an unread one.
+    /// Returns an alarm for each safety input that is open, and one for an unread input once all have been read before
+    /// or the time for the first scan is over.
     fn safety(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
         let late = now.since(self.machine.began.unwrap_or(now)) > FIRST_SCAN;
         let (mut alarms, mut unread) = (Vec::new(), Vec::new());

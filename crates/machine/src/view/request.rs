@@ -29,7 +29,7 @@ impl OrderRequest {
         }
     }
 
-    /// Makes a request that is refused already and serves the audit trail only; it sends no answer.
+    /// Makes a request that is already refused and serves the audit trail only; it sends no answer.
     pub fn denied(order: Order, by: By, why: String) -> Self {
         Self {
             denied: Some(why),
