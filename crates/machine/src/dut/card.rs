@@ -27,8 +27,8 @@ pub struct Card {
 pub struct Step {
     /// Key of the step's time quota in `card.toml`.
     pub name: &'static str,
-    /// Text of the catalogue with three attributes: `.what` is done, with which `.tooling`, and the `.requirement` on
-    /// sensors.
+    /// Id of the step's text, which has three attributes: `.what` (the action), `.tooling`, and `.requirement` (on
+    /// sensors).
     pub text: TextId,
     /// Drive of the part during the step; empty where it is not driven.
     pub drive: Vec<Piece>,

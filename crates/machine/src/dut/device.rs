@@ -51,7 +51,7 @@ pub struct TestOrder<'a> {
     pub number: u8,
 }
 
-/// Why the rig cannot be calibrated, or does not read as certified.
+/// Why the rig cannot be calibrated, or disagrees with a certificate.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CalibrationFault {
     /// A reference on the interface board does not read as it must.

@@ -116,8 +116,7 @@ impl<T> TestRecord<T> {
         own.map(|(_, reading)| reading)
     }
 
-    /// Returns the result of a characteristic: the mean of its repetitions, whose differences contain the scatter of
-    /// the part.
+    /// Returns the result of a characteristic: the mean of its repetitions, whose scatter enters the uncertainty.
     pub fn result(&self, of: impl Into<Characteristic>) -> Option<Reading> {
         let of = of.into();
         let repetitions: Vec<Reading> = self.each(of).cloned().collect();

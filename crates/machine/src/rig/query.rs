@@ -106,7 +106,7 @@ impl Wiring {
         }
     }
 
-    /// Returns the read of all enabled channels of a converter.
+    /// Returns the command that reads all enabled channels of a converter.
     fn scan(&self, module: ModuleId) -> Command {
         match self.module(module).input_form() {
             Some(form) => dcon::AnalogIn::ReadAll(form).to(self.module(module).address),
@@ -141,7 +141,7 @@ impl Wiring {
         dcon::Counter::Read(number).to(self.module(terminal.module).address)
     }
 
-    /// Returns the read of a digital input's event counter.
+    /// Returns the command that reads a digital input's event counter.
     pub fn read_events(&self, point: impl Into<DigitalInput>) -> Command {
         let Terminal {
             module, channel, ..

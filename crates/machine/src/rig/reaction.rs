@@ -60,8 +60,8 @@ impl Wiring {
         writes.fold(busy, |time, _| time + write)
     }
 
-    /// Returns the age at which the state of the emergency-stop contact expires: the next answer must have come by
-    /// then, after any one transaction between.
+    /// Returns the age at which the state of the emergency-stop contact expires: by then the next answer must have
+    /// come, even after one other transaction in between.
     pub fn emergency_stop_max_age(&self) -> Span {
         let line = self.emergency_stop_line();
         self.confirmed(line) + self.longest_failure(line) + self.confirmed(line)

@@ -169,7 +169,7 @@ codes! {
     CalibrationInvalid = "calibration_invalid", Abort, Operator;
 }
 
-/// Alarms after which the station tests no part before a new calibration.
+/// Alarms after which the station tests no part until it has a new calibration.
 pub const NEEDS_CALIBRATION: [AlarmCode; 2] =
     [AlarmCode::CalibrationFailed, AlarmCode::CalibrationOverdue];
 

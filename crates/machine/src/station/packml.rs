@@ -15,7 +15,7 @@ named! {
         Stopped = "Stopped",
         /// Reads sensors, homes actuators, discharges parts found inside.
         Resetting = "Resetting",
-        /// Homed and empty, waits for a start.
+        /// Homed and empty; waits for a start.
         Idle = "Idle",
         /// Measures the references in the empty nest if there is no calibration.
         Starting = "Starting",
@@ -25,15 +25,15 @@ named! {
         Completing = "Completing",
         /// The lot is done, outputs are safe.
         Complete = "Complete",
-        /// Moves to a point at which the sequence can rest, cause inside the machine.
+        /// Moves to a point at which the sequence can rest; the cause is inside the machine.
         Holding = "Holding",
-        /// At rest, cause inside the machine.
+        /// At rest; the cause is inside the machine.
         Held = "Held",
         /// Checks that parts and actuators are where they were.
         Unholding = "Unholding",
-        /// Moves to a point at which the sequence can rest, cause outside the machine.
+        /// Moves to a point at which the sequence can rest; the cause is outside the machine.
         Suspending = "Suspending",
-        /// At rest, cause outside the machine.
+        /// At rest; the cause is outside the machine.
         Suspended = "Suspended",
         /// Resumes after the cause outside has gone.
         Unsuspending = "Unsuspending",

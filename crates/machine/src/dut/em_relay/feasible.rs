@@ -1,4 +1,4 @@
-//! Checks before any motion that the modules of a rig can perform a recipe, and that its limits are wider than the
+//! Checks, before any motion, that the modules of a rig can perform a recipe, and that its limits are wider than the
 //! guard bands.
 //!
 //! A strategy needs outputs that step or slew, a counter in counting mode and enabled channels.

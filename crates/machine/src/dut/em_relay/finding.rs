@@ -76,7 +76,7 @@ pub enum Finding {
     MadeOutsideWindow,
     /// Every fine ramp missed the event; detail: number of ramps.
     ThresholdNotFound(Direction),
-    /// A search by levels ended without an interval.
+    /// A search by levels ended without an interval that contains the threshold.
     SearchWithoutThreshold(Direction),
 }
 
@@ -121,7 +121,7 @@ impl Finding {
         Self::SearchWithoutThreshold(Direction::Falling),
     ];
 
-    /// Returns code and consequence.
+    /// Returns the code of the finding and its consequence for the part.
     pub fn entry(self) -> Entry {
         use Contact::{Nc, No};
         use Direction::{Falling, Rising};

@@ -40,7 +40,7 @@ const RESULTS: usize = 5;
 /// Number of coefficients: a constant, and a slope for each result.
 const TERMS: usize = RESULTS + 1;
 
-/// Results of a part at the event of its coarse ramp; NaN for a missing one.
+/// Results of a part that are known at the contact event of its coarse ramp; NaN for a missing result.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoarseResults {
     /// Indication of the coarse ramp.

@@ -52,7 +52,7 @@ pub struct Certified {
 pub struct ReferencePart {
     /// Serial number.
     pub serial: String,
-    /// Nominal coil voltage of the recipes that it calibrates.
+    /// Nominal coil voltage of the recipes that the part calibrates, V.
     pub nominal_v: f64,
     /// Operate threshold, V.
     pub operate_voltage_v: Certified,

@@ -22,9 +22,9 @@ use serde::{Deserialize, Serialize};
 pub enum Strategy {
     /// One step to the limit less the guard band.
     Pulse,
-    /// Steps that halve the interval.
+    /// Steps of 20 mV with a dwell, until the contact changes.
     Staircase,
-    /// Steps into a halved interval.
+    /// Trials from rest, each of which halves the interval.
     Bisection,
     /// The coarse ramp alone.
     Ramp,

@@ -27,7 +27,7 @@ impl Finding {
         Self::OtherSupplyRange,
     ];
 
-    /// Returns code and consequence.
+    /// Returns the code of the finding and its consequence for the part.
     pub fn entry(self) -> Entry {
         match self {
             Self::Open => {

@@ -46,7 +46,7 @@ impl Device {
     /// Resolves the points of the recipe on a rig.
     ///
     /// # Errors
-    /// Names the first point that the rig lacks.
+    /// Fails with the first point that the rig lacks.
     pub fn new(
         recipe: Arc<Recipe>,
         resistor: &ResistorRecipe,

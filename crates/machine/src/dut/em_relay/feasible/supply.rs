@@ -62,8 +62,8 @@ pub(super) fn faults(recipe: &RelayRecipe, limits: &Limits, reach: &Reach) -> Ve
     faults
 }
 
-/// Returns a fault when the level output does not reach the pre-bias, or the coarse output the height of the coarse
-/// ramp.
+/// Returns a fault when the level output does not reach the pre-bias, and one when the coarse output does not reach the
+/// height of the coarse ramp.
 fn output_faults(
     recipe: &RelayRecipe,
     wiring: &Wiring,

@@ -20,7 +20,7 @@ use units::{Ohm, Span, Volt};
 
 /// Number of channels of the coil converter that a recipe enables.
 const CHANNELS: usize = 2;
-/// Below this fraction of the pre-bias, supply or probe-up chain are faulty, not the coil.
+/// Fraction of the pre-bias below which the supply or the probe-up chain is faulty, not the coil.
 const LEAST_PREBIAS: f64 = 0.5;
 /// Terminal voltage of the fine current channel (0.25 mA) below which the coil counts as open.
 const NO_CURRENT: Volt = Volt(0.15);

@@ -163,7 +163,7 @@ impl Context {
         ASSUMED_FINE.map(|volts| self.scale().of_range(volts).0)
     }
 
-    /// Returns the scale of the constants of this kind for the coil and its range.
+    /// Returns the scale that adapts the constants of this kind to the coil and the supply range.
     pub fn scale(&self) -> Scale {
         let factor = self.range.as_ref().map_or(1.0, |range| range.factor);
         Scale::new(self.relay.part.nominal_v, factor)

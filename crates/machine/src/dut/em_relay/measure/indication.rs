@@ -100,7 +100,7 @@ pub(super) fn fine_reading(
     reading
 }
 
-/// Returns the uncertainty terms of a fine ramp beyond those of the reference parts.
+/// Returns the uncertainty terms of a fine ramp in addition to that of the overshoot found on reference parts.
 fn uncertainty(context: &Context) -> RampUncertainty {
     RampUncertainty {
         slope_v_per_s: context.calibration.fine_v_per_s,

@@ -83,7 +83,7 @@ const SLOW: [Stage; 5] = [
     Stage::ReleaseFine(0),
 ];
 
-/// Longest remaining time of a ramp that the previous test has left running: one over a new interval takes 0.3 s.
+/// Longest remaining time of a ramp that the previous test has left running: a ramp over a new interval takes 0.3 s.
 const CUT_OFF: Span = Span::ms(400);
 
 /// A test under way.

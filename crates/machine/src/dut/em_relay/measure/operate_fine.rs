@@ -20,9 +20,10 @@ use units::{Span, Volt};
 pub(super) const APPROACH: f64 = 0.93;
 /// Highest voltage of the fine output that the stage leaves standing instead of taking it to 0.
 const LEFT: Volt = Volt(0.02);
-/// Voltage that the coarse output must leave to the level for the first step of the approach.
+/// Least voltage that the level output contributes to the first step of the approach; the coarse output contributes at
+/// most the rest.
 const ROOM: Volt = Volt(0.3);
-/// How far the coarse output may exceed the voltage that the approach leaves room for before the stage lowers it.
+/// How far the coarse output may exceed that rest before the stage lowers it.
 const CLOSE: Volt = Volt(0.05);
 
 pub(super) fn acts(
@@ -93,8 +94,8 @@ fn falling(board: BoardState) -> Span {
     }
 }
 
-/// Lowers the coarse output to what the approach leaves room for, and the fine output to 0. The previous ramp has been
-/// falling for `falls` already.
+/// Lowers the coarse output to what the approach leaves room for, and the fine output to 0. The previous ramp falls
+/// until `falls` after the mark.
 fn make_room(context: &Context, supply: &mut Supply, falls: Span, start: Volt) -> Vec<Act> {
     let (mut acts, scale) = (Vec::new(), context.scale());
     let mut wait = Span(0);

@@ -35,7 +35,7 @@ impl Plan {
         }
     }
 
-    /// Returns the interval in which the stages so far expect the event of a direction.
+    /// Returns the interval in which the stages so far expect the contact event of a direction.
     pub fn expected(&self, direction: Direction) -> Option<Expected> {
         match direction {
             Direction::Rising => self.operate,

@@ -54,7 +54,7 @@ pub struct Expected {
 /// Start and length of a fine ramp.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placed {
-    /// Supply before the ramp.
+    /// Supply voltage before the ramp.
     pub start: Volt,
     /// Length of the ramp, positive.
     pub span: Volt,

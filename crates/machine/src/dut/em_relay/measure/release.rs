@@ -28,7 +28,7 @@ const SEAL_TIME: Span = Span::ms(25);
 /// Time for the seal's flux to decay to a few per cent before a fine ramp; the model of the coarse overshoot includes
 /// what remains after [`SETTLES`].
 const FINE_SETTLES: Span = Span::ms(35);
-/// Latest break after the end of a ramp that still counts.
+/// Time after the end of a ramp up to which a break still counts.
 const LATE: Span = Span::ms(12);
 
 /// Seals the armature, steps to the start of the falling ramp and arms. An operated armature is sealed from where it

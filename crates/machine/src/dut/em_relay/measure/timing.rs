@@ -207,8 +207,8 @@ pub(super) fn conclude_operate(
     None
 }
 
-/// Concludes a closure that did not come: the relay is late, or its contact does not move. The coil may be the cause,
-/// so the test measures it before it judges the part.
+/// Concludes a stage in which the contact did not close: the relay is late, or its contact does not move. The coil may
+/// be the cause, so the test measures the coil before it judges the part.
 fn not_made(readings: &Readings, state: &mut TestState) -> Option<Stage> {
     let TestState { plan, record, .. } = state;
     plan.unmoved = match readings.boards.last() {
