@@ -17,7 +17,7 @@ macro_rules! named {
             /// All names, in the order of [`Self::ALL`].
             pub const NAMES: &'static [&'static str] = &[$($name),+];
 
-            /// Returns the name outside the program.
+            /// Returns the name that files, orders and views use.
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$variant => $name),+ }
             }

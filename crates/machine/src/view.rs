@@ -157,7 +157,7 @@ pub struct LineView {
 /// Health of a module, counted since the program started.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct ModuleView {
-    /// Two hexadecimal digits, as on the module.
+    /// Address on the line: two hexadecimal digits, as on the module.
     pub address: String,
     /// Tries, repetitions included.
     pub transactions: u64,

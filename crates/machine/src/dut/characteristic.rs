@@ -21,7 +21,7 @@ pub struct Definition {
     pub key: &'static str,
     /// Unit in which values and limits are written.
     pub unit: Unit,
-    /// What the mean of several readings is the mean of.
+    /// Quantity that the mean of several readings estimates.
     pub mean_of: MeanOf,
     /// Bin for a part that fails this characteristic.
     pub bin: Bin,

@@ -78,7 +78,7 @@ pub enum Judgement {
     Pass,
     /// Outside the limit; under the rule this is certain.
     Fail(Side),
-    /// Within U of the limit: needs the confirmation measurement.
+    /// Within U of the limit, on the side given: confirmation measurements must decide.
     Conditional(Side),
     /// No usable number.
     Void,

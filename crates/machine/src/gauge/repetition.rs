@@ -7,7 +7,7 @@
 
 use super::budget::{Budget, COVERAGE_FACTOR, Reading, Term};
 
-/// What the mean of several readings is the mean of.
+/// Quantity that the mean of several readings estimates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeanOf {
     /// A property of the part: a threshold, the coil. Its readings scatter by the random terms of the budget, or more.

@@ -22,7 +22,8 @@ pub(super) struct Rules {
 }
 
 impl Rules {
-    /// Applies the pairs of `settings`, in order, over the default margin.
+    /// Makes the table from the default margin and the pairs of `settings`, of which a later one overrides an earlier
+    /// one.
     pub fn of(settings: &GuardSettings, ids: &[String]) -> Result<Rules, GuardError> {
         let default = Allowed {
             permission: Permission::Forbidden {

@@ -21,7 +21,7 @@ use std::borrow::Cow;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct FirstContact {
     pub stroke: Stroke,
-    /// Body numbers; `None` when the core could not decide.
+    /// Number of the moving body; the next field is that of the body in its way, `None` when the core could not decide.
     pub mover: usize,
     pub blocker: Option<usize>,
     pub distance_mm: f64,

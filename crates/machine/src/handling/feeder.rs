@@ -86,7 +86,7 @@ impl Feeder {
         sort::confirm(turn, &self.table);
     }
 
-    /// Records that a cleared motion was driven: opening fingers release their part.
+    /// Records that a cleared motion was driven; fingers that open release their part.
     pub fn driven(&mut self, movement: Move, ledger: &mut Ledger, now: RigTime) {
         self.sort = self.sort.driven(movement, ledger, now);
     }

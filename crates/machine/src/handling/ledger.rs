@@ -249,7 +249,7 @@ impl Ledger {
         self.hand_over(Place::Gripper, Place::Nest(nest));
     }
 
-    /// Moves the gripper's part to its fall into `bin`; does nothing for an empty gripper.
+    /// Moves the gripper's part to [`Place::Falling`], over `bin`; does nothing for an empty gripper.
     pub fn drop_over(&mut self, bin: Bin, since: RigTime, beam_before: u32) {
         assert!(self.fall.is_none(), "two parts fall at once");
         if !self.holds(Place::Gripper) {

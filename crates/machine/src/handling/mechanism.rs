@@ -20,7 +20,7 @@ use units::{RigTime, Span};
 
 /// Greatest age of a valid sensor value.
 pub const SENSOR_AGE: Span = Span::ms(400);
-/// Time from the start edge until the drive withdraws "in position".
+/// Time from the rising edge of `axis_drive` until the drive withdraws its signal "in position".
 const AXIS_REACTS: Span = Span::ms(15);
 /// Time that a sensor must show a fault: longer than two scans and the bounce of a reed contact.
 pub const DEBOUNCE: Span = Span::ms(60);
@@ -100,7 +100,7 @@ impl Mechanism {
         &self.strokes
     }
 
-    /// Returns true when every sensor of the end of `movement` shows it and the motion is over.
+    /// Returns true when every sensor at the end of `movement` shows that end and the motion is over.
     pub fn has_arrived(&self, movement: Move, now: RigTime, image: &Image) -> bool {
         if self.is_moving(movement) {
             return false;

@@ -9,7 +9,7 @@ use crate::rig::bin::Bin;
 use crate::rig::point::{DigitalInput, DigitalOut};
 use units::{RigTime, Second};
 
-/// A job for the measuring line on the part of one nest.
+/// A job of the measuring line on the part in one nest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NestJob {
     /// Nest of the measured part.
@@ -39,7 +39,7 @@ pub struct Jog {
 /// Commands to the rig.
 #[derive(Debug, Default)]
 pub struct Commands {
-    /// Motions to clear with the guard and drive.
+    /// Motions that the guard must clear and the rig then carries out.
     pub motions: Vec<Move>,
     /// A manual motion.
     pub jog: Option<Jog>,

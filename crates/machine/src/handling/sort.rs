@@ -101,7 +101,7 @@ impl Sort {
         *self == Sort::AtPart && turn.arrived(Move::SortDown) && turn.arrived(Move::GripperOpen)
     }
 
-    /// Records that a cleared motion was driven: opening fingers release their part.
+    /// Records that a cleared motion was driven; fingers that open release their part.
     pub fn driven(self, movement: Move, ledger: &mut Ledger, now: RigTime) -> Sort {
         match (self, movement) {
             (Sort::LettingGo(bin, before), Move::GripperOpen) => {

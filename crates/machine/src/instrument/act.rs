@@ -42,7 +42,7 @@ pub enum Read {
 }
 
 impl Read {
-    /// Reads these points and keeps no others.
+    /// Returns a read of these points without any retained ones.
     pub fn points(read: impl IntoIterator<Item = Point>) -> Self {
         Self::Points {
             read: read.into_iter().collect(),

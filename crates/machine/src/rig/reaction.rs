@@ -67,8 +67,8 @@ impl Wiring {
         self.confirmed(line) + self.longest_failure(line) + self.confirmed(line)
     }
 
-    /// Returns the age at which a requested input no longer counts as the answer to its request: read and confirmed at
-    /// the last moment.
+    /// Returns the age at which a requested input no longer counts as the answer to its request: the time of a read
+    /// that is confirmed at the last moment.
     pub fn answer_max_age(&self, line: LineId) -> Span {
         self.confirmed(line)
     }

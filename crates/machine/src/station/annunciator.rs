@@ -41,7 +41,7 @@ pub struct ListedAlarm {
     pub first_out: bool,
     /// End of the time for which the alarm is shelved; none while it is not shelved.
     pub shelved_until: Option<RigTime>,
-    /// True for an alarm of an earlier run, whose times do not apply to this one.
+    /// True for an alarm of an earlier run, whose times do not apply to this run.
     pub inherited: bool,
 }
 

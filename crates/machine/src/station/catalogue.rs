@@ -48,7 +48,7 @@ macro_rules! codes {
         pub enum AlarmCode { $($(#[$doc])* $code $(($subject))?,)+ }
 
         impl AlarmCode {
-            /// Every code, with each of its subjects.
+            /// Returns every code, with each of its subjects (actuators or wearing parts).
             pub fn all() -> impl Iterator<Item = Self> {
                 [$(each!($code $($subject)?)),+].concat().into_iter()
             }

@@ -58,7 +58,7 @@ pub enum Refused {
     NoLot,
     /// A part of the lot is still in nest or gripper.
     PartInside,
-    /// Another lot needs a machine at rest; with the command that leads there, if any.
+    /// Another lot needs a machine at rest; holds the state, and the command that leads to rest, if there is one.
     NotAtRest(State, Option<Command>),
     /// The mode can change only at rest.
     ModeLocked(State),
@@ -74,7 +74,7 @@ pub enum Refused {
     NoSuchAlarm,
     /// The guard refuses the motion, for this reason.
     Collision(String),
-    /// The program has refused the order before the station, for this reason.
+    /// The program has refused the order before it reached the station, for this reason.
     Denied(String),
     /// A member of the order has an unknown word.
     UnknownWord {

@@ -35,7 +35,7 @@ struct Button {
     point: DigitalIn,
     /// Last sampled state, and the time of the sample that first showed it.
     seen: Option<(bool, RigTime)>,
-    /// True after a release since its last order, or since the start.
+    /// True when the button has been released since its last order, or since the start.
     armed: bool,
 }
 

@@ -60,7 +60,7 @@ impl Alarm {
         said.unwrap_or_else(|| cause.to_owned())
     }
 
-    /// Returns the text of a refusal because of this alarm.
+    /// Returns the message of a refusal that this alarm causes; the arguments name the alarm.
     pub fn inside(&self, refusal: &'static str) -> Message {
         let args = self.args.clone().with("alarm", self.code.text_id());
         Message::of("refusal", refusal, args)
@@ -109,7 +109,7 @@ impl Alarm {
             .with("place", movement.actuator_key())
     }
 
-    /// Both end sensors of an actuator are on.
+    /// Returns the alarm that both end sensors of an actuator are on.
     pub fn both_ends(movement: Move) -> Self {
         Self::of_a_move(AlarmCode::BothEnds(movement.key()), movement)
             .with("place", movement.actuator_key())

@@ -42,7 +42,7 @@ pub struct Checked {
 }
 
 named! {
-    /// How a run ends, by the name in its summary.
+    /// How a run ends; the summary of the run uses these names.
     Ending {
         /// Every part was judged and binned.
         Complete = "complete",

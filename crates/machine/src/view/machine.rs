@@ -28,7 +28,7 @@ pub struct Machine {
     pub jogs: Vec<MotionView>,
     /// The last motion that the guard refused; null after the next driven one.
     pub refused: Option<MotionView>,
-    /// Wall time spent in each phase of the cycle since the start, seconds.
+    /// Wall time spent in each phase of the cycle since the program started, seconds.
     pub phases_s: BTreeMap<String, f64>,
     /// Counts of strokes, touches and bounces since the program started, by name.
     pub wear: BTreeMap<String, u64>,

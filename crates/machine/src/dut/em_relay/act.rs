@@ -35,7 +35,8 @@ pub enum Act {
     Supply(Vec<(AnalogOut, Volt)>),
     /// Reads these inputs once.
     Read(Read),
-    /// Selects the range of the supply with this code; the board takes it once the drive is off and all sources are at zero.
+    /// Selects the range of the supply with this code; the board switches once the drive is off and all sources are at
+    /// zero.
     SelectRange(u8),
     /// Reads the board until it is in the range with this code; if the wait ends first, the runner skips the acts after
     /// this one. A rig with one range reads the board once.

@@ -139,7 +139,7 @@ pub struct Calibration {
     pub simulated: bool,
     /// Nominal coil voltage of the reference parts; the overshoot is valid for this voltage only.
     pub nominal_v: f64,
-    /// Line of the converter that reads the coil.
+    /// Straight line of the converter inputs that read the coil.
     pub coil_input: InputLine,
     /// Ohms per unit of (voltage reading / current reading) on the fine channels.
     pub ohm_fine: Factor,
@@ -148,13 +148,14 @@ pub struct Calibration {
     /// [`Calibration::ohm_fine`] on the high current channel; none on a rig without one.
     #[serde(default)]
     pub ohm_high: Option<Factor>,
-    /// Factor of the supply range; outputs and coil voltage hold for no other.
+    /// Factor of the supply range in which the calibration was made; the lines of outputs and coil voltage hold in no
+    /// other range.
     #[serde(default = "only_range")]
     pub range_factor: f64,
     /// Milliohms per volt of contact drop at the terminal, where the drop is half the difference between both
     /// polarities.
     pub contact_mohm_per_v: Factor,
-    /// Delay of the gates of counters 0 and 1, microseconds; each gate counts longer by it.
+    /// Delays of the gates of counters 0 and 1, microseconds; each gate counts too long by its delay.
     pub gate_delay_us: [Factor; 2],
     /// Supply output for levels.
     pub level: OutputLine,

@@ -3,10 +3,9 @@
 //!
 //! | parameter | is at least |
 //! |---|---|
-//! | operate voltage | the greatest supply command at which NO of the driven coil was still open at the last sample before the next change; stages wait for the end of a ramp |
+//! | operate voltage | the greatest supply command that left NO of the driven coil open, up to the last sample before the next change of a command; stages wait for the end of a ramp |
 //! | operate time | from the drive at nominal voltage to the last sample with NO open |
-//! | operate voltage | the greatest supply command that left NO of the driven coil open, up to the last sample before
-//! the next change of a command; stages wait for the end of a ramp |
+//! | release time | from the last switch-off to the last sample with NC open |
 //!
 //! A bound is neither corrected nor converted to the reference temperature, so it decides only with the margin
 //! [`DOUBT`].

@@ -38,7 +38,7 @@ pub enum Finding {
     AboveCoarseRamp,
     /// The drop of a contact is over range at the full current of the source.
     ContactOverRange(Contact),
-    /// The drop is over range and the source in compliance.
+    /// The drop of a contact is over range, and the source cannot drive its current (compliance).
     ContactOpen(Contact),
     /// COM alone has no Kelvin contact: a misoriented part or a dirty COM probe.
     Misoriented,

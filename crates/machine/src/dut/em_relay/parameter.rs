@@ -21,9 +21,9 @@ pub enum Parameter {
     OperateVoltage,
     /// Quasi-static must-release threshold at the reference temperature.
     ReleaseVoltage,
-    /// Nominal coil voltage applied to first make of NO, bounce excluded.
+    /// Time from the nominal coil voltage applied to the first make of NO, bounce excluded.
     OperateTime,
-    /// Nominal coil voltage removed to first make of NC, bounce excluded.
+    /// Time from the nominal coil voltage removed to the first make of NC, bounce excluded.
     ReleaseTime,
     /// Total open time of NO after its first make.
     OperateBounce,

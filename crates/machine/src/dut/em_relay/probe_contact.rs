@@ -14,7 +14,7 @@
 
 use units::{Ohm, Volt};
 
-/// Parts before the mean counts as a trend; from then on each new part has the weight 1/16.
+/// Number of parts after which the mean counts as a trend; from then on each new part has the weight 1/16.
 const TREND_PARTS: u32 = 16;
 
 /// Returns the resistance of both force contacts in series, when at `command` the pins of `coil` have the voltage

@@ -8,7 +8,7 @@ use crate::rig::supply::code_of;
 /// Inputs of the interface board at one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BoardInputs {
-    /// Coil A, coil B, COM, NO, NC: force to sense below 5 ohm.
+    /// True where force and sense contact of a pin are connected by less than 5 ohm: coil A, coil B, COM, NO, NC.
     pub kelvin: [bool; 5],
     /// True when the normally open contact is closed.
     pub no_closed: bool,
@@ -22,7 +22,8 @@ pub struct BoardInputs {
     pub range: Option<u8>,
 }
 
-/// One scan of the coil converter, currents at the gains of the shipped rig; `None` for a channel outside the scan.
+/// One scan of the coil converter, `None` for a channel outside the scan; the current ranges below hold for the shipped
+/// rig.
 #[derive(Debug, Clone)]
 pub struct CoilScan {
     /// Coil voltage.

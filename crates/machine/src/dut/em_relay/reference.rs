@@ -1,9 +1,9 @@
 //! Calibration against the references on the interface board: 5.000 V, 400 ohm, 50 mOhm, 1.000 ms.
 //!
 //! The calibration runs with an empty nest and the probes up (drive and source need the probe-up chain). It gives the
-//! line of the coil converter, ohms per ratio on each current channel, milliohms per volt of drop, gate delays, gain
-//! and offset of the three supply outputs, and the slope of the fine ramp against the host's clock. The slope of the
-//! coarse ramp stays nominal: this ramp only places the fine one.
+//! straight line of the coil converter's inputs, ohms per ratio on each current channel, milliohms per volt of drop,
+//! gate delays, gain and offset of the three supply outputs, and the slope of the fine ramp against the host's clock.
+//! The slope of the coarse ramp stays nominal: this ramp only places the fine one.
 
 mod check;
 mod fault;
@@ -287,7 +287,7 @@ pub fn conclude(
     })
 }
 
-/// Computes the line of the coil converter from the reference voltage and the scans without drive.
+/// Computes the straight line of the coil converter's inputs from the reference voltage and the scans without drive.
 fn coil_input(
     context: &Context,
     zero: Level,

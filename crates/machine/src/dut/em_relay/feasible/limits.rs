@@ -1,4 +1,4 @@
-//! Limits that a test can reach: beyond them every part would fail, or a bad one would pass.
+//! Limits of a recipe beyond the reach of its test: with them every part would fail, or a bad one would pass.
 
 use super::Reach;
 use super::supply::READABLE_V;

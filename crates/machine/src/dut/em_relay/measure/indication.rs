@@ -34,7 +34,7 @@ pub(super) fn coarse_reading(
     direction: Direction,
 ) -> Option<Reading> {
     let predicted = overshoot.coarse.of(&seen);
-    // The learned scatter includes that of the fine operation, which this value does not have.
+    // The learned scatter includes that of the operation on the fine ramp, of which this value is free.
     let operation_v = context.operation_v();
     let own_v = (predicted.u_v.powi(2) - operation_v.powi(2)).max(operation_v.powi(2));
     let uncertainty = RampUncertainty {

@@ -18,7 +18,7 @@ pub struct Plan {
     release: Option<Expected>,
     /// The search by levels under way.
     pub search: Option<Search>,
-    /// Terminal voltage of the contact drop without current.
+    /// Voltage at the terminal of the contact drop while no current flows.
     pub drop_zero: Option<Volt>,
     /// NC drops of the closures read so far, free of offset.
     pub nc_drops: Vec<Volt>,

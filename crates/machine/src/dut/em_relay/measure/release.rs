@@ -36,7 +36,7 @@ const LATE: Span = Span::ms(12);
 fn seal(context: &Context, board: BoardState, start: Volt) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let seal = supply.step_to(Volt(SEAL * context.relay.part.nominal_v));
-    // Source off: the ramp breaks a contact that other stages have read.
+    // The source is off: the ramp breaks a contact whose resistance other stages have read.
     let falling = [
         (SourceOn, false),
         (SourceReverse, false),

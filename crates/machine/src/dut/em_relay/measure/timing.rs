@@ -113,7 +113,7 @@ fn operated(
     (acts, board)
 }
 
-// ARM rises in the same write as the selection: it clears window and latch, and no selection starts them.
+// ARM rises in the same write as the selection: it clears window and latch, so that the selection starts neither.
 
 /// Waits for the contact event and marks it; bounce, window and source settle after that mark.
 fn until_made() -> [Act; 2] {
@@ -127,7 +127,8 @@ fn until_made() -> [Act; 2] {
 }
 
 /// Reads the gates after the window has closed, then the forward drop. The source is on before the contact makes and
-/// drives it after 5 ms of closure, in the direction of the contact monitor, so that gate 1 counts no opening.
+/// drives current through it after 5 ms of closure, in the direction of the contact monitor, so that gate 1 counts no
+/// opening.
 fn drop_of_closure(context: &Context) -> [Act; 6] {
     [
         Act::WaitSinceMark(WINDOW_AFTER_LATCH),

@@ -173,7 +173,8 @@ impl Search {
     }
 }
 
-/// Returns the interval that the range of coarse overshoots leaves; `None` without a coarse ramp.
+/// Returns the interval of the threshold, from the coarse indication less the largest and the smallest overshoot;
+/// `None` without a coarse ramp.
 fn overshot(context: &Context, record: &TestRecord, direction: Direction) -> Option<(Volt, Volt)> {
     let indicated = record.ramp(direction)?.coarse.indicated;
     let overshoot_v = context
