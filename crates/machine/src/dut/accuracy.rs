@@ -38,7 +38,8 @@ pub struct AccuracySettings {
 const SCATTERING_COIL_V: f64 = 12.0;
 
 impl AccuracySettings {
-    /// Returns the standard deviation of a threshold from operation to operation, volts, for a coil of this nominal voltage.
+    /// Returns the standard deviation of a threshold from operation to operation, volts, for a coil of this nominal
+    /// voltage.
     pub fn operation_v(&self, nominal_v: f64) -> f64 {
         self.operation_scatter_mv / 1e3 * nominal_v / SCATTERING_COIL_V
     }

@@ -1,7 +1,7 @@
 //! Characteristics (measured quantities) of every kind of device, as data.
 //!
-//! A kind declares its own in one table of [`Definition`]s; [`Characteristic`] is the closed enum over them. The key is the
-//! same in recipes, rows, files and API.
+//! A kind declares its own in one table of [`Definition`]s; [`Characteristic`] is the closed enum over them. The key is
+//! the same in recipes, rows, files and API.
 
 use super::Kind;
 use super::verdict::Bin;

@@ -146,8 +146,8 @@ pub trait DeviceUnderTest {
         panic!("{NO_REFERENCE_PARTS}: {serial}")
     }
 
-    /// Returns the resistance of the probes in series with the part, mean over the last parts of the lot; none before the
-    /// first part.
+    /// Returns the resistance of the probes in series with the part, mean over the last parts of the lot; none before
+    /// the first part.
     fn probe_contact(&self) -> Option<Ohm> {
         None
     }

@@ -27,7 +27,8 @@ impl From<&ReferencePart> for Certificate {
     }
 }
 
-/// Returns every factor of a stored calibration; none when another program wrote it in a form that this one does not read.
+/// Returns every factor of a stored calibration; none when another program wrote it in a form that this one does not
+/// read.
 pub fn factors(calibration: serde_json::Value) -> Vec<Named> {
     let read = serde_json::from_value::<Calibration>(calibration);
     read.map_or_else(|_| Vec::new(), |it| it.facts().factors)

@@ -4,7 +4,8 @@ use super::Characteristic;
 use crate::gauge::Budget;
 use crate::instrument::trace::Signal;
 
-/// Statistics of made-up parts of a recipe; a mean that the recipe does not state is that of the default simulated world.
+/// Statistics of made-up parts of a recipe; a mean that the recipe does not state is that of the default simulated
+/// world.
 #[derive(Debug, Clone)]
 pub struct MadeUp {
     /// Scatter of each characteristic, in the order of reports.

@@ -1,7 +1,7 @@
 //! Devices under test: what a part is, how it is measured and judged.
 //!
-//! A kind of device is one folder. The rest of the program knows [`Recipe`], [`Characteristic`], [`Judgement`], [`Reason`]
-//! and [`Verdict`], never a kind.
+//! A kind of device is one folder. The rest of the program knows [`Recipe`], [`Characteristic`], [`Judgement`],
+//! [`Reason`] and [`Verdict`], never a kind.
 
 pub mod accuracy;
 pub mod calibration;

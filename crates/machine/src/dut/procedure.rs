@@ -63,8 +63,8 @@ pub trait TestProcedure {
         }
     }
 
-    /// Returns the selected supply range and the one that was read back, once they differ: trouble of the rig, not of the
-    /// part.
+    /// Returns the selected supply range and the one that was read back, once they differ: trouble of the rig, not of
+    /// the part.
     fn range_mismatch(&self) -> Option<&RangeMismatch>;
 
     /// Returns the verdict of the part.

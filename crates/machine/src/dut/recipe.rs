@@ -79,8 +79,8 @@ pub trait KindRecipe {
         stored: Option<Calibration>,
     ) -> Result<Device, MissingPoint>;
 
-    /// Returns every reason why the rig cannot perform the recipe: points, bins and references that `rig.toml` lacks, keys that
-    /// ask too much of a module, limits beyond the reach of the test or closer than its uncertainty.
+    /// Returns every reason why the rig cannot perform the recipe: points, bins and references that `rig.toml` lacks,
+    /// keys that ask too much of a module, limits beyond the reach of the test or closer than its uncertainty.
     fn infeasible(&self, limits: &Limits, rig: &Rig) -> Vec<Fault>;
 
     /// Returns the demand of the test on the supply.
@@ -131,8 +131,8 @@ pub struct PartFacts {
     pub pin_length_mm: f64,
     /// Temperature to which results are converted.
     pub reference: Celsius,
-    /// Nominal voltage that a calibration and its reference parts must share with the part, V; none for a kind that needs
-    /// neither.
+    /// Nominal voltage that a calibration and its reference parts must share with the part, V; none for a kind that
+    /// needs neither.
     pub nominal_v: Option<f64>,
 }
 
@@ -185,7 +185,8 @@ impl Recipe {
         self.device.infeasible(&self.limits, rig)
     }
 
-    /// Returns the wiring in the smallest range of the supply that serves the recipe, which must not be [infeasible](Self::infeasible).
+    /// Returns the wiring in the smallest range of the supply that serves the recipe, which must not be
+    /// [infeasible](Self::infeasible).
     ///
     /// # Errors
     /// Fails with the key that asks more of the supply than any range gives.

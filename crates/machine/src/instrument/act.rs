@@ -91,8 +91,8 @@ pub enum Act {
         /// Longest wait.
         within: Span,
     },
-    /// Reads a word until inputs have these states; if they do not within the time, the runner skips the acts after this
-    /// one.
+    /// Reads a word until inputs have these states; if they do not within the time, the runner skips the acts after
+    /// this one.
     Agree {
         /// The inputs, all of the word, each with its state.
         expected: Vec<(DigitalInput, bool)>,

@@ -1,7 +1,7 @@
 //! Ranges of the supply: an amplifier whose gain two outputs of the rig select and two inputs read back.
 //!
-//! The gains in `config/rig.toml` hold at factor 1. A lot runs in one range: [`Wiring::in_range`] returns the wiring with
-//! the gains of that range, so that levels, readings and rates need no range of their own.
+//! The gains in `config/rig.toml` hold at factor 1. A lot runs in one range: [`Wiring::in_range`] returns the wiring
+//! with the gains of that range, so that levels, readings and rates need no range of their own.
 
 use super::fault::Fault;
 use super::point::{DigitalInput, DigitalOutput};

@@ -1,11 +1,12 @@
 //! The station: takes the rig through a lot. This page is its specification.
 //!
-//! `Station::step(now, inputs) -> TurnOutput` is a function of its state and arguments: no clock, no I/O, no `async`. The
-//! caller may call it at any time; the states hold the deadlines.
+//! `Station::step(now, inputs) -> TurnOutput` is a function of its state and arguments: no clock, no I/O, no `async`.
+//! The caller may call it at any time; the states hold the deadlines.
 //!
 //! The state machine of the whole rig, around those of feed, nest and sorter, is [`packml`]: names of ISA-TR88.00.02
 //! (PackML). `states` performs its states, `answers` answers orders.
-//! 1. `Resetting`: [`crate::handling::recovery`] brings every actuator to its rest end and discharges what is found inside;
+//! 1. `Resetting`: [`crate::handling::recovery`] brings every actuator to its rest end and discharges the parts found
+//!    inside;
 //! 2. `Starting`: without a valid calibration the probes rise in the empty nest and the station measures the
 //!    references;
 //! 3. `Execute`: reference parts when there is no calibration, then the lot behind its [`gates`], through the
@@ -16,8 +17,8 @@
 //! cause is gone and a person has acknowledged it. After `clear` and `reset` the station continues; a part inside is
 //! void, "interrupted". A stale sensor raises an alarm; the station never guesses its state.
 //!
-//! A run ends with its lot, or when a person leaves the lot for another one. Unattended ([`Plan::attended`] is false) it
-//! also ends with an alarm that needs a person. The station resets and starts a lot by itself; between lots
+//! A run ends with its lot, or when a person leaves the lot for another one. Unattended ([`Plan::attended`] is false)
+//! it also ends with an alarm that needs a person. The station resets and starts a lot by itself; between lots
 //! ([`Plan::between_lots`]) it acts only on orders.
 
 mod activity;

@@ -30,7 +30,8 @@ pub struct Device {
     context: Context,
     certificates: Vec<ReferencePart>,
     reference_parts: ReferenceRun,
-    /// Models of the coarse overshoot, operate and release, learned from reference parts and from every part that passes.
+    /// Models of the coarse overshoot, operate and release, learned from reference parts and from every part that
+    /// passes.
     coarse: (OvershootModel, OvershootModel),
     /// The same models, learned from parts of this lot alone.
     of_lot: (OvershootModel, OvershootModel),

@@ -32,8 +32,8 @@ const SLOW_CONVERSIONS_PER_S: f64 = 10.0;
 /// Type code of an I-7080 in counting mode; 51 is frequency mode.
 const COUNTS: u8 = 0x50;
 
-/// Returns every reason why the rig cannot perform the recipe, each with its key: missing references, bins or points first,
-/// then what the supply, the modules or the uncertainty forbid.
+/// Returns every reason why the rig cannot perform the recipe, each with its key: missing references, bins or points
+/// first, then what the supply, the modules or the uncertainty forbid.
 pub fn faults(recipe: &RelayRecipe, limits: &Limits, rig: &Rig) -> Vec<Fault> {
     let references = check_references(recipe.part.nominal_v, rig);
     let mut faults = Vec::from_iter(references.err());

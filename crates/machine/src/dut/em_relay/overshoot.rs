@@ -16,16 +16,17 @@
 use serde::{Deserialize, Serialize};
 use units::Volt;
 
-/// Prior scatter about the line, volts of a 12 V coil (1 sd): two operations, and the residual of reference parts that lie far apart.
+/// Prior scatter about the line, volts of a 12 V coil (1 sd): two operations, and the residual of reference parts that
+/// lie far apart.
 const SCATTER_V: f64 = 0.004;
 /// Weight of the prior, in parts: with this many parts learned, prior and parts weigh the same.
 const PRIOR_WEIGHT: f64 = 4.0;
 /// Standard uncertainty of the assumed overshoot of the first part, volts of a 12 V coil.
 const GUESS_SD_V: f64 = 0.05;
-/// Prior elasticities of the overshoot, percent per percent of a result (mean and 1 sd), in the order of [`CoarseResults`]. A
-/// late armature is heavy: its flight is most of the delay of a rising ramp and half of an operate time. A high
-/// threshold delays an operation independently of mass, hence the negative terms. A falling ramp waits for the flux,
-/// which depends a little on each result.
+/// Prior elasticities of the overshoot, percent per percent of a result (mean and 1 sd), in the order of
+/// [`CoarseResults`]. A late armature is heavy: its flight is most of the delay of a rising ramp and half of an operate
+/// time. A high threshold delays an operation independently of mass, hence the negative terms. A falling ramp waits for
+/// the flux, which depends a little on each result.
 const RISING: [f64; RESULTS] = [-0.8, -0.8, 1.3, 0.0, 0.3];
 const FALLING: [f64; RESULTS] = [0.0; RESULTS];
 const ELASTICITY_SD: f64 = 0.25;
@@ -108,8 +109,8 @@ pub struct OvershootModel {
 }
 
 impl OvershootModel {
-    /// Returns the model before the first part, from a guess of the overshoot in volts; `coil`: nominal coil voltage relative
-    /// to 12 V.
+    /// Returns the model before the first part, from a guess of the overshoot in volts; `coil`: nominal coil voltage
+    /// relative to 12 V.
     pub fn guess(guess_v: f64, coil: f64) -> Self {
         let mut law = Self {
             guess_v,

@@ -1,4 +1,5 @@
-//! The nine characteristics of a relay, as data: a new one needs a variant, a place in [`Parameter::ALL`] and a table row.
+//! The nine characteristics of a relay, as data: a new one needs a variant, a place in [`Parameter::ALL`] and a table
+//! row.
 
 use super::card::CardStep;
 use super::coil::to_reference;

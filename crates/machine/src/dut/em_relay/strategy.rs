@@ -3,8 +3,7 @@
 //! | strategy | acts | gives |
 //! |---|---|---|
 //! | `pulse` | one step to the limit less the guard band | a proof of the limit; without it ramps measure the threshold |
-//! | `staircase` | steps of 20 mV with a dwell, until the contact changes | a value from levels alone: slow, and
-//! decisive in a dispute |
+//! | `staircase` | steps of 20 mV with a dwell, until the contact changes | a value from levels alone: slow, and decisive in a dispute |
 //! | `bisection` | seven trials from rest, each halving the interval | a value to a hundredth of the interval |
 //! | `ramp` | the coarse ramp with the gated counter; for operate the overshoot follows the part's operate time ([`super::overshoot`]) | a value with the scatter of the coarse overshoot |
 //! | `two_rates` | coarse and fine ramp; the law below eliminates the overshoot | a value without reference parts |

@@ -24,7 +24,8 @@ pub(super) fn gate0(context: &Context, readings: &Readings) -> Option<Second> {
     ))
 }
 
-/// Returns the threshold from a coarse ramp by the overshoot model; `None` for a part unlike those that taught the model.
+/// Returns the threshold from a coarse ramp by the overshoot model; `None` for a part unlike those that taught the
+/// model.
 ///
 /// The learned scatter already contains resolution, repeatability and slope error, so the budget does not add them.
 pub(super) fn coarse_reading(

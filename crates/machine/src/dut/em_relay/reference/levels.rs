@@ -9,7 +9,8 @@ use units::Volt;
 const HIGH: Volt = Volt(5.7);
 /// The lower level as a share of the higher one.
 const LOW: f64 = 1.5 / 5.7;
-/// Distance from both ends of the fine ramp within which readings are excluded from the slope, as a share of the higher level.
+/// Distance from both ends of the fine ramp within which readings are excluded from the slope, as a share of the higher
+/// level.
 const SLOPE_MARGIN: f64 = 0.3 / 5.7;
 /// Share of the limits of a supply range that a level uses.
 const USED: f64 = 0.9;
