@@ -30,8 +30,8 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// Returns the verdict of a part with a failure found without limits, together with those against limits, worst bin
-    /// first.
+    /// Returns the verdict of a part with `reason`, a failure that no limit shows, and `others`, failures against
+    /// limits; worst bin first.
     pub fn failed(reason: Reason, mut others: Vec<Reason>) -> Self {
         others.push(reason);
         others.sort_by_key(|reason| rank(reason.bin()));

@@ -34,9 +34,9 @@ pub struct Blocked {
     pub mover: String,
     /// The body in its way.
     pub blocker: String,
-    /// Least distance of the two during the motion, mm; 0 when they meet.
+    /// Least distance between the two bodies during the motion, mm; 0 when they meet.
     pub distance_mm: f64,
-    /// Distance they must exceed, mm; 0 where they may touch.
+    /// Distance that the two bodies must exceed, mm; 0 where they may touch.
     pub margin_mm: f64,
     /// Fraction of the motion at which the margin is reached, 0 to 1; 0 when the start is unknown.
     pub at_fraction: f64,

@@ -82,7 +82,7 @@ pub struct Judged {
     pub verdict: Verdict,
     /// Each result against its limit.
     pub judgements: Vec<(Characteristic, Judgement)>,
-    /// Results, with the replies they came from.
+    /// Results, with the replies from which they came.
     pub record: TestRecord,
     /// Time of the verdict.
     pub at: RigTime,
@@ -110,12 +110,12 @@ pub struct Interrupted {
     pub why: String,
 }
 
-/// A part whose beam has confirmed it.
+/// A part that the beam of its bin has confirmed.
 #[derive(Debug, Clone)]
 pub struct Landed {
     /// Role and numbers of the part.
     pub part: Part,
-    /// Bin whose beam counted it.
+    /// Bin whose beam counted the part.
     pub bin: Bin,
     /// Time of the count.
     pub at: RigTime,

@@ -47,8 +47,8 @@ pub enum Sort {
     Carrying(Bin),
     /// Over the bin since this time.
     OverBin(Bin, RigTime),
-    /// The opening of the fingers is requested; until it is driven the fingers own the part. Holds the beam's count
-    /// before it.
+    /// The opening of the fingers is requested; the fingers own the part until the rig drives that opening. Holds the
+    /// bin, and the count of its beam before the opening.
     LettingGo(Bin, u32),
     /// The fingers open.
     Opening,

@@ -41,7 +41,7 @@ pub enum DriveError {
 /// A write to send.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Write {
-    /// The line to send it on.
+    /// The line on which to send the write.
     pub line: LineId,
     /// The addressed module; the caller passes it to [`Outputs::confirmed`] or [`Outputs::failed`].
     pub module: ModuleId,

@@ -60,7 +60,8 @@ impl Wiring {
     }
 }
 
-/// Returns the level nearest to a share of the supply, and the share it gives. `gain`: supply volts per terminal volt.
+/// Returns the level nearest to a share of the supply, and the share that this level gives. `gain`: supply volts per
+/// terminal volt.
 pub(super) fn nearest_level(
     point: &'static str,
     module: &Module,

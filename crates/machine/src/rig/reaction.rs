@@ -48,7 +48,7 @@ impl Wiring {
         self.emergency_stop_max_age() + made_safe.unwrap_or_default()
     }
 
-    /// Returns the time from the decision to write until the last write on a line.
+    /// Returns the longest time from the decision to make the outputs safe until the last write on a line.
     fn longest_writing(&self, line: LineId) -> Span {
         let busy = match line == self.emergency_stop_line() {
             true => Span(self.longest_failure(line).0 - self.confirmed(line).0),

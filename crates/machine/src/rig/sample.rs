@@ -15,7 +15,7 @@ pub struct Origin {
     pub module: ModuleId,
     /// The channel, from 0.
     pub channel: Channel,
-    /// The command that read it.
+    /// The command that read the sample.
     pub command: Command,
     /// The reply as received, lead included; checksum and CR only if the line passes them on.
     pub raw: Arc<str>,

@@ -7,7 +7,7 @@ use super::packml::State;
 pub enum Activity {
     /// The run is over.
     Ended,
-    /// Waits for the first reading of the safety inputs.
+    /// Waits until the safety inputs are read for the first time.
     WaitingForSensors,
     /// Moves actuators to their rest ends.
     Homing,

@@ -139,7 +139,7 @@ codes! {
     MagazineEmpty = "magazine_empty", Suspend, Sensor;
     /// The beam of a bin stays dark.
     BinFull = "bin_full", Suspend, Sensor;
-    /// A stroke has missed its end; the machine repeats it once.
+    /// A stroke has not reached its end; the machine repeats the stroke once.
     Retried of ActuatorKey = "retried", Nothing, Itself;
     /// A push button stays down.
     ButtonStuck = "button_stuck", Nothing, Sensor;

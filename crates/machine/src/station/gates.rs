@@ -189,7 +189,7 @@ impl Station {
         }
     }
 
-    /// Concludes a reference check; begins it again when it was interrupted or has failed.
+    /// Concludes a reference check; begins the check again when it was interrupted or has failed.
     pub(super) fn check(&mut self, judged: &Judged, serial: &str, outcome: &mut Outcome) {
         if judged.part.interrupted.is_some() {
             return self.begin_check();

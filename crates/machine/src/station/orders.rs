@@ -49,7 +49,7 @@ pub enum Refused {
         order: &'static str,
         /// The mode.
         found: Mode,
-        /// The mode that allows it.
+        /// The mode that allows the order.
         needed: Mode,
     },
     /// Actuators have been jogged since the reset.
@@ -80,7 +80,7 @@ pub enum Refused {
     UnknownWord {
         /// Name of the member.
         member: &'static str,
-        /// Its word; empty when it is missing.
+        /// The unknown word; empty when the member is missing.
         found: String,
         /// Every allowed word.
         known: Vec<&'static str>,

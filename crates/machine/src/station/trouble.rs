@@ -79,7 +79,7 @@ impl Alarm {
         }
     }
 
-    /// Makes an alarm whose text contains that of `fault`, with its arguments.
+    /// Makes an alarm whose text contains the text and the arguments of `fault`.
     fn of_a_fault(code: AlarmCode, fault: &Message) -> Self {
         let args = fault.args().clone().with("fault", fault.code());
         Self { code, args }
@@ -97,7 +97,7 @@ impl Alarm {
             .with("expects", wanted.collect::<Vec<_>>().join(", "))
     }
 
-    /// Returns the alarm that a stroke has not arrived; the machine repeats it once.
+    /// Returns the alarm that a stroke has not arrived; the machine repeats the stroke once.
     pub fn retried(movement: Move, limit: Span) -> Self {
         Self::of_a_move(AlarmCode::Retried(movement.key()), movement)
             .with("limit_ms", limit.0 / 1000)

@@ -78,7 +78,7 @@ pub struct By {
 pub struct AnsweredOrder {
     /// The order.
     pub order: Order,
-    /// The person who gave it.
+    /// The person who gave the order.
     pub by: By,
     /// Reason for the refusal, English; `None` for an accepted order.
     pub refused: Option<String>,

@@ -11,7 +11,7 @@ pub type Answer = Result<(), Message>;
 pub struct OrderRequest {
     /// The order.
     pub order: Order,
-    /// The person who gives it.
+    /// The person who gives the order.
     pub by: By,
     /// Reason for a refusal decided before the station; the request then serves the audit trail only.
     pub denied: Option<String>,

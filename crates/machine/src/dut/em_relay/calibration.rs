@@ -63,7 +63,7 @@ pub struct Overshoot {
     /// Indicated minus certified threshold on the fine ramp, volts; positive for operate, negative for release.
     pub fine_v: Factor,
     /// Mean certified threshold of those parts, volts. [`Overshoot::fine_v`] contains the gain error of the supply at
-    /// this voltage, so a threshold adds uncertainty only in proportion to its distance from it.
+    /// this voltage; for other thresholds, the gain adds uncertainty in proportion to the difference from it.
     #[serde(default)]
     pub at_v: f64,
     /// Mean of coarse minus fine indication of those parts, volts.
@@ -128,7 +128,7 @@ pub struct Overshoots {
     pub release: Overshoot,
 }
 
-/// All factors of a rig with their date, as the history stores them.
+/// All factors of a rig with their dates, as the history stores them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
     /// Time of the measurement, microseconds since 1970 UTC.

@@ -19,7 +19,7 @@ use units::Volt;
 /// Prior scatter about the line, volts of a 12 V coil (1 sd): two operations, and the residual of reference parts that
 /// lie far apart.
 const SCATTER_V: f64 = 0.004;
-/// Weight of the prior, in parts: with this many parts learned, prior and parts weigh the same.
+/// Weight of the prior, as a number of parts.
 const PRIOR_WEIGHT: f64 = 4.0;
 /// Standard uncertainty of the assumed overshoot of the first part, volts of a 12 V coil.
 const GUESS_SD_V: f64 = 0.05;
@@ -30,11 +30,12 @@ const GUESS_SD_V: f64 = 0.05;
 const RISING: [f64; RESULTS] = [-0.8, -0.8, 1.3, 0.0, 0.3];
 const FALLING: [f64; RESULTS] = [0.0; RESULTS];
 const ELASTICITY_SD: f64 = 0.25;
-/// Largest residual that the model learns from, in standard uncertainties: one outlier does not bend the line, and a
-/// wrong line widens until it fits.
+/// Largest residual that counts, in standard uncertainties; a larger one counts as this. So one outlier does not bend
+/// the line, whereas residuals that persist widen the uncertainty until the line bends.
 const OUTLIER: f64 = 3.0;
-/// Greatest squared distance from the parts learned, in standard deviations, and its widening after few parts: one
-/// similar part in two thousand lies further away (Hotelling's T2 of five variates, within a tenth from ten parts on).
+/// Greatest squared distance from the parts learned, in squared standard deviations, and how much wider it is after few
+/// parts: one similar part in two thousand lies further away (Hotelling's T2 of five variates, within a tenth from ten
+/// parts on).
 const MAX_DISTANCE2: f64 = 20.0;
 const WIDER: f64 = 20.0;
 const RESULTS: usize = 5;
@@ -159,7 +160,8 @@ impl OvershootModel {
         self.parts += 1;
     }
 
-    /// Returns the expected overshoot of a part; for a part with a missing result that of the first part, not `alike`.
+    /// Returns the expected overshoot of a part. For a part with a missing result this is the overshoot of the first
+    /// part, and `alike` is false.
     pub fn of(&self, shown: &CoarseResults) -> Predicted {
         let logarithms = shown.logarithms().filter(|_| self.parts > 0);
         let terms = self.terms(logarithms.unwrap_or(self.first));

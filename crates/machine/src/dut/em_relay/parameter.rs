@@ -22,9 +22,9 @@ pub enum Parameter {
     OperateVoltage,
     /// Quasi-static must-release threshold at the reference temperature.
     ReleaseVoltage,
-    /// Time from the nominal coil voltage applied to the first make of NO, bounce excluded.
+    /// Time from switching nominal voltage onto the coil to the first make of NO, bounce excluded.
     OperateTime,
-    /// Time from the nominal coil voltage removed to the first make of NC, bounce excluded.
+    /// Time from taking nominal voltage off the coil to the first make of NC, bounce excluded.
     ReleaseTime,
     /// Total open time of NO after its first make.
     OperateBounce,

@@ -85,7 +85,7 @@ impl ContactSampling {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct CoilSampling {
-    /// Time from the drive until a conversion may begin, ms.
+    /// Time from switching the drive on until a conversion may begin, ms.
     pub settles_ms: u32,
     /// Number of scans that are averaged.
     pub scans: u32,

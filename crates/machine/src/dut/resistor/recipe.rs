@@ -46,7 +46,7 @@ pub struct PartData {
 pub struct TestPlan {
     /// Voltage of the supply across part and probes, V.
     pub level_v: f64,
-    /// Time from the drive until a conversion may begin, ms.
+    /// Time from switching the drive on until a conversion may begin, ms.
     pub settles_ms: u32,
     /// Number of readings that are averaged.
     pub readings: u32,

@@ -175,7 +175,7 @@ impl Context {
         range.filter(|it| it.is_selected()).map(|it| it.code)
     }
 
-    /// Returns how the range that was read back differs from the selected one; none where it does not, or where no
+    /// Returns how the range that was read back differs from the selected one; none when it does not differ, or when no
     /// range was read.
     pub fn range_mismatch(&self, read_back: Option<u8>) -> Option<RangeMismatch> {
         let (range, selector) = (self.range.as_ref()?, self.points.range.as_ref()?);

@@ -35,7 +35,8 @@ pub(super) fn coarse_reading(
     direction: Direction,
 ) -> Option<Reading> {
     let predicted = overshoot.coarse.of(&seen);
-    // The learned scatter includes that of the operation on the fine ramp, of which this value is free.
+    // The learned scatter includes the scatter of the operation on the fine ramp, but this value comes from the coarse
+    // ramp alone.
     let operation_v = context.operation_v();
     let own_v = (predicted.u_v.powi(2) - operation_v.powi(2)).max(operation_v.powi(2));
     let uncertainty = RampUncertainty {

@@ -41,8 +41,7 @@ impl Pace {
         self.times(2.5)
     }
 
-    /// Returns the wait from the second, smaller step to the fine ramp; the swing that remains then is the same on
-    /// reference parts.
+    /// Returns the wait from the second, smaller step to the fine ramp; reference parts have the same remaining swing.
     pub fn settles(self) -> Span {
         self.times(4.2)
     }

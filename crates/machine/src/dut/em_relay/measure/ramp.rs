@@ -39,7 +39,7 @@ const FINE_GUESS_SD: Volt = Volt(0.020);
 /// threshold.
 const TWO_OPERATIONS: Volt = Volt(0.004);
 const TWO_TEMPERATURES: f64 = 0.001;
-/// Width of the next interval relative to the missed one.
+/// Width of the next interval, as a multiple of that of the missed one.
 const WIDER: f64 = 3.0;
 
 /// Interval of indicated voltage that a fine ramp searches for the contact event.
@@ -109,7 +109,7 @@ impl Expected {
         }
     }
 
-    /// Returns an interval of the same width around `end`, for an event after the ramp had stopped there: the gate
+    /// Returns an interval of the same width around `end`, for an event after the ramp had stopped at `end`: the gate
     /// then shows time at rest, not volts.
     pub fn around(&self, end: Volt) -> Self {
         Self {

@@ -26,8 +26,8 @@ use units::{Celsius, Span, Volt};
 const REACH: f64 = 4.5;
 /// Half width for a search that only places a ramp, in standard deviations of the lot.
 const WIDE: f64 = 6.0;
-/// Largest and smallest overshoot of a coarse ramp, as multiples of that of other parts; a dragging hinge causes the
-/// largest.
+/// Largest and smallest overshoot of a coarse ramp, as multiples of the overshoot of usual parts; a dragging hinge
+/// causes the largest.
 const MOST_OVERSHOOT: f64 = 3.5;
 const LEAST_OVERSHOOT: f64 = 0.3;
 /// Lowest level of a search, as a fraction of nominal.
@@ -44,7 +44,7 @@ pub struct Search {
     pub direction: Direction,
     /// Level at which the contact has not changed.
     pub untouched: Volt,
-    /// Level at which it has changed; before any trial the end of the interval.
+    /// Level at which the contact has changed; before any trial the end of the interval.
     pub changed: Volt,
     /// Level of the trial under way.
     pub at: Volt,
