@@ -6,7 +6,7 @@
 pub enum Form {
     /// Text, not empty.
     Text,
-    /// One of these words.
+    /// Text that is one of these words.
     Choice(&'static [&'static str]),
     /// Hexadecimal text, upper case, with this number of digits.
     Hex(usize),
@@ -29,22 +29,22 @@ pub enum Form {
     Numbers(usize, Range),
     /// A table with these keys.
     Table(&'static [Key]),
-    /// A table of entries with free names (lower case, digits, underscore), all of one shape.
+    /// A table of entries with free names (lower case, digits, underscore); all entries have this shape.
     Named(&'static Form),
-    /// A table of entries with free names, among them these, all of one shape.
+    /// A table of entries with free names, which must include these; all entries have this shape.
     NamedWith(&'static [&'static str], &'static Form),
-    /// A table with exactly these names, all of one shape.
+    /// A table with exactly these names; all entries have this shape.
     Each(&'static [&'static str], &'static Form),
     /// A table of points.
     Points(Points),
-    /// A list of entries of one shape.
+    /// A list of entries of this shape.
     List(&'static Form),
 }
 
-/// A table of points of the rig, all of one shape.
+/// A table of points of the rig; all entries have one shape.
 #[derive(Debug, Clone, Copy)]
 pub struct Points {
-    /// Names that every rig has.
+    /// Names that every rig must have.
     pub must: &'static [&'static str],
     /// Names that a rig may lack.
     pub may: fn() -> Vec<&'static str>,
@@ -84,7 +84,7 @@ pub struct Key {
     pub optional: bool,
     /// Shape of its value.
     pub form: Form,
-    /// Part of the program that reads it.
+    /// Part of the program that reads the key.
     pub reader: &'static str,
     /// Meaning of the key, for the schema and the tables.
     pub meaning: &'static str,

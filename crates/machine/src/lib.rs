@@ -1,17 +1,17 @@
 //! The machine without its wires: what the rig is, what it may do, and what it does next.
 //!
-//! Everything here is a pure function of state, time, inputs and orders: no clock, no file, no socket, no log. The crate
-//! `app` reads the inputs, calls [`station`] and drives what comes out.
+//! Everything here is a pure function of state, time, inputs and orders: no clock, no file, no socket, no log. The
+//! crate `app` reads the inputs, calls [`station`] and carries out the commands that it returns.
 //!
 //! Modules in reading order:
 //!
-//! - [`guard`]: clears a motion or refuses it with the distance that is missing.
+//! - [`guard`]: clears a motion, or refuses it and tells how near the bodies would come.
 //! - [`rig`]: points with names instead of addresses; process image; drive.
 //! - [`gauge`]: readings with their uncertainty, judged against limits.
 //! - [`instrument`]: acts on wired points, and what they read.
-//! - [`dut`]: a kind of device is one folder: recipe, calibration, procedure, verdict.
+//! - [`dut`]: devices under test, one folder per kind: recipe, calibration, procedure, verdict.
 //! - [`handling`]: brings parts to the nest and into the bins.
-//! - [`station`]: sequences the whole: outer machine, lot, orders, alarms.
+//! - [`station`]: runs the whole rig: its state machine (PackML), lot, orders, alarms.
 //! - [`view`]: what a screen shows.
 //! - [`form`]: keys that a configuration file may hold.
 

@@ -12,12 +12,12 @@ macro_rules! named {
         impl $kind {
             /// Every variant, in the order of declaration.
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
-            /// Number of variants; [`Self::index`] is below it.
+            /// Number of variants; every [`Self::index`] is below it.
             pub const COUNT: usize = Self::ALL.len();
             /// All names, in the order of [`Self::ALL`].
             pub const NAMES: &'static [&'static str] = &[$($name),+];
 
-            /// Returns the name outside the program.
+            /// Returns the name that files, orders and views use.
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$variant => $name),+ }
             }

@@ -22,7 +22,8 @@ use texts::Args;
 /// The whole state shown on the page.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct View {
-    /// Wall-clock time at which the cycle published this view, at any pace: microseconds since 1970 UTC.
+    /// Wall-clock time at which the cycle published this view, microseconds since 1970 UTC, whatever the pace of rig
+    /// time.
     pub at_us: i64,
     /// True when the rig is simulated.
     pub simulated: bool,
@@ -62,9 +63,9 @@ pub struct View {
     pub limits: BTreeMap<String, [Option<f64>; 2]>,
     /// Active alarms: first-out first, then in order of occurrence.
     pub alarms: Vec<AlarmLine>,
-    /// Lines and their modules, counted since the start.
+    /// Health of the lines and their modules, counted since the program started.
     pub lines: Vec<LineView>,
-    /// Outer machine, buttons, mechanism, signals.
+    /// PackML state, buttons, mechanism, signals.
     pub machine: Machine,
     /// End of the last run of a lot; null before the first.
     pub last_run: Option<RunEnd>,
@@ -77,7 +78,7 @@ pub struct RunEnd {
     pub lot: String,
     /// `complete`, `stopped` or `alarm`.
     pub ended: String,
-    /// Code of the alarm or program fault that ended it; null without one.
+    /// Code of the alarm or program fault that ended the run; null without one.
     pub cause: Option<String>,
     /// Text of the cause, English.
     pub cause_text: Option<String>,
@@ -126,13 +127,13 @@ pub struct AlarmLine {
     pub text_zh: String,
     /// `unacknowledged`, `acknowledged`, `returned`.
     pub state: String,
-    /// True for the first alarm of a sequence.
+    /// True when no other alarm was active before it.
     pub first_out: bool,
     /// Occurrences since the alarm was last normal.
     pub count: u32,
     /// Time of the first occurrence, microseconds since 1970 UTC; null when an earlier run left the alarm.
     pub raised_at_us: Option<i64>,
-    /// True while a shelved alarm is hidden.
+    /// True while the alarm is shelved, that is, hidden until its time is over.
     pub shelved: bool,
     /// Reaction of the station: `abort`, `hold`, `suspend`, `nothing`.
     pub stops: String,
@@ -153,16 +154,16 @@ pub struct LineView {
     pub modules: Vec<ModuleView>,
 }
 
-/// Health of a module, counted since the start.
+/// Health of a module, counted since the program started.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct ModuleView {
-    /// Two hexadecimal digits, as on the module.
+    /// Address on the line: two hexadecimal digits, as on the module.
     pub address: String,
     /// Tries, repetitions included.
     pub transactions: u64,
-    /// Median latency without wire time, at most 19 % too high.
+    /// Median latency without wire time, ms; the figure is at most 19 % too high.
     pub p50_ms: Option<f64>,
-    /// 99th percentile of the latency, at most 19 % too high.
+    /// 99th percentile of the latency, ms; the figure is at most 19 % too high.
     pub p99_ms: Option<f64>,
     /// Tries without a complete reply in time.
     pub time_outs: u64,

@@ -2,42 +2,44 @@
 
 use serde::Deserialize;
 
-/// Accuracies before calibration: half widths, unless a field names a standard deviation.
+/// Accuracies before calibration: half widths, except for fields documented as standard deviations.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct AccuracySettings {
-    /// Gain of analog inputs, % of reading.
+    /// Gain error of analog inputs, % of reading.
     pub ai_gain_pct: f64,
-    /// Offset of analog inputs, % of range.
+    /// Offset error of analog inputs, % of range.
     pub ai_offset_pct_of_range: f64,
     /// Noise of analog inputs, LSB (standard deviation).
     pub ai_noise_lsb: f64,
-    /// Gain of analog outputs, %.
+    /// Gain error of analog outputs, %.
     pub ao_gain_pct: f64,
-    /// Offset of analog outputs, mV at the terminal.
+    /// Offset error of analog outputs, mV at the terminal.
     pub ao_offset_mv: f64,
-    /// Slope of analog outputs, %.
+    /// Error of the slope of an analog output while it ramps, %.
     pub ao_slope_pct: f64,
     /// Time between two steps of an analog output while it ramps, ms.
     #[serde(default = "AccuracySettings::usual_refresh_ms")]
     pub ao_refresh_ms: f64,
-    /// Delay of the counter gates, us.
+    /// Delay of the counter gates, microseconds.
     pub gate_delay_us: f64,
-    /// Thermometers, K (standard deviation).
+    /// Error of the thermometers, K (standard deviation).
     pub rtd_k: f64,
-    /// Part against track, K (standard deviation).
+    /// Difference between the temperatures of part and magazine track, K (standard deviation).
     pub part_minus_track_k: f64,
-    /// Threshold of a coil of [`SCATTERING_COIL_V`] from operation to operation, mV (standard deviation).
+    /// Scatter of a threshold from operation to operation, for a coil of [`SCATTERING_COIL_V`], mV (standard
+    /// deviation).
     pub operation_scatter_mv: f64,
     /// Conversions of an I-7017F in fast mode, all enabled channels together, per second.
     pub conversions_per_s: f64,
 }
 
-/// Nominal voltage of the coils that `operation_scatter_mv` is stated for. The current of a threshold scatters, so its volts
-/// scale with the nominal voltage.
+/// Nominal coil voltage for which `operation_scatter_mv` is stated, V. It is the current of a threshold that scatters,
+/// so the scatter in volts is proportional to the nominal voltage.
 const SCATTERING_COIL_V: f64 = 12.0;
 
 impl AccuracySettings {
-    /// Returns the standard deviation of a threshold from operation to operation, volts, for a coil of this nominal voltage.
+    /// Returns the standard deviation of a threshold from operation to operation, volts, for a coil of this nominal
+    /// voltage.
     pub fn operation_v(&self, nominal_v: f64) -> f64 {
         self.operation_scatter_mv / 1e3 * nominal_v / SCATTERING_COIL_V
     }

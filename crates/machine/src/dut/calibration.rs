@@ -1,10 +1,10 @@
-//! Calibration of a rig for any kind: dates and factors.
+//! Calibration of a rig, whatever kind of device it tests: dates and factors.
 
 use super::em_relay;
 use crate::gauge::factor::Named;
 use serde::{Deserialize, Serialize};
 
-/// Factors of a kind, as the history keeps them.
+/// Calibration factors for one kind of device, as the history stores them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Calibration {
@@ -30,11 +30,11 @@ pub struct CalibrationFacts {
     pub due_at_us: i64,
     /// True on a simulated rig.
     pub is_simulated: bool,
-    /// Nominal voltage of the parts that it holds for, V.
+    /// Nominal voltage of the parts for which the calibration holds, V.
     pub nominal_v: f64,
-    /// Factor of the supply range that it was made in.
+    /// Factor of the supply range in which the calibration was made.
     pub range_factor: f64,
-    /// True when it has everything that the kind needs, reference parts included.
+    /// True when the calibration has every factor that the kind needs, those from reference parts included.
     pub is_complete: bool,
     /// Every measured factor, with its name and unit.
     pub factors: Vec<Named>,

@@ -5,88 +5,89 @@ use super::em_relay;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// Steps of every kind by the names of `card.toml`, in the order of the card.
+/// Names of the steps of every kind, as `card.toml` spells them, in the order of the card.
 pub const STEPS: &[&str] = &em_relay::card::STEPS;
 
-/// Id of a text of the catalogue.
+/// Id of a text in the catalogue (`locale/*.ftl`).
 pub type TextId = &'static str;
 
-/// What the kind says.
+/// The part of the card that the kind of device fills in.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Card {
-    /// What the part is rated, with its heading.
+    /// Rating of the part, preceded by the heading of that line.
     pub rating: (TextId, Vec<Piece>),
     /// What is done to a part, in order.
     pub steps: Vec<Step>,
-    /// Counts that the remarks name.
+    /// Counts that the remarks on the card mention, each with the text of its remark.
     pub counts: Vec<(TextId, u32)>,
 }
 
 /// One line of the card.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
-    /// Key of its time quota in `card.toml`.
+    /// Key of the step's time quota in `card.toml`.
     pub name: &'static str,
-    /// Text of the catalogue: `.what` is done, with which `.tooling`, and the `.requirement` on sensors.
+    /// Id of the step's text, which has three attributes: `.what` (the action), `.tooling`, and `.requirement` (on
+    /// sensors).
     pub text: TextId,
-    /// How the part is driven; empty where it is not.
+    /// Drive of the part during the step; empty where it is not driven.
     pub drive: Vec<Piece>,
-    /// What must come out.
+    /// Requirement on the outcome of the step.
     pub demand: Demand,
 }
 
-/// A piece of a line.
+/// A piece of a line of the card.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Piece {
     /// A figure of the recipe.
     Figure(f64),
-    /// What stands between figures, alike in every language.
+    /// Characters between two figures, the same in every language.
     Literal(&'static str),
-    /// A text.
+    /// A text of the catalogue.
     Text(TextId),
 }
 
-/// What must come out of a step.
+/// Requirement on the outcome of a step.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Demand {
-    /// Sensors report what the text of the step says.
+    /// The sensors must report what the text of the step says.
     Sensors,
-    /// Values lie within the limits of these characteristics.
+    /// The values must lie within the limits of these characteristics.
     Within(Vec<Characteristic>),
 }
 
 /// Planned times of one step, s.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
 pub struct Quota {
-    /// The step itself.
+    /// Time of the step itself.
     pub machine_s: f64,
-    /// Beside it.
+    /// Auxiliary time in addition to `machine_s`.
     pub auxiliary_s: f64,
 }
 
 /// What the plant adds to the recipe, from `card.toml`.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct CardSettings {
-    /// Workshop.
+    /// Name of the workshop.
     pub workshop: String,
     /// Number of the operation in the process.
     pub operation_no: String,
-    /// Type of the rig.
+    /// Model of the rig.
     pub equipment_model: String,
-    /// Its inventory number.
+    /// Inventory number of the rig.
     pub equipment_no: String,
-    /// Number of nest and pin block.
+    /// Inventory number of the fixture (nest and pin block).
     pub fixture_no: String,
-    /// Parts tested at the same time.
+    /// Number of parts tested at the same time.
     pub pieces_at_once: u32,
-    /// Preparing and ending a lot, min.
+    /// Time to prepare and to end a lot, min.
     pub preparation_min: f64,
-    /// Time quota by step.
+    /// Time quotas by name of the step.
     pub quota: BTreeMap<String, Quota>,
 }
 
 impl Step {
-    /// A step of the handling, which drives no part and measures nothing.
+    /// Returns a step of the handling, which drives no part and measures nothing.
     pub fn handling(name: &'static str, text: TextId) -> Self {
         Self {
             name,

@@ -1,7 +1,7 @@
-//! Characteristics of every kind: what is measured, as data.
+//! Characteristics (measured quantities) of every kind of device, as data.
 //!
-//! A kind declares its own in one table of [`Definition`]s; [`Characteristic`] is the closed enum over them. The key is the
-//! same in recipes, rows, files and API.
+//! A kind declares its own in one table of [`Definition`]s; [`Characteristic`] is the closed enum over them. The key is
+//! the same in recipes, rows, files and API.
 
 use super::Kind;
 use super::verdict::Bin;
@@ -21,15 +21,16 @@ pub struct Definition {
     pub key: &'static str,
     /// Unit in which values and limits are written.
     pub unit: Unit,
-    /// Meaning of the mean of several readings.
+    /// Quantity that the mean of several readings estimates.
     pub mean_of: MeanOf,
-    /// Bin of a part that fails this one.
+    /// Bin for a part that fails this characteristic.
     pub bin: Bin,
 }
 
-/// A characteristic of a kind. The defaults suit one that is independent of temperature and that curves do not bound.
+/// A characteristic of one kind of device. The default methods suit one that does not depend on temperature and that
+/// stored curves do not bound.
 pub trait KindCharacteristic {
-    /// Returns its constant data.
+    /// Returns the constant data of the characteristic.
     fn definition(&self) -> &'static Definition;
 
     /// Returns the factor that converts a result at temperature `_from` to `_to`.
@@ -37,8 +38,9 @@ pub trait KindCharacteristic {
         1.0
     }
 
-    /// Returns the lower bound that stored curves of a part without a value prove, in the unit of the key, less the margin
-    /// for what they are not corrected for. `_rated_v`: nominal voltage of the part.
+    /// Returns the lower bound, in the unit of the key, that stored curves prove for a part without a measured value. A
+    /// margin for effects that the curves are not corrected for is subtracted. `_rated_v`: nominal voltage of the part,
+    /// V.
     fn lower_bound(&self, _curves: &[Curve], _rated_v: Option<f64>) -> Option<f64> {
         None
     }
@@ -54,32 +56,32 @@ pub enum Characteristic {
 }
 
 impl Characteristic {
-    /// Every characteristic of every kind.
+    /// Returns every characteristic of every kind.
     pub fn all() -> impl Iterator<Item = Self> {
         Kind::ALL.into_iter().flat_map(Kind::characteristics)
     }
 
-    /// The characteristic with this key.
+    /// Returns the characteristic with this key; none when no kind has it.
     pub fn from_key(key: &str) -> Option<Self> {
         Self::all().find(|it| it.key() == key)
     }
 
-    /// The key, with the unit as suffix.
+    /// Returns the key, with the unit as suffix.
     pub fn key(self) -> &'static str {
         self.definition().key
     }
 
-    /// Its name on pages and paper.
+    /// Returns the name on pages and paper.
     pub fn name(self, lang: Lang) -> &'static str {
         lang.text(&format!("characteristic-{}", self.key()))
     }
 
-    /// The unit in which values and limits are written.
+    /// Returns the unit in which values and limits are written.
     pub fn unit(self) -> Unit {
         self.definition().unit
     }
 
-    /// Bin of a part that fails this one.
+    /// Returns the bin for a part that fails this characteristic.
     pub fn bin(self) -> Bin {
         self.definition().bin
     }

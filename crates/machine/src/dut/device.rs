@@ -1,4 +1,4 @@
-//! The kind under test as the station holds it: recipe, calibration, and what parts have taught.
+//! Kind of device under test, as the station holds it: recipe, calibration, and what it has learned from earlier parts.
 
 use super::accuracy::AccuracySettings;
 use super::calibration::Calibration;
@@ -20,9 +20,9 @@ use units::{Ohm, RigTime};
 pub struct Made {
     /// Microseconds since 1970 UTC.
     pub at_us: i64,
-    /// Life, microseconds.
+    /// How long the calibration is valid, microseconds.
     pub valid_us: i64,
-    /// On the simulated rig: never used on a real one.
+    /// True on the simulated rig; a real rig never uses such a calibration.
     pub simulated: bool,
 }
 
@@ -33,36 +33,37 @@ pub struct Rig<'a> {
     pub wiring: &'a Wiring,
     /// References on the interface board, if it has any.
     pub reference: Option<&'a ReferenceSettings>,
-    /// What the makers promise.
+    /// Accuracies that the makers of the instruments specify.
     pub accuracy: &'a AccuracySettings,
-    /// Parts with a certificate.
+    /// Reference parts, that is, parts with a certificate.
     pub reference_parts: &'a ReferenceSet,
 }
 
 /// How a part is to be tested.
 #[derive(Debug, Clone, Copy)]
 pub struct TestOrder<'a> {
-    /// Every result by confirmation measurements: a first article, or a check against a certificate.
+    /// True when confirmation measurements must give every result: for a first article, or a check against a
+    /// certificate.
     pub thorough: bool,
-    /// Serial number of a reference part while reference parts teach.
+    /// Serial number of the part in the nest while the rig learns from reference parts; none in any other test.
     pub teaching: Option<&'a str>,
-    /// Number of the test of this part, from 1.
+    /// How often this part has been tested, including this test, from 1.
     pub number: u8,
 }
 
-/// Why the rig cannot be calibrated, or does not read as certified.
+/// Why the rig cannot be calibrated, or disagrees with a certificate.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CalibrationFault {
-    /// A reference on the board.
+    /// A reference on the interface board does not read as it must.
     #[error(transparent)]
     Reference(#[from] em_relay::reference::ReferenceFault),
-    /// A reference part.
+    /// A reference part cannot be used, or disagrees with its certificate or with the other parts.
     #[error(transparent)]
     ReferencePart(#[from] em_relay::reference_part::Misfit),
 }
 
 impl CalibrationFault {
-    /// Its text of the family `fault`, with its figures.
+    /// Returns the fault as a text of the family `fault`, with its figures.
     pub fn message(&self) -> Message {
         match self {
             Self::Reference(fault) => fault.message(),
@@ -71,8 +72,8 @@ impl CalibrationFault {
     }
 }
 
-/// A kind of device on a rig: recipe, calibration and what parts have taught. The defaults are those of a kind that needs
-/// no calibration and learns nothing.
+/// A kind of device on a rig: recipe, calibration and what it has learned from parts. The default methods are those of
+/// a kind that needs no calibration and learns nothing.
 pub trait DeviceUnderTest {
     /// Begins the test of the part in the nest; the probes are up.
     fn begin(&self, order: &TestOrder, now: RigTime) -> Procedure;
@@ -100,7 +101,7 @@ pub trait DeviceUnderTest {
     /// Computes the factors from the readings of [`Self::reference_acts`].
     ///
     /// # Errors
-    /// Names the channel or the reference that does not read as it must.
+    /// Fails with the channel or the reference that does not read as it must.
     fn conclude_references(
         &mut self,
         _readings: &Readings,
@@ -112,10 +113,10 @@ pub trait DeviceUnderTest {
     /// Discards the calibration, so that references and reference parts have to be measured again.
     fn forget_calibration(&mut self) {}
 
-    /// Learns from a reference part. With the `last` one the calibration is complete and returned.
+    /// Learns from a reference part. After the part marked `_last` the calibration is complete and returned.
     ///
     /// # Errors
-    /// Says why the part cannot be used, or which one does not fit the others.
+    /// Fails when the part cannot be used, or with the part that does not fit the others.
     fn learn_reference(
         &mut self,
         serial: &str,
@@ -125,32 +126,33 @@ pub trait DeviceUnderTest {
         panic!("{NO_REFERENCE_PARTS}: {serial}")
     }
 
-    /// Completes the calibration with the reference parts measured so far: the last one was interrupted.
+    /// Completes the calibration with the reference parts measured so far, when the measurement of the last one was
+    /// interrupted.
     ///
     /// # Errors
-    /// Says which part does not fit the others, or that there are too few.
+    /// Fails when there are too few parts, or with the part that does not fit the others.
     fn conclude_reference_parts(&mut self) -> Result<Calibration, CalibrationFault> {
         panic!("{NO_REFERENCE_PARTS}")
     }
 
-    /// Learns from a part of the lot, which passes or not.
+    /// Learns from a part of the lot; `_pass` tells whether it passed.
     fn learn(&mut self, _record: &TestRecord, _pass: bool) {}
 
     /// Compares the results of a reference part with its certificate.
     ///
     /// # Errors
-    /// Names the result that does not agree.
+    /// Fails with the result that disagrees with the certificate.
     fn check(&self, serial: &str, _record: &TestRecord) -> Result<(), CalibrationFault> {
         panic!("{NO_REFERENCE_PARTS}: {serial}")
     }
 
-    /// Returns the resistance of the probes in series with the part, mean over the last parts of the lot; none before the
-    /// first part.
+    /// Returns the resistance of the probes in series with the part, mean over the last parts of the lot; none before
+    /// the first part.
     fn probe_contact(&self) -> Option<Ohm> {
         None
     }
 
-    /// Returns the same once it is the mean of enough parts for an alarm.
+    /// Returns [`Self::probe_contact`] once it is the mean of enough parts to raise an alarm on it.
     fn settled_probe_contact(&self) -> Option<Ohm> {
         None
     }

@@ -1,4 +1,4 @@
-//! Findings of every kind: the results of a test that are no figures, as data.
+//! Findings of every kind as data: results of a test that are not figures.
 
 use super::characteristic::Characteristic;
 use super::verdict::Bin;
@@ -12,7 +12,7 @@ pub struct Entry {
     pub code: &'static str,
     /// Bin of a bad part; none for a part that cannot be judged.
     pub bin: Option<Bin>,
-    /// Characteristic and side of the limit that it proves exceeded, if it does.
+    /// Characteristic and side of the limit that the finding proves exceeded, if it proves one.
     pub proves: Option<(Characteristic, Side)>,
 }
 
@@ -58,7 +58,7 @@ impl Finding {
         Kind::ALL.into_iter().flat_map(Kind::findings)
     }
 
-    /// Returns its constant data.
+    /// Returns the constant data of the finding.
     pub fn entry(self) -> Entry {
         match self {
             Self::EmRelay(finding) => finding.entry(),

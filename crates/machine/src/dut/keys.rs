@@ -1,15 +1,15 @@
-//! Keys of a recipe that a kind of device brings, and those that kinds have in common.
+//! Keys of a recipe: those that a kind of device adds, and those that several kinds have in common.
 
 use crate::form::{Form, Key, Range, from_to, key};
 
-/// What three sections of a recipe may hold for one kind.
+/// Keys that three sections of a recipe may have for one kind.
 #[derive(Debug, Clone, Copy)]
 pub struct Sections {
-    /// `[part]`.
+    /// Keys of `[part]`.
     pub part: &'static [Key],
-    /// `[limits]`: a table for each characteristic.
+    /// Keys of `[limits]`: a table for each characteristic.
     pub limits: &'static [Key],
-    /// `[test]`.
+    /// Keys of `[test]`.
     pub test: &'static [Key],
 }
 
@@ -20,7 +20,7 @@ const LENGTH: Range = Range {
     low_allowed: false,
 };
 
-/// Key of `[part]`.
+/// Key of `[part]`: size of the body.
 pub const BODY: Key = key(
     "body_mm",
     Form::Numbers(3, LENGTH),
@@ -28,7 +28,7 @@ pub const BODY: Key = key(
     "body along x, y, z as it lies in the nest",
 );
 
-/// Key of `[part]`.
+/// Key of `[part]`: length of the pins.
 pub const PIN_LENGTH: Key = key(
     "pin_length_mm",
     from_to(0.0, 50.0, "mm"),
@@ -36,7 +36,7 @@ pub const PIN_LENGTH: Key = key(
     "length of the pins below the body",
 );
 
-/// Key of `[part]`.
+/// Key of `[part]`: temperature to which results are converted.
 pub const REFERENCE_TEMPERATURE: Key = key(
     "reference_temperature_c",
     from_to(-40.0, 85.0, "C"),
@@ -44,7 +44,7 @@ pub const REFERENCE_TEMPERATURE: Key = key(
     "temperature that results are converted to",
 );
 
-/// Form of a limit: `low` and `high` from 0 to the second argument in this unit, either of which may be left out.
+/// Form of a limit: `low` and `high`, each from 0 to the second argument in this unit, and either may be left out.
 macro_rules! limit {
     ($unit:literal, $high:literal) => {
         crate::form::Form::Table(&[
@@ -65,7 +65,7 @@ macro_rules! limit {
 }
 pub(crate) use limit;
 
-/// Keys of one table, each on a line of its own.
+/// Keys of one table, written one per line.
 macro_rules! table {
     ($($key:expr;)+) => { &[$($key),+] };
 }

@@ -1,7 +1,7 @@
 //! Devices under test: what a part is, how it is measured and judged.
 //!
-//! A kind of device is one folder. The rest of the program knows [`Recipe`], [`Characteristic`], [`Judgement`], [`Reason`]
-//! and [`Verdict`], never a kind.
+//! A kind of device is one folder. The rest of the program knows [`Recipe`], [`Characteristic`], [`Judgement`],
+//! [`Reason`] and [`Verdict`], never a kind.
 
 pub mod accuracy;
 pub mod calibration;
@@ -35,11 +35,11 @@ pub use verdict::{Bin, Verdict};
 use crate::rig::point::{AnalogInput, Fixture};
 use crate::rig::wiring::Wiring;
 
-/// The points that each kind declares.
+/// The fixture points that each kind declares.
 pub const FIXTURES: &[Fixture] = &[em_relay::points::FIXTURE];
 
-/// Inputs that converters read while the references of any kind are measured. A life of the controller that was cut off
-/// meanwhile leaves their channel mask in the module.
+/// Returns the inputs that converters read while the references of any kind are measured. When the controller was cut
+/// off during that measurement, the channel mask of these inputs is still in the module.
 pub fn reference_inputs(wiring: &Wiring) -> Vec<AnalogInput> {
     em_relay::reference::inputs(wiring)
 }
@@ -61,7 +61,7 @@ pub enum Kind {
 impl Kind {
     /// Every kind, in the order of its declaration.
     pub const ALL: [Self; 2] = [Self::EmRelay, Self::Resistor];
-    /// The names of recipes, in the order of [`Self::ALL`].
+    /// Names of the kinds in recipes, in the order of [`Self::ALL`].
     pub const NAMES: &'static [&'static str] = &[Self::EmRelay.name(), Self::Resistor.name()];
 
     /// Returns the constant data of the kind.
@@ -72,12 +72,12 @@ impl Kind {
         }
     }
 
-    /// Its name in recipes.
+    /// Returns the name of the kind in recipes.
     pub const fn name(self) -> &'static str {
         self.definition().name
     }
 
-    /// The kind of this name.
+    /// Returns the kind with this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|it| it.name() == name)
     }
@@ -87,7 +87,7 @@ impl Kind {
         self.definition().sections
     }
 
-    /// Returns its characteristics, in the order of reports.
+    /// Returns the characteristics of the kind, in the order of reports.
     pub fn characteristics(self) -> Vec<Characteristic> {
         (self.definition().characteristics)()
     }
@@ -98,19 +98,19 @@ impl Kind {
     }
 }
 
-/// What is fixed about a kind.
+/// Constant data of a kind.
 #[derive(Debug, Clone, Copy)]
 pub struct KindDefinition {
-    /// Its name in recipes.
+    /// Name of the kind in recipes.
     pub name: &'static str,
     /// Keys that a recipe may have.
     pub sections: keys::Sections,
     /// Bins of parts that fail, worst first.
     pub bins: &'static [Bin],
-    /// Its characteristics, in the order of reports.
+    /// Returns the characteristics of the kind, in the order of reports.
     pub characteristics: fn() -> Vec<Characteristic>,
-    /// Names of the stages of its test.
+    /// Returns the names of the stages of its test.
     pub stages: fn() -> Vec<&'static str>,
-    /// Findings that only its test has.
+    /// Returns the findings that only a test of this kind has.
     pub findings: fn() -> Vec<Finding>,
 }

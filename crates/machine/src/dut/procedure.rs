@@ -15,7 +15,7 @@ use units::{RigTime, Span};
 /// Progress of a test after a step.
 #[derive(Debug)]
 pub enum Progress {
-    /// The test goes on; the runner of its stage is in this state.
+    /// The test goes on; the state is that of the runner of its stage.
     Running(RunnerState),
     /// The part is judged.
     Judged,
@@ -26,22 +26,22 @@ pub const MEASURING: Span = Span::ms(60_000);
 
 /// A test under way.
 pub trait TestProcedure {
-    /// Goes on as far as it can. `done` answers the job that it asked for before, once.
+    /// Advances the test as far as it can. `done` answers the job that the test asked for before, and is passed once.
     fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress;
 
     /// Returns the kind of the part.
     fn kind(&self) -> Kind;
 
-    /// Returns the number of the test of this part, from 1.
+    /// Returns how often the part has been tested, including this test, from 1.
     fn number(&self) -> u8;
 
     /// Returns the name of the stage under way.
     fn stage(&self) -> &'static str;
 
-    /// Returns why the test ends before its last stage; none while it does not.
+    /// Returns why the test ends before its last stage; none while nothing stops it.
     fn why_stopped(&self) -> Option<&Stop>;
 
-    /// Judges each result by its limit.
+    /// Judges each result against its limit.
     fn judgements(&self) -> Vec<(Characteristic, Judgement)>;
 
     /// Returns the results so far, with the replies behind them.
@@ -55,7 +55,7 @@ pub trait TestProcedure {
         MEASURING
     }
 
-    /// Returns why the part cannot be judged: the rig was in trouble or the part could not be seen.
+    /// Returns why the part cannot be judged: the rig was in trouble, or the test could not measure the part.
     fn why_void(&self) -> Option<&Reason> {
         match self.why_stopped()? {
             Stop::Void(why) | Stop::Trouble(why) => Some(why),
@@ -63,8 +63,8 @@ pub trait TestProcedure {
         }
     }
 
-    /// Returns the selected supply range and the one that was read back, once they differ: trouble of the rig, not of the
-    /// part.
+    /// Returns the selected supply range and the one that was read back, once they differ: trouble of the rig, not of
+    /// the part.
     fn range_mismatch(&self) -> Option<&RangeMismatch>;
 
     /// Returns the verdict of the part.

@@ -1,8 +1,8 @@
-//! Why a part is not a pass: a code with its side and detail.
+//! Why a part does not pass: a code with its side and detail.
 //!
-//! Programs compare codes; a history keeps them, and JSON carries them as `{"code", "param", "side", "detail", "en", "zh"}`.
-//! [`Reason`] prints as the string of rows, files and API, for example `operate_voltage_v high`. The import of a CSV file alone
-//! reads that string back.
+//! Programs compare codes; the history stores them, and JSON carries them as `{"code", "param", "side", "detail", "en",
+//! "zh"}`. [`Reason`] prints as the string used in rows, files and the API, for example `operate_voltage_v high`. Only
+//! the import of a CSV file reads that string back.
 
 use super::characteristic::Characteristic;
 use super::finding::Finding;
@@ -13,38 +13,40 @@ use serde::{Serialize, Serializer};
 use std::fmt;
 use texts::{Lang, Message};
 
-/// What was found.
+/// What a test found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Code {
     /// The value lies outside its limit by more than its uncertainty.
     OutsideLimit(Characteristic),
-    /// The value lies within its uncertainty of the limit, after confirmation measurements too.
+    /// The value lies within its uncertainty of the limit, even after confirmation measurements.
     NotProven(Characteristic),
     /// No usable value.
     NotMeasured(Characteristic),
-    /// The sequence was cut off; detail: the code of an alarm or of an order, a text of the family `interruption`.
+    /// The sequence was cut off; the detail is the code of an alarm or of an order, which has a text in the family
+    /// `interruption`.
     Interrupted,
     /// A line or module failed in the middle of the test; detail: which, and how.
     RigTrouble,
     /// Finding of a test of one kind.
     Finding(Finding),
-    /// A text that has no code: imported, or older than this program knows; detail: the text.
+    /// A text that has no code, because it is imported or written by a version with other codes; the detail is the
+    /// text.
     Unclassified,
 }
 
-/// One reason.
+/// Reason why a part does not pass.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reason {
-    /// What was found.
+    /// What the test found.
     pub code: Code,
-    /// Side of the limit it speaks of, if it speaks of one.
+    /// Side of the limit that the reason concerns, if it concerns a limit.
     pub side: Option<Side>,
-    /// What the text says beside the code: a figure, a pin, a module; may be empty.
+    /// What the text adds to the code: a figure, a pin, a module; may be empty.
     pub detail: String,
 }
 
 impl Reason {
-    /// A reason that its code says whole.
+    /// Returns a reason that has no side and no detail.
     pub fn of(code: Code) -> Self {
         Self::detailed(code, "")
     }
@@ -57,7 +59,7 @@ impl Reason {
         }
     }
 
-    /// A value proven outside its limit.
+    /// Returns the reason for a value proven outside its limit.
     pub fn outside(characteristic: Characteristic, side: Side) -> Self {
         Self {
             side: Some(side),
@@ -65,7 +67,7 @@ impl Reason {
         }
     }
 
-    /// A value that neither lies inside its limit nor outside by its uncertainty.
+    /// Returns the reason for a value that lies within its uncertainty of the limit.
     pub fn not_proven(characteristic: Characteristic, side: Side) -> Self {
         Self {
             side: Some(side),
@@ -73,22 +75,22 @@ impl Reason {
         }
     }
 
-    /// The sequence was cut off by `why`.
+    /// Returns the reason for a sequence that `why` cut off.
     pub fn interrupted(why: &str) -> Self {
         Self::detailed(Code::Interrupted, why)
     }
 
-    /// A line or module failed: `why` names it.
+    /// Returns the reason for a failed line or module, which `why` names.
     pub fn rig_trouble(why: impl Into<String>) -> Self {
         Self::detailed(Code::RigTrouble, why)
     }
 
-    /// A text without a code.
+    /// Returns the reason for a text without a code.
     pub fn unclassified(text: impl Into<String>) -> Self {
         Self::detailed(Code::Unclassified, text)
     }
 
-    /// Bin that this reason alone sends a part to.
+    /// Returns the bin to which this reason alone sends a part.
     pub fn bin(&self) -> Bin {
         match self.code {
             Code::OutsideLimit(characteristic) | Code::NotProven(characteristic) => {
@@ -101,12 +103,12 @@ impl Reason {
         }
     }
 
-    /// True when it proves the part bad.
+    /// Returns true when the reason proves the part bad.
     pub fn is_failure(&self) -> bool {
         self.bin() != Bin::RETEST
     }
 
-    /// The characteristic it speaks of, if it speaks of one.
+    /// Returns the characteristic that the reason concerns, if it concerns one.
     pub fn characteristic(&self) -> Option<Characteristic> {
         match self.code {
             Code::OutsideLimit(it) | Code::NotProven(it) | Code::NotMeasured(it) => Some(it),
@@ -115,8 +117,8 @@ impl Reason {
         }
     }
 
-    /// The reason that a history keeps under the name of its code; none when the name belongs to no code, or needs a
-    /// characteristic that is not there.
+    /// Returns the reason that a history stores under this name of its code; none when no code has the name, or when
+    /// the code needs a characteristic and none is given.
     pub fn stored(
         code: &str,
         characteristic: Option<Characteristic>,
@@ -130,7 +132,7 @@ impl Reason {
         })
     }
 
-    /// Reads a text that came without a code; what has none stays [`Code::Unclassified`].
+    /// Reads a text that came without a code; a text that matches no code becomes [`Code::Unclassified`].
     pub fn from_text(text: &str) -> Self {
         let every = Finding::all()
             .map(Self::from)
@@ -140,7 +142,7 @@ impl Reason {
         found.unwrap_or_else(|| Self::unclassified(text))
     }
 
-    /// Every reason that speaks of the characteristic whose key begins the text.
+    /// Returns every reason that concerns the characteristic whose key begins the text.
     fn of_limits(text: &str) -> Vec<Self> {
         let key = text.split(' ').next().unwrap_or_default();
         let Some(characteristic) = Characteristic::from_key(key) else {
@@ -155,7 +157,7 @@ impl Reason {
         ]
     }
 
-    /// The reason with the detail for which it prints as this text.
+    /// Returns the reason with the detail with which it prints as this text; none when no detail does.
     fn read(self, text: &str) -> Option<Self> {
         const PLACE: &str = "\0";
         let detailed = |detail: &str| Self {
@@ -189,12 +191,12 @@ impl Reason {
         }
     }
 
-    /// What paper says after the name of the characteristic.
+    /// Returns the text that follows the name of the characteristic on paper.
     pub fn text(&self, lang: Lang) -> String {
         self.message().say(lang)
     }
 
-    /// What a page says: the name of the characteristic, and what is wrong with it in a word.
+    /// Returns the short text for a page: the name of the characteristic, and a word for what is wrong with it.
     pub fn short(&self, lang: Lang) -> String {
         let message = self.message();
         let said = message.try_attribute(lang, "short");
@@ -207,7 +209,7 @@ impl Reason {
 }
 
 impl Code {
-    /// Its name in rows and exports.
+    /// Returns the name in rows and exports.
     pub fn name(self) -> &'static str {
         match self {
             Self::OutsideLimit(_) => "outside_limit",

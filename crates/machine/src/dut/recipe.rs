@@ -1,7 +1,7 @@
-//! A recipe: what a part is, what is demanded of it, and how it is measured.
+//! A recipe: what a part is, which limits it must keep, and how it is measured.
 //!
-//! One file of `config/recipes/` each. The text it was read from stays with it, with its SHA-256, so that
-//! a lot can store the very recipe it was judged by.
+//! Each file of `config/recipes/` is one recipe. [`Recipe`] keeps the text of its file and the SHA-256 of that text, so
+//! that a lot can store exactly the recipe that judged it.
 
 use super::accuracy::AccuracySettings;
 use super::card::Card;
@@ -22,12 +22,12 @@ use std::ops::Deref;
 use std::sync::Arc;
 use units::Celsius;
 
-/// The limits of a recipe by characteristic, whose key says the unit.
+/// The limits of a recipe by characteristic; the key of the characteristic says the unit.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Limits(BTreeMap<Characteristic, Ends>);
 
-/// As written in a recipe: bare numbers.
+/// Ends of a limit as written in a recipe: bare numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 struct Ends {
     low: Option<f64>,
@@ -35,7 +35,7 @@ struct Ends {
 }
 
 impl Limits {
-    /// The limits of a characteristic in its unit; both sides open when the recipe names none.
+    /// Returns the limits of a characteristic in its unit; both sides are open when the recipe names none.
     pub fn of(&self, characteristic: impl Into<Characteristic>) -> Limit {
         let characteristic = characteristic.into();
         let Ends { low, high } = self.0.get(&characteristic).copied().unwrap_or_default();
@@ -43,7 +43,7 @@ impl Limits {
         Limit { unit, low, high }
     }
 
-    /// Every limit that the recipe names.
+    /// Returns every limit that the recipe names.
     pub fn named(&self) -> impl Iterator<Item = (Characteristic, Limit)> + '_ {
         self.0
             .keys()
@@ -54,24 +54,24 @@ impl Limits {
 /// How results become verdicts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Decision {
-    /// How the uncertainty enters.
+    /// How the uncertainty enters the decision.
     pub rule: Rule,
-    /// Readings of confirmation measurements for a result inside the guard band.
+    /// Number of confirmation measurements for a result inside the guard band.
     pub slow_repeats: u32,
 }
 
 /// Sections of a recipe that belong to the kind: the part, and how to measure it.
 pub trait KindRecipe {
-    /// Returns the kind of device that it describes.
+    /// Returns the kind of device that the sections describe.
     fn kind(&self) -> Kind;
 
-    /// Returns what is alike in every part.
+    /// Returns the data that parts of every kind have.
     fn part(&self) -> PartFacts;
 
-    /// Puts `recipe`, which has these sections, on a rig with the `stored` calibration, if there is one.
+    /// Puts `recipe`, which contains these sections, on a rig with its `stored` calibration, if there is one.
     ///
     /// # Errors
-    /// Names the first point of the kind that the rig does not have.
+    /// Fails with the first point of the kind that the rig does not have.
     fn on_rig(
         &self,
         recipe: Arc<Recipe>,
@@ -79,29 +79,29 @@ pub trait KindRecipe {
         stored: Option<Calibration>,
     ) -> Result<Device, MissingPoint>;
 
-    /// Returns every reason why the rig cannot perform the recipe: points, bins and references that `rig.toml` lacks, keys that
-    /// ask too much of a module, limits beyond the reach of the test or closer than its uncertainty.
+    /// Returns every reason why the rig cannot perform the recipe: points, bins and references that `rig.toml` lacks,
+    /// keys that ask too much of a module, limits beyond the reach of the test or closer than its uncertainty.
     fn infeasible(&self, limits: &Limits, rig: &Rig) -> Vec<Fault>;
 
-    /// Returns what the test asks of the supply.
+    /// Returns the demand of the test on the supply.
     fn demand(&self, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand;
 
     /// Returns the process card.
     fn card(&self) -> Card;
 
-    /// Returns what made-up parts look like.
+    /// Returns the statistics of made-up parts.
     fn made_up(&self, limits: &Limits) -> MadeUp;
 
     /// Checks that the sections do not contradict themselves.
     ///
     /// # Errors
-    /// Names the first key whose value contradicts another one.
+    /// Fails with the first key whose value contradicts another one.
     fn check(&self) -> Result<(), Fault> {
         Ok(())
     }
 }
 
-/// Sections of a recipe that belong to the kind, by kind.
+/// Sections of a recipe that belong to its kind of device.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum DeviceRecipe {
@@ -122,37 +122,37 @@ impl Deref for DeviceRecipe {
     }
 }
 
-/// What is alike in the parts of every kind.
+/// Data that parts of every kind have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PartFacts {
     /// Body along x, y, z as it lies in the nest, mm.
     pub body_mm: [f64; 3],
     /// Length of the pins below the body, mm.
     pub pin_length_mm: f64,
-    /// Temperature that results are converted to.
+    /// Temperature to which results are converted.
     pub reference: Celsius,
-    /// Nominal voltage that a calibration and its reference parts must share with the part, V; none for a kind that needs
-    /// neither.
+    /// Nominal voltage that a calibration and its reference parts must share with the part, V; none for a kind that
+    /// needs neither.
     pub nominal_v: Option<f64>,
 }
 
-/// A checked recipe with the text it came from.
+/// A checked recipe with the text of its file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Recipe {
-    /// Its name, equal to the name of its file.
+    /// Name of the recipe, equal to the name of its file.
     pub name: String,
     /// Title in English.
     pub title_en: String,
     /// Title in Chinese.
     pub title_zh: String,
-    /// What is demanded of the part.
+    /// Limits that the part must keep.
     pub limits: Limits,
     /// How results become verdicts.
     pub decision: Decision,
-    /// The part and how it is measured, by kind.
+    /// Sections of the kind: the part, and how it is measured.
     #[serde(flatten)]
     pub device: DeviceRecipe,
-    /// The file, byte for byte.
+    /// The text of the file, byte for byte.
     #[serde(default)]
     pub source_text: String,
     /// SHA-256 of the file, lower-case hexadecimal.
@@ -161,7 +161,7 @@ pub struct Recipe {
 }
 
 impl Recipe {
-    /// Every characteristic of the kind with its limit, in the order of reports.
+    /// Returns every characteristic of the kind with its limit, in the order of reports.
     pub fn limits(&self) -> impl Iterator<Item = (Characteristic, Limit)> + '_ {
         let all = self.device.kind().characteristics().into_iter();
         all.map(|characteristic| (characteristic, self.limits.of(characteristic)))
@@ -170,7 +170,8 @@ impl Recipe {
     /// Checks that the recipe does not contradict itself.
     ///
     /// # Errors
-    /// Names the first key whose value contradicts another one: a low limit above its high one, or what the kind refuses.
+    /// Fails with the first key whose value contradicts another one: a low limit above its high one, or a value that
+    /// the kind refuses.
     pub fn check(&self) -> Result<(), Fault> {
         for (characteristic, limit) in self.limits.named() {
             check_limit(&format!("limits.{characteristic}"), limit)?;
@@ -178,16 +179,17 @@ impl Recipe {
         self.device.check()
     }
 
-    /// Returns every reason why a rig cannot perform the recipe or has nothing to judge, each with its key; none for a feasible
-    /// recipe.
+    /// Returns every reason why a rig cannot perform the recipe or has nothing to judge by it, each with its key; none
+    /// for a feasible recipe.
     pub fn infeasible(&self, rig: &Rig) -> Vec<Fault> {
         self.device.infeasible(&self.limits, rig)
     }
 
-    /// Returns the wiring in the smallest range of the supply that serves the recipe, which must not be [infeasible](Self::infeasible).
+    /// Returns the wiring in the smallest range of the supply that serves the recipe, which must not be
+    /// [infeasible](Self::infeasible).
     ///
     /// # Errors
-    /// Names the key that asks more of the supply than any range gives.
+    /// Fails with the key that asks more of the supply than any range gives.
     pub fn wired(&self, wiring: &Wiring, accuracy: &AccuracySettings) -> Result<Wiring, Fault> {
         let demand = self.device.demand(&self.limits, accuracy);
         Ok(wiring.in_range(demand.range(wiring)?))

@@ -12,9 +12,9 @@ use crate::rig::sample::{CountSample, Origin, Sample};
 use std::collections::BTreeMap;
 use units::Span;
 
-/// What a result was made from: line, module, channel and raw text lead back to the bytes.
+/// Sample behind a result: line, module, channel and raw text lead back to the bytes on the line.
 pub trait Evidence {
-    /// Where it came from.
+    /// Returns where the sample came from.
     fn origin(&self) -> &Origin;
 }
 
@@ -35,9 +35,9 @@ impl Evidence for CountSample {
 pub enum Stop {
     /// The part is bad.
     Fail(Reason),
-    /// It cannot be judged.
+    /// The part cannot be judged.
     Void(Reason),
-    /// The rig was in trouble, which voids every result of the part, good or bad.
+    /// The rig was in trouble; this voids every result of the part, good or bad.
     Trouble(Reason),
 }
 
@@ -57,9 +57,9 @@ pub struct TestRecord<T = Own> {
     readings: Vec<(Characteristic, Reading)>,
     evidence: Vec<(Characteristic, Origin)>,
     stop: Option<Stop>,
-    /// What was seen, sample by sample.
+    /// Trace of all samples.
     pub trace: Trace,
-    /// Where the time went.
+    /// Time of the test, by purpose.
     pub spent: Spent,
     /// Rig time of each stage by its key.
     pub stages: BTreeMap<&'static str, Span>,
@@ -68,7 +68,7 @@ pub struct TestRecord<T = Own> {
 }
 
 impl<T> TestRecord<T> {
-    /// The record as every kind has it.
+    /// Returns the record in the form that every kind has; `own` wraps the observations.
     pub fn of_any_kind(self, own: impl FnOnce(T) -> Own) -> TestRecord {
         TestRecord {
             readings: self.readings,
@@ -81,7 +81,7 @@ impl<T> TestRecord<T> {
         }
     }
 
-    /// Books the time of a stage.
+    /// Adds `time` to the time of the stage `what`.
     pub fn took(&mut self, what: &'static str, time: Span) {
         *self.stages.entry(what).or_default() += time;
     }
@@ -89,7 +89,7 @@ impl<T> TestRecord<T> {
     /// Adds one result of a stage with the replies it was made from.
     ///
     /// # Panics
-    /// When the result is not in the unit of its characteristic.
+    /// Panics when the result is not in the unit of its characteristic.
     pub fn found<'a, S: Evidence + 'a>(
         &mut self,
         of: impl Into<Characteristic>,
@@ -103,27 +103,27 @@ impl<T> TestRecord<T> {
         self.evidence.extend(origins.map(|origin| (of, origin)));
     }
 
-    /// Takes back the results of a characteristic, which a later reading replaces.
+    /// Removes the results of a characteristic, which a later reading replaces.
     pub fn forget(&mut self, of: impl Into<Characteristic>) {
         let of = of.into();
         self.readings.retain(|(known, _)| *known != of);
     }
 
-    /// Each result of a characteristic, in the order they came.
+    /// Returns each result of a characteristic, in the order they came.
     pub fn each(&self, of: impl Into<Characteristic>) -> impl Iterator<Item = &Reading> {
         let of = of.into();
         let own = self.readings.iter().filter(move |(known, _)| *known == of);
         own.map(|(_, reading)| reading)
     }
 
-    /// Result of a characteristic: the mean of its repetitions, which lie apart as far as the part scatters.
+    /// Returns the result of a characteristic: the mean of its repetitions, whose scatter enters the uncertainty.
     pub fn result(&self, of: impl Into<Characteristic>) -> Option<Reading> {
         let of = of.into();
         let repetitions: Vec<Reading> = self.each(of).cloned().collect();
         mean(&repetitions, of.definition().mean_of)
     }
 
-    /// Judges each result of these characteristics by its limit; leaves out what was not measured.
+    /// Judges each result of these characteristics against its limit; leaves out those that were not measured.
     pub fn judged<C: Into<Characteristic> + Copy>(
         &self,
         recipe: &Recipe,
@@ -137,24 +137,24 @@ impl<T> TestRecord<T> {
         all.into_iter().filter_map(one).collect()
     }
 
-    /// The result when it is a number with a finite uncertainty.
+    /// Returns the result when it is a number with a finite uncertainty.
     pub fn usable(&self, of: impl Into<Characteristic>) -> Option<Reading> {
         self.result(of).filter(Reading::is_usable)
     }
 
-    /// How often a characteristic was measured.
+    /// Returns how often a characteristic was measured.
     pub fn attempts(&self, of: impl Into<Characteristic>) -> usize {
         self.each(of).count()
     }
 
-    /// Replies behind a characteristic, in the order they came.
+    /// Returns the origin of each reply behind a characteristic, in the order they came.
     pub fn evidence(&self, of: impl Into<Characteristic>) -> impl Iterator<Item = &Origin> {
         let of = of.into();
         let own = self.evidence.iter().filter(move |(known, _)| *known == of);
         own.map(|(_, origin)| origin)
     }
 
-    /// Ends the test early by what a stage has found; the first finding stays.
+    /// Ends the test early for what a stage has found; a finding that ended it before remains.
     pub fn stop(&mut self, found: impl Into<Reason>) {
         let reason = found.into();
         let stop = match reason.is_failure() {
@@ -164,19 +164,19 @@ impl<T> TestRecord<T> {
         self.stop.get_or_insert(stop);
     }
 
-    /// Ends the test early because the rig is in trouble, whatever the part has ended it by before.
+    /// Ends the test early because the rig is in trouble; this replaces any finding that ended it before.
     pub fn trouble(&mut self, why: String) {
         if !matches!(self.stop, Some(Stop::Trouble(_))) {
             self.stop = Some(Stop::Trouble(Reason::rig_trouble(why)));
         }
     }
 
-    /// True once the test has ended early.
+    /// Returns true once the test has ended early.
     pub fn stopped(&self) -> bool {
         self.stop.is_some()
     }
 
-    /// Why it ended early.
+    /// Returns why the test ended early.
     pub fn why_stopped(&self) -> Option<&Stop> {
         self.stop.as_ref()
     }

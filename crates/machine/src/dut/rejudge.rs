@@ -1,4 +1,4 @@
-//! Whether stored values of a part may be judged by another recipe than the one it was measured by, and how they convert.
+//! Whether a recipe may judge stored values of a part that was measured by another recipe, and how they convert.
 
 use super::{Characteristic, Kind, Recipe};
 use units::Celsius;
@@ -14,20 +14,21 @@ pub struct Basis {
     pub reference: Celsius,
 }
 
-/// Key of `[part]` of the kinds that have a nominal voltage.
+/// Key of `[part]` for the nominal voltage, in the kinds that have one.
 const NOMINAL: &str = "nominal_v";
 
-/// Why values cannot be judged by a recipe.
+/// Why a recipe cannot judge stored values.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Misfit {
-    /// Demand of the recipe: the first half of a sentence.
+    /// What the recipe demands: the first half of a sentence.
     pub wanted: String,
-    /// Condition of the measurement: the second half.
+    /// The condition under which the values were measured: the second half of the sentence.
     pub found: String,
 }
 
 impl Basis {
-    /// Returns the basis in the stored text of a recipe; `None` when a key is missing. A text without a kind describes a relay.
+    /// Returns the basis from the stored text of a recipe; `None` when a key is missing. A text without a kind
+    /// describes a relay.
     pub fn of(recipe: &str) -> Option<Self> {
         let recipe: toml::Table = recipe.parse().ok()?;
         let kind = recipe.get("kind").and_then(toml::Value::as_str);
@@ -56,7 +57,7 @@ impl Basis {
         }
     }
 
-    /// Returns why values on this basis cannot be judged by `recipe`; `None` when they can.
+    /// Returns why `recipe` cannot judge values on this basis; `None` when it can.
     pub fn misfit(&self, recipe: &Recipe) -> Option<Misfit> {
         let (name, kind) = (&recipe.name, recipe.device.kind());
         if self.kind != kind {
@@ -73,7 +74,7 @@ impl Basis {
         })
     }
 
-    /// Returns the factor from a stored value to the one that `recipe` would have stored.
+    /// Returns the factor that converts a stored value to the one that a test by `recipe` would have stored.
     pub fn factor(&self, of: Characteristic, recipe: &Recipe) -> f64 {
         let wanted = recipe.device.part().reference;
         of.conversion(self.reference, wanted)

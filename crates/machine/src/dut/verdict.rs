@@ -9,7 +9,7 @@ use super::record::Stop;
 use crate::gauge::Judgement;
 pub use crate::rig::bin::Bin;
 
-/// Returns the rank of a bin among those of its kind, 0 for the worst; the greatest rank for a bin of no kind.
+/// Returns the rank of a bin within its kind, 0 for the worst; the greatest rank for a bin that belongs to no kind.
 fn rank(bin: Bin) -> usize {
     let of_kind = |kind: Kind| kind.definition().bins.iter().position(|it| *it == bin);
     Kind::ALL
@@ -18,27 +18,28 @@ fn rank(bin: Bin) -> usize {
         .unwrap_or(usize::MAX)
 }
 
-/// The conclusion of a test on its part.
+/// The conclusion of a test about its part.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Verdict {
-    /// Every limit proven.
+    /// Every limit is proven kept.
     Pass,
-    /// At least one reason, worst first.
+    /// The part is bad, for at least one reason, worst first.
     Fail(Vec<Reason>),
-    /// Not judged, with the reasons.
+    /// The part is not judged, for these reasons.
     Void(Vec<Reason>),
 }
 
 impl Verdict {
-    /// A failure found outside the limits together with those against limits, worst bin first.
+    /// Returns the verdict of a part with `reason`, a failure that no limit shows, and `others`, failures against
+    /// limits; worst bin first.
     pub fn failed(reason: Reason, mut others: Vec<Reason>) -> Self {
         others.push(reason);
         others.sort_by_key(|reason| rank(reason.bin()));
         Self::Fail(others)
     }
 
-    /// Returns the verdict of a part of which `expected` was to be measured; conditional results have had their second
-    /// chance. A proven failure outweighs a void: the part is bad whatever else could not be seen.
+    /// Returns the verdict of a part for which `expected` had to be measured; conditional results have been repeated
+    /// before. A proven failure outweighs a void: the part is bad whatever else could not be measured.
     pub fn of(expected: &[Characteristic], judged: &[(Characteristic, Judgement)]) -> Self {
         let mut failed: Vec<Reason> = judged
             .iter()
@@ -65,8 +66,8 @@ impl Verdict {
         }
     }
 
-    /// Returns the verdict of a part whose test ended early by `stop`, or did not. A proven failure outweighs whatever
-    /// ended the test, but for trouble of the rig.
+    /// Returns the verdict of a part; `stop` is why its test ended early, none when it did not. A proven failure
+    /// outweighs every stop except trouble of the rig.
     pub fn after(
         stop: Option<&Stop>,
         expected: &[Characteristic],
@@ -89,7 +90,7 @@ impl Verdict {
         }
     }
 
-    /// `pass`, `fail` or `void`.
+    /// Returns `pass`, `fail` or `void`.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Pass => "pass",
@@ -98,7 +99,7 @@ impl Verdict {
         }
     }
 
-    /// Where the part belongs.
+    /// Returns the bin to which the part goes.
     pub fn bin(&self) -> Bin {
         match self {
             Self::Pass => Bin::PASS,
@@ -111,7 +112,7 @@ impl Verdict {
         }
     }
 
-    /// Why it is not a pass; empty for a pass.
+    /// Returns why the part does not pass; empty for a pass.
     pub fn reasons(&self) -> &[Reason] {
         match self {
             Self::Pass => &[],
@@ -119,7 +120,7 @@ impl Verdict {
         }
     }
 
-    /// The reasons as the texts of rows and of `run --json`.
+    /// Returns the reasons as texts for rows and for `run --json`.
     pub fn texts(&self) -> Vec<String> {
         self.reasons().iter().map(Reason::to_string).collect()
     }

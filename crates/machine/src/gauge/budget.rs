@@ -1,5 +1,5 @@
 //! Uncertainty budget of one result (GUM, ISO/IEC Guide 98-3): named standard uncertainties, added in quadrature
-//! because each comes from an independent instrument or effect.
+//! because each comes from an instrument or effect that is independent of the others.
 
 use serde::Serialize;
 use units::Unit;
@@ -20,7 +20,7 @@ pub fn resolution(step: f64) -> f64 {
 /// One source of uncertainty.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Term {
-    /// Name of the source: `coil temperature`, `slope`.
+    /// Name of the source, for example `coil temperature` or `slope`.
     pub source: &'static str,
     /// Standard uncertainty in the unit of the result.
     pub u: f64,
@@ -81,7 +81,7 @@ pub struct Reading {
     pub value: f64,
     /// Unit of the value and of every term of the budget.
     pub unit: Unit,
-    /// Sources of its uncertainty.
+    /// Sources of the value's uncertainty.
     pub budget: Budget,
 }
 

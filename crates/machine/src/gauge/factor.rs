@@ -6,7 +6,7 @@ use units::Unit;
 /// A calibration factor with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Factor {
-    /// Value in the unit named by its field.
+    /// Value, in the unit that the field or the name of the factor states.
     pub value: f64,
     /// Standard uncertainty in the same unit.
     pub u: f64,

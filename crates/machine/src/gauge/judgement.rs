@@ -27,7 +27,7 @@ impl Limit {
     }
 }
 
-/// Use of the uncertainty in a decision.
+/// How a decision takes the uncertainty into account.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Rule {
@@ -74,18 +74,18 @@ impl fmt::Display for Side {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Judgement {
-    /// Inside the limit, beyond doubt under the rule.
+    /// Inside the limit; under the rule this is certain.
     Pass,
-    /// Outside the limit, beyond doubt under the rule.
+    /// Outside the limit; under the rule this is certain.
     Fail(Side),
-    /// Within U of the limit: needs the confirmation measurement.
+    /// Within U of the limit, on the side given: confirmation measurements must decide.
     Conditional(Side),
     /// No usable number.
     Void,
 }
 
 impl Judgement {
-    /// Returns the verdict of the row of one attempt; an attempt within U of a limit has not passed.
+    /// Returns the verdict that the row of one attempt states; an attempt within U of a limit has not passed.
     pub const fn verdict(self) -> &'static str {
         match self {
             Self::Pass => "pass",
@@ -95,7 +95,7 @@ impl Judgement {
     }
 }
 
-/// Judges one result by its limit; an open limit passes every usable result.
+/// Judges one result against its limit; an open limit passes every usable result.
 ///
 /// # Panics
 /// Panics when reading and limit have different units.

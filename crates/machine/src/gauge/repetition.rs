@@ -7,13 +7,13 @@
 
 use super::budget::{Budget, COVERAGE_FACTOR, Reading, Term};
 
-/// Meaning of the mean of several readings.
+/// Quantity that the mean of several readings estimates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeanOf {
     /// A property of the part: a threshold, the coil. Its readings scatter by the random terms of the budget, or more.
     Part,
-    /// Any single operation, to which the limit applies: times and bounce. It deviates from the mean as much as the
-    /// readings do, and no random term bounds that.
+    /// Any single operation, to which the limit applies: times and bounce. One operation deviates from the mean as much
+    /// as the readings do, and the random terms of the budget set no bound to this deviation.
     Operation,
     /// Exactly the closures that were measured: contacts.
     Closures,
@@ -23,13 +23,13 @@ pub enum MeanOf {
 const STUDENT: [f64; 10] = [13.97, 4.53, 3.31, 2.87, 2.65, 2.52, 2.43, 2.37, 2.32, 2.28];
 
 /// Returns the factor that widens a standard deviation with `freedom` degrees of freedom. Beyond the table t - 2 falls
-/// with the reciprocal of `freedom`, accurate to a hundredth.
+/// in proportion to 1 / `freedom`, accurate to a hundredth.
 fn student(freedom: usize) -> f64 {
     let listed = STUDENT.get(freedom.saturating_sub(1)).copied();
     listed.map_or(1.0 + 1.4 / freedom as f64, |t| t / COVERAGE_FACTOR)
 }
 
-/// Returns the mean of repetitions, with the terms of the first; `None` for no repetitions.
+/// Returns the mean of repetitions, with the budget terms of the first one; `None` for no repetitions.
 ///
 /// # Panics
 /// Panics when the readings have different units.
@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn expected_scatter_adds_no_uncertainty() {
-        // Standard deviation 6.9 of 8.
+        // The readings have a standard deviation of 6.9; the random term of their budget is 8.
         let apart = [1.0, 13.0, 1.0, 13.0];
         assert_eq!(combined(&apart, MeanOf::Part), 5.0);
         assert_eq!(combined(&apart, MeanOf::Closures), 5.0);

@@ -1,7 +1,8 @@
-//! The remedy for a refused motion, found by trial: the guard clears the motion after it.
+//! The remedy for a refused motion, found by trial: a change after which the guard clears the motion.
 //!
-//! Tries each change alone, in this order: each carrier of the blocker or the mover to rest, each other actuator to
-//! rest, the same to their other ends, each part removed. The first change that clears the motion is the advice.
+//! The search tries one change at a time, in this order: an actuator that carries the blocker or the mover goes to
+//! rest, another actuator goes to rest, the same actuators go to their other ends, a part is removed. The first change
+//! that clears the motion is the advice.
 
 use super::actuator::{Actuator, Position};
 use super::judge::judge;
@@ -51,7 +52,7 @@ pub(super) fn advice(
         .to_owned()
 }
 
-/// Returns every actuator that the motion does not use, carriers of the two bodies first.
+/// Returns every actuator that the motion does not use, those that carry the two bodies first.
 fn by_relevance(scene: &Scene, motion: &Motion, finding: &FirstContact) -> Vec<Actuator> {
     let blocker = finding
         .blocker

@@ -6,7 +6,7 @@ use super::error::GuardError;
 use super::scene::{Axis, carriers};
 use super::settings::ActuatorSettings;
 
-/// Greatest deviation of an axis from length 1: three decimals typed by hand.
+/// Greatest deviation of an axis vector from length 1; people type its components with three decimals.
 const UNIT_TOLERANCE: f64 = 1e-3;
 
 /// Returns the axes by [`Actuator::index`].

@@ -1,7 +1,7 @@
-//! The last clear pose of a refused stroke, at which it may stop or to which it may return.
+//! The last clear pose of a refused stroke: the actuator may stop there, or return to it.
 //!
-//! The guard tries each pose before it offers it. A pose that just reaches the margin is not clear, so the offer lies
-//! a little before it.
+//! The guard checks the pose before it offers the pose to the station. A pose that just reaches the margin is not
+//! clear, so the offered pose lies a little before it.
 
 use super::judge::judge;
 use super::motion::Motion;
@@ -10,10 +10,11 @@ use super::situation::Situation;
 use super::space::Space;
 use super::sweep::FirstContact;
 
-/// Distance of the offer before the contact, mm: the resolution of the axis's point table.
+/// How far before the first contact the offered pose lies, mm: the resolution of the axis's point table.
 const BEFORE_MM: f64 = 0.01;
 
-/// Returns the position in mm of the stroke; `None` when the start is blocked, unknown, or nearer than [`BEFORE_MM`].
+/// Returns the last clear position, mm of the stroke; `None` when the start is blocked, unknown, or within
+/// [`BEFORE_MM`] of the contact.
 pub(super) fn last_clear_mm(
     scene: &Scene,
     space: &mut Space,

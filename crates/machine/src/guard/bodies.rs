@@ -55,7 +55,7 @@ pub(super) fn bodies_of(
     Ok(bodies)
 }
 
-/// Returns the carriers of a part in each role, by [`Role::index`].
+/// Returns the actuators that carry a part in each role, by [`Role::index`].
 pub(super) fn part_rides(axes: &[Axis; 8]) -> Result<[Vec<Ride>; 5], GuardError> {
     let mut rides: [Vec<Ride>; 5] = Default::default();
     for role in Role::ALL {

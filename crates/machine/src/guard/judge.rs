@@ -13,7 +13,7 @@ use super::sweep::{FirstContact, sweep};
 /// Returns the first contact of `motion`, if there is one.
 ///
 /// # Errors
-/// Refuses a position off its stroke, NaN included, and an invalid part size.
+/// Fails for a position off its stroke, NaN included, and for an invalid part size.
 pub(super) fn judge(
     scene: &Scene,
     space: &mut Space,

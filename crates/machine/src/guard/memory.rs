@@ -9,7 +9,7 @@ use super::refusal::Refusal;
 use super::situation::Situation;
 use std::collections::HashMap;
 
-/// Most answers kept, at about 400 bytes each; the memory clears itself when it is full.
+/// Greatest number of answers kept, at about 400 bytes each; the memory clears itself when it is full.
 const LIMIT: usize = 4096;
 
 /// The bits of a motion and a situation: the key of an answer.

@@ -85,7 +85,7 @@ impl Guard {
     /// Resolves the scene and checks that every actuator has its stroke free in the empty rig at rest.
     ///
     /// # Errors
-    /// Returns a [`GuardError`] that names the place in `scene.toml`.
+    /// Fails with a [`GuardError`] that names the place in `scene.toml`.
     pub fn build(settings: &GuardSettings) -> Result<Guard, GuardError> {
         let scene = build::scene_of(settings)?;
         let space = Space::of(&scene).map_err(|flaw| GuardError::Body {
@@ -105,7 +105,7 @@ impl Guard {
     /// memory.
     ///
     /// # Errors
-    /// Returns the [`Refusal`]. It is a normal result; show it and do not move.
+    /// Fails with a [`Refusal`], which is a normal result: show it and do not move.
     pub fn clear(&mut self, motion: &Motion, situation: &Situation) -> Result<Cleared, Refusal> {
         let question = Question::of(motion, situation);
         let answer = match self.memory.answer(&question) {

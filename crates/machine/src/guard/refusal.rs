@@ -34,19 +34,19 @@ pub struct Blocked {
     pub mover: String,
     /// The body in its way.
     pub blocker: String,
-    /// Least distance of the two during the motion, mm; 0 when they meet.
+    /// Least distance between the two bodies during the motion, mm; 0 when they meet.
     pub distance_mm: f64,
-    /// Distance they must exceed, mm; 0 where they may touch.
+    /// Distance that the two bodies must exceed, mm; 0 where they may touch.
     pub margin_mm: f64,
     /// Fraction of the motion at which the margin is reached, 0 to 1; 0 when the start is unknown.
     pub at_fraction: f64,
     /// Place of the contact, mm.
     pub at: [f64; 3],
-    /// The last clear pose, mm of the stroke: the guard clears the stroke up to here, and to at most a hundredth of a
-    /// millimetre more. An actuator that can stop on its way may move here, and one that stopped beyond may back-track
-    /// to here. `None` when the start is blocked or unknown.
+    /// The last clear pose, mm of the stroke: the guard clears the stroke up to here, and refuses it at most a
+    /// hundredth of a millimetre further on. An actuator that can stop on its way may move here, and one that stopped
+    /// beyond may back-track to here. `None` when the start is blocked or unknown.
     pub last_clear_mm: Option<f64>,
-    /// Action that would make the motion possible: "raise sort z".
+    /// Action that would make the motion possible, for example "raise sort z".
     pub would_help: String,
 }
 
@@ -112,7 +112,7 @@ impl Blocked {
     }
 }
 
-/// Returns the words of the shop floor for an id.
+/// Returns the shop-floor words for an id.
 pub(super) fn words(id: &str) -> String {
     match id {
         "part_feed" => "the part coming from the magazine".to_owned(),

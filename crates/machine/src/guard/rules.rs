@@ -13,7 +13,7 @@ struct Allowed {
     by: Option<[bool; 8]>,
 }
 
-/// The table, by body number of the scene.
+/// The permissions of all pairs, indexed by the body numbers of the scene.
 #[derive(Debug, Clone)]
 pub(super) struct Rules {
     allowed: Vec<Allowed>,
@@ -22,7 +22,8 @@ pub(super) struct Rules {
 }
 
 impl Rules {
-    /// Applies the pairs of `settings`, in order, over the default margin.
+    /// Makes the table from the default margin and the pairs of `settings`, of which a later one overrides an earlier
+    /// one.
     pub fn of(settings: &GuardSettings, ids: &[String]) -> Result<Rules, GuardError> {
         let default = Allowed {
             permission: Permission::Forbidden {

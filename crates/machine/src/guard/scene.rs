@@ -33,11 +33,11 @@ pub(super) struct Ride {
 pub(super) struct Body {
     pub id: String,
     pub shape: Shape,
-    /// The shape decomposed, for sweeps in its true form.
+    /// The shape, decomposed so that sweeps use its true form.
     pub mover: Mover,
     /// Pose with all actuators at rest.
     pub pose: Pose,
-    /// Actuators that carry it; empty for a fixed element.
+    /// Actuators that carry the body; empty for a fixed element.
     pub rides: Vec<Ride>,
 }
 
@@ -108,7 +108,7 @@ impl Scene {
             .map_or(self.axis(actuator).stroke_mm, Position::span_mm)
     }
 
-    /// Returns the offsets from the rest pose that `rides` allow, `except` left out.
+    /// Returns the offsets from the rest pose that `rides` allow, without the actuator `except`.
     pub fn offsets(
         &self,
         rides: &[Ride],
@@ -125,10 +125,10 @@ impl Scene {
     }
 }
 
-/// Returns `actuator` and everything that carries it.
+/// Returns `actuator` and every actuator that carries it.
 ///
 /// # Errors
-/// Returns [`GuardError::Circle`] when an actuator rides on itself.
+/// Fails with [`GuardError::Circle`] when an actuator rides on itself.
 pub(super) fn carriers(axes: &[Axis; 8], actuator: Actuator) -> Result<Vec<Ride>, GuardError> {
     let mut rides = Vec::new();
     let mut next = Some(actuator);

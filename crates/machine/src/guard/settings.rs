@@ -6,7 +6,7 @@
 use super::actuator::Actuator;
 use serde::Deserialize;
 
-/// The whole file. Other readers check `movers` and `mate`.
+/// The whole file. Other modules read and check `movers` and `mate`.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GuardSettings {
@@ -66,7 +66,7 @@ pub struct Element {
     /// Pose with all actuators at rest.
     #[serde(default)]
     pub pose: PoseSettings,
-    /// Actuator that carries it; none for a fixed element.
+    /// Actuator that carries the element; none for a fixed one.
     pub rides: Option<Actuator>,
 }
 
@@ -155,7 +155,7 @@ pub struct PairSettings {
     pub rule: PairRule,
     /// Margin of a forbidden pair, mm, >= 0; the default margin if absent.
     pub margin_mm: Option<f64>,
-    /// How far a `may_touch` pair may press into each other, mm, >= 0; `touch_depth_mm` if absent.
+    /// How far the bodies of a `may_touch` pair may press into each other, mm, >= 0; `touch_depth_mm` if absent.
     pub depth_mm: Option<f64>,
     /// Actuators during whose motion the rule holds; at other times the pair is forbidden within the default margin.
     pub by: Option<Vec<Actuator>>,

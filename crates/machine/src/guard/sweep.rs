@@ -1,9 +1,9 @@
 //! One stroke swept through the space.
 //!
-//! Sweeps every body that moves with the stroke, in its true shape, along the whole way, and tests it in the collision
-//! core against the rooms of all other bodies. For a mover that also rides on an actuator of unknown position it
-//! sweeps the cover of its room. So, for every combination of positions that the situation allows, the real bodies lie
-//! inside the tested ones: a cleared stroke is clear for all of them.
+//! The guard sweeps every body that moves with the stroke, in its true shape, along the whole way, and tests it in the
+//! collision core against the rooms of all other bodies. Where a mover also rides on an actuator of unknown position,
+//! the guard sweeps the cover of the mover's room. So, for every combination of positions that the situation allows,
+//! the real bodies lie inside the tested ones: a cleared stroke is clear for all of them.
 //!
 //! This module decides what the mover may do to each other body; the core applies it.
 
@@ -21,7 +21,7 @@ use std::borrow::Cow;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct FirstContact {
     pub stroke: Stroke,
-    /// Body numbers; `None` when the core could not decide.
+    /// Number of the moving body; the next field is that of the body in its way, `None` when the core could not decide.
     pub mover: usize,
     pub blocker: Option<usize>,
     pub distance_mm: f64,
@@ -185,7 +185,7 @@ fn permissions(
 }
 
 impl<'a> Travel<'a> {
-    /// Returns the room of the body, shrunk by a depth, on its way.
+    /// Returns the sweep of the body's room, with the shape shrunk by `depth_mm`, from the start to the end of its way.
     fn passing(&self, depth_mm: f64) -> Result<Passing<'a>, Flaw> {
         let (mover, pose) = match self.ready {
             Some(ready) if depth_mm == 0.0 => {

@@ -26,14 +26,14 @@ pub enum Feed {
     Empty,
     /// Escapement open, a part is coming.
     Releasing {
-        /// Time of the opening.
+        /// Time at which the escapement opened.
         since: RigTime,
         /// Number of the attempt, from 1.
         attempt: u8,
     },
     /// No part came; the escapement closes before the next attempt.
     Closing {
-        /// Attempts so far.
+        /// Number of attempts so far.
         attempts: u8,
     },
     /// The part is in the pocket, the escapement closes.

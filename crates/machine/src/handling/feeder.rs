@@ -1,6 +1,6 @@
 //! The feeder: steps pocket, nests, gripper and bins once per turn.
 //!
-//! Steps the sorter first and the feed last, so that a place is free before the next part moves there.
+//! The feeder steps the sorter first and the feed last, so that a place is free before the next part moves there.
 
 use super::feed::Feed;
 use super::ledger::Ledger;
@@ -86,7 +86,7 @@ impl Feeder {
         sort::confirm(turn, &self.table);
     }
 
-    /// Records that a cleared motion was driven: opening fingers release their part.
+    /// Records that a cleared motion was driven; fingers that open release their part.
     pub fn driven(&mut self, movement: Move, ledger: &mut Ledger, now: RigTime) {
         self.sort = self.sort.driven(movement, ledger, now);
     }

@@ -34,8 +34,8 @@ impl Inside {
         }
     }
 
-    /// Returns true for hand-overs that sensors cannot reconstruct later: a falling part, and a lifted part whose old
-    /// place the next one has taken.
+    /// Returns true when sensors could not reconstruct these places later: a part is falling, or the next part has
+    /// taken the old place of a lifted one.
     pub fn needs_record(self) -> bool {
         self.falling.is_some() || self.gripper && self.nest
     }
@@ -74,7 +74,7 @@ impl Inside {
     }
 }
 
-/// Returns true for a sensor that shows a part, and clears it: a signal accounts for one part.
+/// Returns true when the sensor shows a part, and clears its flag: one signal accounts for one part.
 fn claim(seen: &mut bool) -> bool {
     std::mem::take(seen)
 }

@@ -29,20 +29,20 @@ pub enum Kind {
 pub struct Part {
     /// Role and number of the part.
     pub kind: Kind,
-    /// Number over all parts of the run, reference parts included, from 1; the order of the records.
+    /// Number among all parts of the run, reference parts included, from 1; the records come in this order.
     pub ordinal: u64,
     /// Bin of the part, after its verdict.
     pub bin: Option<Bin>,
-    /// Time from probes up to the verdict.
+    /// Time from the arrival of the probes to the verdict.
     pub test: Option<Second>,
-    /// Time at which its probes arrived.
+    /// Time at which the probes arrived at the part.
     pub probed_at: Option<RigTime>,
-    /// Reason why it goes to retest without a (complete) test.
+    /// Reason why the part goes to retest without a (complete) test.
     pub interrupted: Option<String>,
 }
 
 impl Part {
-    /// Marks the part as interrupted, unless it is already; returns the reason that stays.
+    /// Marks the part as interrupted, unless it already is; returns the reason that remains.
     pub fn interrupt(&mut self, why: &str) -> String {
         let why = self.interrupted.get_or_insert_with(|| why.to_owned());
         why.clone()
@@ -67,7 +67,7 @@ pub struct Fall {
 /// Content of a place.
 #[derive(Debug, Clone)]
 enum Content {
-    /// A part without a number yet; `found`: it does not belong to this run.
+    /// A part without a number yet; `found` is true when it does not belong to this run.
     Unnumbered { found: bool },
     /// A part with its numbers.
     Numbered(Part),
@@ -79,13 +79,13 @@ pub struct Ledger {
     places: BTreeMap<Place, Content>,
     /// Present while a part is in [`Place::Falling`].
     fall: Option<Fall>,
-    /// Parts that entered the pocket or a socket.
+    /// Number of parts that entered the pocket or a socket.
     pub came_in: u64,
-    /// Parts that a beam confirmed or a person took out.
+    /// Number of parts that a beam confirmed or a person took out.
     pub went_out: u64,
-    /// Parts that an alarm declared lost.
+    /// Number of parts that an alarm declared lost.
     pub lost: u64,
-    /// Parts that belong to no run; `came_in` includes them.
+    /// Number of parts that do not belong to this run; `came_in` includes them.
     pub found: u64,
     /// Parts left by an earlier run, until homing has looked for them.
     pub left: Inside,
@@ -184,7 +184,8 @@ impl Ledger {
         self.put(Place::Pocket, Content::Unnumbered { found: false });
     }
 
-    /// Moves the part from the pocket to the nest and numbers it; `reference`: serial number of a reference part.
+    /// Moves the part from the pocket to the nest and numbers it; `reference`: serial number, if it is a reference
+    /// part.
     pub fn enter_nest(&mut self, nest: NestId, reference: Option<String>) {
         let found = self.is_pocket_found();
         assert!(
@@ -196,7 +197,7 @@ impl Ledger {
         self.put(Place::Nest(nest), Content::Numbered(part));
     }
 
-    /// Adds a part that a person put into an empty socket; `reference`: serial number of a reference part.
+    /// Adds a part that a person put into an empty socket; `reference`: serial number, if it is a reference part.
     pub fn fill_socket(&mut self, socket: u16, reference: Option<String>) {
         self.came_in += 1;
         let part = self.number(reference, None);
@@ -248,7 +249,7 @@ impl Ledger {
         self.hand_over(Place::Gripper, Place::Nest(nest));
     }
 
-    /// Moves the gripper's part to its fall into `bin`; does nothing for an empty gripper.
+    /// Moves the gripper's part to [`Place::Falling`], over `bin`; does nothing for an empty gripper.
     pub fn drop_over(&mut self, bin: Bin, since: RigTime, beam_before: u32) {
         assert!(self.fall.is_none(), "two parts fall at once");
         if !self.holds(Place::Gripper) {

@@ -3,8 +3,9 @@
 //! An actuator is at an end only while its sensors show that end and it does not move; otherwise it may be anywhere on
 //! its way, or on its whole stroke. A sensor value older than [`SENSOR_AGE`] counts as unknown.
 //!
-//! Detects a stroke that arrives late (a failed work stroke is repeated once, back and forth), an actuator that leaves
-//! its end, both end sensors on at once, and the drive's alarm. A signal shorter than [`DEBOUNCE`] counts as a bounce.
+//! The mechanism detects a stroke that arrives late (a failed work stroke is repeated once, back and forth), an
+//! actuator that leaves its end, both end sensors on at once, and the drive's alarm. A signal shorter than [`DEBOUNCE`]
+//! counts as a bounce.
 
 use super::moves::{Move, Strokes};
 use super::trouble::Trouble;
@@ -19,11 +20,11 @@ use units::{RigTime, Span};
 
 /// Greatest age of a valid sensor value.
 pub const SENSOR_AGE: Span = Span::ms(400);
-/// Time from the start edge until the drive withdraws "in position".
+/// Time from the rising edge of `axis_drive` until the drive withdraws its signal "in position".
 const AXIS_REACTS: Span = Span::ms(15);
 /// Time that a sensor must show a fault: longer than two scans and the bounce of a reed contact.
 pub const DEBOUNCE: Span = Span::ms(60);
-/// Repetitions of a failed work stroke per part.
+/// Number of times that a failed work stroke is repeated per part.
 const RETRIES: u8 = 1;
 
 /// A driven motion that has not arrived yet.
@@ -35,7 +36,7 @@ struct Underway {
 }
 
 impl Underway {
-    /// Returns true when every sensor of its end was read at `since` or later.
+    /// Returns true when every sensor of the motion's end was read at `since` or later.
     fn was_read_since(&self, since: RigTime, image: &Image) -> bool {
         let mut arrival = self.movement.arrival().iter();
         arrival.all(|(point, _)| image.input_at(*point).is_some_and(|at| at >= since))
@@ -99,7 +100,7 @@ impl Mechanism {
         &self.strokes
     }
 
-    /// Returns true when every sensor of the end of `movement` shows it and the motion is over.
+    /// Returns true when every sensor at the end of `movement` shows that end and the motion is over.
     pub fn has_arrived(&self, movement: Move, now: RigTime, image: &Image) -> bool {
         if self.is_moving(movement) {
             return false;
@@ -118,7 +119,7 @@ impl Mechanism {
             .all(|(point, state)| image.input(*point, now, SENSOR_AGE) == Some(*state))
     }
 
-    /// Returns true from the drive of a motion of the same actuator until its arrival.
+    /// Returns true when a motion of the same actuator has been driven and has not arrived.
     pub fn is_moving(&self, movement: Move) -> bool {
         let same = |other: &Move| other.key() == movement.key();
         self.underway
@@ -148,7 +149,8 @@ impl Mechanism {
         self.is_undecided() || self.underway.iter().any(slow)
     }
 
-    /// Marks motions as waiting for a step or for certain sensors; their actuators do not count as arrived.
+    /// Marks motions that wait for the order `step`, or until every end sensor is debounced; their actuators do not
+    /// count as arrived.
     pub fn keep_waiting(&mut self, movements: &[Move]) {
         self.waiting.clear();
         self.waiting.extend_from_slice(movements);
@@ -174,7 +176,8 @@ impl Mechanism {
         self.tried.clear();
     }
 
-    /// Returns strokes by actuator and sensor bounces since the start.
+    /// Returns the strokes of each actuator, the uses of wearing parts and the sensor bounces, counted since the
+    /// program started.
     pub fn wear(&self) -> Vec<(&'static str, u64)> {
         let strokes = self.strokes_made.iter().copied();
         strokes
@@ -183,7 +186,7 @@ impl Mechanism {
             .collect()
     }
 
-    /// Returns the wear counts since the start.
+    /// Returns the use counts of the wearing parts since the program started.
     pub fn uses(&self) -> Uses {
         self.uses
     }
@@ -283,7 +286,7 @@ impl Mechanism {
         self.limits[movement.key().index()]
     }
 
-    /// Position of every actuator, in the order of [`Actuator::ALL`].
+    /// Returns the position of every actuator, in the order of [`Actuator::ALL`].
     fn positions(&self, now: RigTime, image: &Image) -> [Position; 8] {
         Actuator::ALL.map(|actuator| self.position(actuator, now, image))
     }

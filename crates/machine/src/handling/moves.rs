@@ -184,7 +184,7 @@ impl Move {
         Some(station)
     }
 
-    /// Returns the actuator that performs it.
+    /// Returns the actuator that performs the motion.
     pub const fn key(self) -> ActuatorKey {
         match self {
             Move::EscapementRelease | Move::EscapementHold => ActuatorKey::Escapement,
@@ -224,7 +224,7 @@ impl Move {
         }
     }
 
-    /// Returns the bin that the axis goes to.
+    /// Returns the bin that the axis goes to; none for any other motion.
     pub fn bin(self) -> Option<Bin> {
         match self.station()? {
             AxisStation::Bin(bin) => Some(bin),

@@ -21,8 +21,8 @@ use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
 use units::{RigTime, Second};
 
-/// Greatest number of tests of a void reference part: its result affects every later part, and one lost reply should
-/// not force a new calibration.
+/// Greatest number of tests of a reference part whose test is void: its result affects every later part, and one lost
+/// reply should not force a new calibration.
 const REFERENCE_TESTS: u8 = 3;
 
 /// State of a nest.
@@ -62,7 +62,7 @@ pub struct TestTerms<'a> {
     pub device: &'a Device,
     /// True when every result gets confirmation measurements.
     pub thorough: bool,
-    /// Serial number of a reference part whose test calibrates.
+    /// Serial number of the part while reference parts calibrate the rig; none otherwise.
     pub teaching: Option<&'a str>,
 }
 
@@ -151,7 +151,7 @@ impl Nest {
     }
 }
 
-/// Starts the test. An interrupted part goes to retest without one; it gets a row unless it has one already.
+/// Starts the test. An interrupted part goes to retest without one; a row records it, unless it has a row already.
 fn clamped(id: NestId, turn: &mut Turn) -> NestState {
     let part = turn.ledger.part_mut(Place::Nest(id));
     let interrupted = part.as_ref().and_then(|part| part.interrupted.clone());

@@ -1,4 +1,4 @@
-//! Commands of a turn to the rig, and events of its parts.
+//! Commands that a turn gives to the rig, and events of parts in that turn.
 
 use super::ledger::Part;
 use super::moves::Move;
@@ -9,7 +9,7 @@ use crate::rig::bin::Bin;
 use crate::rig::point::{DigitalInput, DigitalOut};
 use units::{RigTime, Second};
 
-/// A job for the measuring line on the part of one nest.
+/// A job of the measuring line on the part in one nest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NestJob {
     /// Nest of the measured part.
@@ -32,14 +32,14 @@ pub struct NestDone {
 pub struct Jog {
     /// The motion.
     pub movement: Move,
-    /// Index of its order among the answers of the turn.
+    /// Index of the order's answer among the answers of the turn.
     pub answer: usize,
 }
 
 /// Commands to the rig.
 #[derive(Debug, Default)]
 pub struct Commands {
-    /// Motions to clear with the guard and drive.
+    /// Motions that the guard must clear and the rig then carries out.
     pub motions: Vec<Move>,
     /// A manual motion.
     pub jog: Option<Jog>,
@@ -56,7 +56,7 @@ pub struct Commands {
     pub safe: bool,
     /// True to discard failed writes and verify every module again.
     pub verify: bool,
-    /// Latest time of the next turn.
+    /// Latest time at which the next turn must begin.
     pub wake_at: Option<RigTime>,
 }
 
@@ -69,7 +69,7 @@ pub struct PartEvents {
     pub interrupted: Vec<Interrupted>,
     /// Parts that left a nest in this turn.
     pub left: Vec<NestExit>,
-    /// Parts confirmed in this turn.
+    /// Parts that a beam confirmed in this turn.
     pub landed: Vec<Landed>,
 }
 
@@ -82,7 +82,7 @@ pub struct Judged {
     pub verdict: Verdict,
     /// Each result against its limit.
     pub judgements: Vec<(Characteristic, Judgement)>,
-    /// Results, with the replies they came from.
+    /// Results, with the replies from which they came.
     pub record: TestRecord,
     /// Time of the verdict.
     pub at: RigTime,
@@ -110,12 +110,12 @@ pub struct Interrupted {
     pub why: String,
 }
 
-/// A part whose beam has confirmed it.
+/// A part that the beam of its bin has confirmed.
 #[derive(Debug, Clone)]
 pub struct Landed {
     /// Role and numbers of the part.
     pub part: Part,
-    /// Bin whose beam counted it.
+    /// Bin whose beam counted the part.
     pub bin: Bin,
     /// Time of the count.
     pub at: RigTime,

@@ -108,7 +108,7 @@ impl Recovery {
         self.refused < self.left.len()
     }
 
-    /// Repeats a reset that the drive has not accepted, without which the axis does not move.
+    /// Repeats the reset until the axis drive has accepted it; before that the axis does not move.
     fn drive(&mut self, turn: &mut Turn, since: RigTime) {
         let taken = since + DRIVE_RESET;
         let looked = turn.image.input_at(DigitalIn::AxisAlarm) >= Some(taken);
@@ -130,7 +130,7 @@ impl Recovery {
         }
     }
 
-    /// Leaves fingers closed that hold a part; the axis takes it to its bin from its present position.
+    /// Keeps fingers closed that hold a part; the axis takes the part to its bin from its present position.
     fn leave_gripped(&mut self, ledger: &Ledger) {
         if ledger.holds(Place::Gripper) {
             self.left
@@ -173,8 +173,8 @@ impl SensedParts {
     }
 }
 
-/// Moves a part from pocket to nest that the pusher delivered before the cut-off: the part in the nest is this one,
-/// not one that slid from the fingers.
+/// Moves to the nest, in the ledger, the part that the pusher delivered before the cut-off: the part in the nest is
+/// this one, not one that slid from the fingers.
 fn pushed(turn: &mut Turn, seen: &SensedParts) {
     let gone = turn.ledger.holds(Place::Pocket) && !seen.pocket;
     if gone && !turn.ledger.holds(Place::NEST) && seen.nest {

@@ -27,7 +27,7 @@ const FALL: Span = Span::ms(1500);
 /// Time after the opening of the fingers at which a part that they still show counts as sticking.
 const STICKS: Span = Span::ms(500);
 
-/// Longest time between a part and a second body clinging to it at the beam.
+/// Longest time between a part and a second body that clings to it, at the beam.
 const SECOND_BODY: Span = Span::ms(80);
 
 /// State of the sorter.
@@ -47,7 +47,8 @@ pub enum Sort {
     Carrying(Bin),
     /// Over the bin since this time.
     OverBin(Bin, RigTime),
-    /// Requests the opening of the fingers, which own the part until it is driven; with the beam's count before.
+    /// The opening of the fingers is requested; the fingers own the part until the rig drives that opening. Holds the
+    /// bin, and the count of its beam before the opening.
     LettingGo(Bin, u32),
     /// The fingers open.
     Opening,
@@ -100,7 +101,7 @@ impl Sort {
         *self == Sort::AtPart && turn.arrived(Move::SortDown) && turn.arrived(Move::GripperOpen)
     }
 
-    /// Records that a cleared motion was driven: opening fingers release their part.
+    /// Records that a cleared motion was driven; fingers that open release their part.
     pub fn driven(self, movement: Move, ledger: &mut Ledger, now: RigTime) -> Sort {
         match (self, movement) {
             (Sort::LettingGo(bin, before), Move::GripperOpen) => {

@@ -9,9 +9,9 @@ use units::Span;
 /// A trouble, with the motion, place, bin or part concerned.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Trouble {
-    /// A stroke missed its end within this time, at the repetition if there is one.
+    /// A stroke, or its repetition if there is one, did not reach its end within this time.
     NotReached(Move, Span),
-    /// A stroke missed its end within this time and is repeated.
+    /// A stroke did not reach its end within this time and is repeated.
     Retried(Move, Span),
     /// An actuator left its end without a command.
     LeftEnd(Move),

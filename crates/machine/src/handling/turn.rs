@@ -51,7 +51,7 @@ impl Turn<'_> {
         self.mechanism.has_arrived(movement, self.now, self.image)
     }
 
-    /// Returns the state of a sensor, if its value is valid.
+    /// Returns the state of a sensor; none unless its value is valid.
     pub fn input(&self, point: impl Into<DigitalInput>) -> Option<bool> {
         self.image.input(point, self.now, SENSOR_AGE)
     }
@@ -71,7 +71,8 @@ impl Turn<'_> {
             && self.arrived(Move::EscapementHold)
     }
 
-    /// Moves the part from the pocket to the nest; a part of this run is the next reference part as long as there is one.
+    /// Moves the part from the pocket to the nest; a part of this run counts as the next reference part, as long as one
+    /// is still to come.
     pub fn enter_nest(&mut self, nest: NestId) {
         let reference = match self.ledger.is_pocket_found() {
             true => None,

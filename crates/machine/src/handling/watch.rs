@@ -1,8 +1,8 @@
 //! Watches resting actuators: each must keep showing its end, and never both ends at once.
 //!
 //! A deviation shorter than [`DEBOUNCE`] is a bounce, which only its counter shows. While a deviation is undecided, no
-//! motion begins. An unread sensor is no trouble here; its line reports it. Watches the drive of the axis after its
-//! reset.
+//! motion begins. An unread sensor is no trouble here; its line reports it. The alarm of the axis drive is watched too,
+//! once the drive has been reset.
 
 use super::mechanism::{DEBOUNCE, SENSOR_AGE};
 use super::moves::Move;
@@ -25,7 +25,7 @@ struct Resting {
 pub struct Watch {
     resting: Vec<Resting>,
     bounces: u64,
-    /// Time of the axis drive's reset; an alarm before it is already being handled.
+    /// Time at which the axis drive was reset; until then its alarm is already being handled.
     drive_reset: Option<RigTime>,
 }
 

@@ -1,11 +1,11 @@
-//! Use counts of wearing parts.
+//! Use counts of the wearing parts.
 
-/// Counts since a start.
+/// Use counts of the wearing parts over some period.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Uses {
-    /// Upward strokes of the probes.
+    /// Number of upward strokes of the probes.
     pub probe_touches: u64,
-    /// Closings of the jaws.
+    /// Number of closings of the jaws.
     pub jaw_closings: u64,
 }
 
@@ -18,7 +18,7 @@ impl Uses {
         ]
     }
 
-    /// Returns the sum of both.
+    /// Returns the sum of these counts and `more`.
     pub fn with(self, more: Self) -> Self {
         Self {
             probe_touches: self.probe_touches + more.probe_touches,
@@ -28,11 +28,11 @@ impl Uses {
 }
 
 named! {
-    /// Wearing part.
+    /// A wearing part.
     Wearing {
-        /// Probes, by touches.
+        /// Probes; their wear is counted in touches.
         Probes = "probes",
-        /// Jaws, by closings.
+        /// Jaws; their wear is counted in closings.
         Jaws = "jaws",
     }
 }

@@ -33,7 +33,7 @@ pub enum Read {
     Points {
         /// Points to read.
         read: Vec<Point>,
-        /// Points kept with their last values.
+        /// Points that are not read; the readings repeat their last values.
         retained: Vec<Point>,
     },
     /// Restart check: asks each module with outputs whether it has restarted since the last such check; a restart
@@ -42,7 +42,7 @@ pub enum Read {
 }
 
 impl Read {
-    /// Reads these points and keeps no others.
+    /// Returns a read of these points without any retained ones.
     pub fn points(read: impl IntoIterator<Item = Point>) -> Self {
         Self::Points {
             read: read.into_iter().collect(),
@@ -91,8 +91,8 @@ pub enum Act {
         /// Longest wait.
         within: Span,
     },
-    /// Reads a word until inputs have these states; if they do not within the time, the runner skips the acts after this
-    /// one.
+    /// Reads a word until inputs have these states; if they do not within the time, the runner skips the acts after
+    /// this one.
     Agree {
         /// The inputs, all of the word, each with its state.
         expected: Vec<(DigitalInput, bool)>,
@@ -123,7 +123,7 @@ pub enum Job {
 pub struct JobDone {
     /// Time at which the last reply of the job was complete.
     pub at: RigTime,
-    /// Reason for a failure: line, address, command, number of tries.
+    /// Reason for a failure (line, address, command, number of tries); none after a success.
     pub trouble: Option<String>,
 }
 
@@ -142,7 +142,7 @@ pub enum RunnerState {
     Trouble(String),
 }
 
-/// Time of a test by purpose.
+/// Time of a test, by what it was spent on.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Spent {
     /// Time of transactions.
@@ -177,13 +177,13 @@ pub struct Runner {
     began: RigTime,
     since: RigTime,
     mark: RigTime,
-    /// Time since the mark on a bus without delay.
+    /// Time since the mark, as it would be on a bus without delay.
     since_mark: Span,
     /// Time of the last read in which the awaited point was inactive.
     looked: Option<RigTime>,
     /// Earliest time at which the marked event may have happened.
     marked_from: RigTime,
-    /// Delay of the ramp started after the mark.
+    /// Delay of the start of the ramp that began after the mark.
     late: Span,
     spent: Spent,
     /// Readings so far.

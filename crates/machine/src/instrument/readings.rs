@@ -58,10 +58,10 @@ impl Readings {
         self.samples.iter().filter(move |it| it.point == point)
     }
 
-    /// Stores the values of a finished job. `at`: the current time, and the time of its last reply.
+    /// Stores the values of a finished job. `at`: the current time, and the time of the job's last reply.
     ///
     /// # Errors
-    /// Returns the name of a point that has no value.
+    /// Fails with the name of a point that has no value.
     pub(super) fn take(
         &mut self,
         read: &Read,

@@ -1,9 +1,9 @@
 //! The trace of a test, sample by sample: the evidence kept for a rejected part.
 //!
-//! Holds analog samples and counts as read, the values commanded to sources and to the traced outputs of a kind, and
-//! words of inputs. A bit signal has one sample at each change and one at the last poll before it, so that polling for
-//! many milliseconds takes two samples. A test stores its first [`MAX_SAMPLES`] samples; a test of the default recipe
-//! has some 150.
+//! The trace holds analog samples and counts as read, the values commanded to sources and to the traced outputs of a
+//! kind, and words of inputs. A bit signal has one sample at each change and one at the last poll before it, so that
+//! polling for many milliseconds takes two samples. A test stores its first [`MAX_SAMPLES`] samples; a test of the
+//! default recipe has some 150.
 
 use crate::rig::point::{AnalogOutput, DigitalOutput, Quantity};
 use crate::rig::sample::{CountSample, Quality, Sample};

@@ -40,7 +40,7 @@ pub struct AxisPoint {
     pub x_mm: f64,
 }
 
-/// A bin of this rig.
+/// A bin of this rig, with its point of the axis and its beam.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Chute {
     bin: Bin,
@@ -101,7 +101,8 @@ impl AxisTable {
             .chain(self.bins().map(AxisStation::Bin))
     }
 
-    /// Returns the chute of a bin; panics for an unknown bin, which the loading of a recipe rejects.
+    /// Returns the chute of a bin; panics for an unknown bin, which a recipe can never name because loading it checks
+    /// its bins.
     fn chute(&self, bin: Bin) -> &Chute {
         let found = self.chutes.iter().find(|chute| chute.bin == bin);
         match found {

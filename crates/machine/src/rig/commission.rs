@@ -12,7 +12,7 @@
 //! | `~AA0`, modules with outputs | host watchdog not tripped |
 //! | `~AA2`, modules with outputs | host watchdog as wired, with `host_watchdog_ms` |
 //! | `~AA4`, modules with outputs | the safe value |
-//! | `$AA5`, not the 7080 | anything: reading it clears the flag, so that a later reset shows |
+//! | `$AA5`, not the 7080 | any answer: reading the reset status clears it, so that a later reset shows |
 
 use super::comparison::Comparison;
 use super::model::Terminals;
@@ -47,7 +47,7 @@ pub struct Mismatch {
     pub found: String,
     /// Value of the wiring.
     pub expected: String,
-    /// Command that corrects it, if there is one. Writes EEPROM.
+    /// Command that corrects the setting, if there is one; it writes the module's EEPROM.
     pub remedy: Option<Command>,
 }
 

@@ -1,6 +1,7 @@
 //! Compares one answer of one module with the wiring.
 //!
-//! Accepts any value in the bits of the format byte without a setting (mains filter, model codes of digital modules).
+//! The comparison accepts any value in those bits of the format byte that have no setting (mains filter, model codes of
+//! digital modules).
 
 use super::commission::Mismatch;
 use super::model::Model;
@@ -166,7 +167,8 @@ impl Comparison<'_> {
         ))
     }
 
-    /// No single command can correct a safe value: the module stores its present output as the safe value.
+    /// Compares the safe value. A mismatch has no remedy: no single command corrects it, because the module stores its
+    /// present output as the safe value.
     pub(super) fn safe_level(&self, found: Level) -> Option<Mismatch> {
         let safe = self.module.safe_volts;
         let volts = found.in_units(self.module.type_code).unwrap_or(f64::NAN);

@@ -37,7 +37,7 @@ impl InputNames {
         (at >= self.before_beams).then_some(DigitalInput::at(at))
     }
 
-    /// Checks that the file has no other names.
+    /// Checks that the file wires no digital input with another name.
     pub(super) fn check(&self, settings: &RigSettings) -> Result<(), Fault> {
         let mut others = settings.digital_in.keys();
         let Some(name) = others.find(|name| !self.names.contains(name)) else {
@@ -49,7 +49,7 @@ impl InputNames {
     }
 }
 
-/// Adds the wired names, each once.
+/// Adds those names of `more` that the file wires, each once.
 fn add_wired<'a>(
     names: &mut Vec<String>,
     settings: &RigSettings,

@@ -1,6 +1,6 @@
 //! The output image: the value of every output, and the writes that bring it about.
 //!
-//! - Writes are absolute: one command sets all outputs of a module, so the next one repairs a lost one.
+//! - Writes are absolute: one command sets all outputs of a module, so the next write makes good a lost one.
 //! - Only [`Outputs::apply`], with a motion cleared by the guard, switches an output that moves something.
 //!   [`Outputs::everything_safe`] is the one exception: it has the same effect as the host watchdog and the hard
 //!   emergency stop.
@@ -41,7 +41,7 @@ pub enum DriveError {
 /// A write to send.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Write {
-    /// The line to send it on.
+    /// The line on which to send the write.
     pub line: LineId,
     /// The addressed module; the caller passes it to [`Outputs::confirmed`] or [`Outputs::failed`].
     pub module: ModuleId,
@@ -94,7 +94,7 @@ impl Outputs {
     /// Switches an output that moves nothing.
     ///
     /// # Errors
-    /// Returns [`DriveError::NeedsClearance`] for an output that moves something, in either direction.
+    /// Fails with [`DriveError::NeedsClearance`] for an output that moves something, in either direction.
     pub fn set(&mut self, point: impl Into<DigitalOutput>, on: bool) -> Result<(), DriveError> {
         let point = point.into();
         match point.of_machine().filter(|known| known.moves()) {
@@ -109,7 +109,7 @@ impl Outputs {
     /// Drives a cleared motion.
     ///
     /// # Errors
-    /// Returns an error for a motion that valves or point table cannot make, and changes nothing.
+    /// Fails for a motion that the valves or the point table cannot make, and then changes nothing.
     pub fn apply(&mut self, cleared: Cleared) -> Result<(), DriveError> {
         let motion = cleared.motion();
         let to_work = |actuator| motion.target_mm(actuator).map(|to_mm| to_mm > 0.0);
@@ -198,11 +198,11 @@ impl Outputs {
         }
     }
 
-    /// Sets one of the outputs that add up to a supply. `supply`: its share, V at the supply. Returns the share that
-    /// the nearest step gives.
+    /// Sets one of the outputs whose sum is the coil supply. `supply`: its share, V at the supply. Returns the share
+    /// that the nearest step of the output gives.
     ///
     /// # Errors
-    /// Returns an error for a voltage beyond the output, and changes nothing.
+    /// Fails for a voltage beyond the range of the output, and then changes nothing.
     pub fn set_supply(
         &mut self,
         point: AnalogOutput,

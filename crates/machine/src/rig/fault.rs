@@ -14,7 +14,7 @@ pub struct Fault {
     pub expected: String,
     /// Path of the conflicting setting, if any.
     pub other: Option<String>,
-    /// For an unknown name: the known ones.
+    /// The known names, when the name is unknown; else empty.
     pub known: Vec<String>,
 }
 

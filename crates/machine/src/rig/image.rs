@@ -77,7 +77,7 @@ impl Image {
     /// Stores a valid reply; `at`: time of the request. Ignores replies without process values.
     ///
     /// # Errors
-    /// Returns [`Unexpected`], and changes nothing.
+    /// Fails with [`Unexpected`], and then changes nothing.
     pub fn accept(
         &mut self,
         line: LineId,
@@ -240,8 +240,8 @@ impl Image {
         std::mem::take(&mut self.resets)
     }
 
-    /// Returns the state of an input just requested: as [`Image::input`], no older than the longest transaction of its
-    /// line.
+    /// Returns the state of an input that was just requested, as [`Image::input`] does, if it is no older than the
+    /// longest transaction of its line.
     pub fn answered_input(&self, point: impl Into<DigitalInput>, now: RigTime) -> Option<bool> {
         let point = point.into();
         let line = self
@@ -251,7 +251,7 @@ impl Image {
         self.input(point, now, self.wiring.answer_max_age(line))
     }
 
-    /// Returns the state of a digital input, if its request is at most `max_age` old.
+    /// Returns the state of a digital input; none unless its request is at most `max_age` old.
     pub fn input(
         &self,
         point: impl Into<DigitalInput>,
@@ -265,7 +265,8 @@ impl Image {
         fresh.then(|| terminal.read(model.input_bits(word.bits)))
     }
 
-    /// Returns the state of the emergency-stop contact; `None` from the age at which it counts as open.
+    /// Returns the state of the emergency-stop contact; `None` once the value is so old that the contact counts as
+    /// open.
     pub fn emergency_stop_ok(&self, now: RigTime) -> Option<bool> {
         let max_age = self.wiring.emergency_stop_max_age();
         self.input(DigitalIn::EmergencyStopOk, now, max_age)

@@ -23,7 +23,7 @@ impl Correction {
     };
 }
 
-/// Reason why an output cannot give a share of a supply.
+/// Reason why an output cannot give its share of the coil supply.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SupplyError {
     /// The module of this point has no analog output.
@@ -44,14 +44,15 @@ pub enum SupplyError {
     },
 }
 
-/// Up to this far below zero (V at the terminal) a level is an offset that the output cannot remove; zero is written.
+/// Greatest voltage below zero, V at the terminal, that counts as an offset which the output cannot remove: zero is
+/// written instead.
 const UNREACHABLE_OFFSET_V: f64 = 0.02;
 
 impl Wiring {
     /// Checks that a source can give this share of the supply, V at the supply.
     ///
     /// # Errors
-    /// Returns the limit of the source.
+    /// Fails with the limit of the source.
     pub fn reaches(&self, point: AnalogOutput, supply: Volt) -> Result<(), SupplyError> {
         let terminal = self.analog_out(point);
         let (name, module) = (self.source_name(point), self.module(terminal.module));
@@ -59,7 +60,8 @@ impl Wiring {
     }
 }
 
-/// Returns the level nearest to a share of the supply, and the share it gives. `gain`: supply volts per terminal volt.
+/// Returns the level nearest to a share of the supply, and the share that this level gives. `gain`: supply volts per
+/// terminal volt.
 pub(super) fn nearest_level(
     point: &'static str,
     module: &Module,

@@ -11,7 +11,7 @@
 //! - [`drive`], [`level`], [`supply`]: output values, and the ranges of their amplifier; a motion only after the guard's
 //!   clearance.
 //!
-//! Pure: times are arguments, commands are values; the caller sends them.
+//! All modules are pure: times are arguments, and commands are values that the caller sends.
 
 pub mod axis;
 pub mod bin;

@@ -119,7 +119,7 @@ impl Model {
         }
     }
 
-    /// Returns true when readings or settings have a data format.
+    /// Returns true for a model whose readings or settings have a data format.
     pub fn is_analog(self) -> bool {
         self.is_analog_in() || self.channels(Terminals::AnalogOut) > 0
     }
@@ -160,7 +160,7 @@ impl Model {
 }
 
 impl Terminals {
-    /// Returns the words for messages.
+    /// Returns the words that messages use for these terminals.
     pub fn words(self) -> &'static str {
         match self {
             Self::AnalogIn => "analog inputs",

@@ -1,4 +1,4 @@
-//! Resolves modules from the settings: names, addresses, and exactly the settings of each model.
+//! Resolves modules from the settings: names, addresses, and for each exactly the settings that its model has.
 
 use super::fault::Fault;
 use super::model::{Model, Terminals};

@@ -115,7 +115,7 @@ macro_rules! handles {
         pub struct $handle(pub(super) u16);
 
         impl $handle {
-            /// Makes the handle of a table index.
+            /// Makes the handle of the point at a table index.
             pub(super) fn at(index: usize) -> Self {
                 assert!(index < usize::from(u16::MAX), "more points than an index can count");
                 Self(index as u16)

@@ -7,7 +7,7 @@ use dcon::{Channel, Command, DataFormat, Digital, InputForm, OutputForm, UpTo};
 use std::collections::BTreeSet;
 
 impl Module {
-    /// Returns the format of its readings; `None` unless it measures.
+    /// Returns the format of the module's readings; `None` unless it measures.
     pub fn input_form(&self) -> Option<InputForm> {
         let format = self.format?;
         if self.model.channels(Terminals::AnalogIn) > 0 {
@@ -19,7 +19,7 @@ impl Module {
         }
     }
 
-    /// Returns the format of its levels; `None` unless it has an analog output.
+    /// Returns the format of the module's levels; `None` unless it has an analog output.
     pub fn output_form(&self) -> Option<OutputForm> {
         if self.model.channels(Terminals::AnalogOut) == 0 {
             return None;
@@ -44,8 +44,8 @@ impl Module {
 }
 
 impl Wiring {
-    /// Returns the read that refreshes a module's values in the image: all inputs or outputs, all readings (or the one
-    /// enabled channel), the present level, counter 0.
+    /// Returns the command that refreshes a module's values in the image: it reads all inputs or outputs, all readings
+    /// (or the one enabled channel), the present level, or counter 0.
     pub fn poll(&self, module: ModuleId) -> Command {
         let module = self.module(module);
         if let Some(form) = module.input_form() {
@@ -106,7 +106,7 @@ impl Wiring {
         }
     }
 
-    /// Returns the read of all enabled channels of a converter.
+    /// Returns the command that reads all enabled channels of a converter.
     fn scan(&self, module: ModuleId) -> Command {
         match self.module(module).input_form() {
             Some(form) => dcon::AnalogIn::ReadAll(form).to(self.module(module).address),
@@ -141,7 +141,7 @@ impl Wiring {
         dcon::Counter::Read(number).to(self.module(terminal.module).address)
     }
 
-    /// Returns the read of a digital input's event counter.
+    /// Returns the command that reads a digital input's event counter.
     pub fn read_events(&self, point: impl Into<DigitalInput>) -> Command {
         let Terminal {
             module, channel, ..
@@ -149,7 +149,8 @@ impl Wiring {
         Digital::ReadEvents { channel }.to(self.module(module).address)
     }
 
-    /// Returns the command that clears a digital input's event counter. Prefer differences modulo 65536.
+    /// Returns the command that clears a digital input's event counter. Prefer the difference of two counts modulo
+    /// 65536.
     pub fn clear_events(&self, point: impl Into<DigitalInput>) -> Command {
         let Terminal {
             module, channel, ..

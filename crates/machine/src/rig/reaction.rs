@@ -3,11 +3,12 @@
 //! Every second transaction of the contact's line reads its module, whatever writes and beam counts wait. In the worst
 //! case the contact opens just after a read. The bound then adds up:
 //!
-//! - the rest of that poll: answered at the last moment, repeated, and confirmed by the name of its module, each at
-//!   the last moment, as after a silent module, whose late reply could pass for the contact's,
-//! - one other transaction, the longest of that line, which fails: a first answer at the last moment, on probation and
-//!   therefore repeated, time-out, the request for the silent module's name, also unanswered, and a wait for silence
-//!   that a late reply breaks once,
+//! - the rest of that poll: the answer, its repetition and the answer to a request for the module's name, each at the
+//!   last moment. A line asks for all three after a module was silent, because its late reply could pass for the
+//!   contact's,
+//! - one other transaction, the longest of that line, which fails: a first answer at the last moment, which the line
+//!   does not trust yet and therefore asks for again, a time-out, the request for the silent module's name, also
+//!   unanswered, and a wait for silence that a late reply breaks once,
 //! - the poll that reads the open contact, as long as the first. If it gets no answer it occupies the line longer,
 //!   with the same result: a contact older than [`Wiring::emergency_stop_max_age`] counts as open, and the rest of
 //!   that poll passes before the first write,
@@ -47,7 +48,7 @@ impl Wiring {
         self.emergency_stop_max_age() + made_safe.unwrap_or_default()
     }
 
-    /// Returns the time from the decision to the last write on a line.
+    /// Returns the longest time from the decision to make the outputs safe until the last write on a line.
     fn longest_writing(&self, line: LineId) -> Span {
         let busy = match line == self.emergency_stop_line() {
             true => Span(self.longest_failure(line).0 - self.confirmed(line).0),
@@ -59,28 +60,28 @@ impl Wiring {
         writes.fold(busy, |time, _| time + write)
     }
 
-    /// Returns the age at which the state of the emergency-stop contact expires: the next answer must have come by
-    /// then, after any one transaction between.
+    /// Returns the age at which the state of the emergency-stop contact expires: by then the next answer must have
+    /// come, even after one other transaction in between.
     pub fn emergency_stop_max_age(&self) -> Span {
         let line = self.emergency_stop_line();
         self.confirmed(line) + self.longest_failure(line) + self.confirmed(line)
     }
 
-    /// Returns the age at which a requested input no longer counts as the answer to its request: read and confirmed at
-    /// the last moment.
+    /// Returns the age at which a requested input no longer counts as the answer to its request: the time of a read
+    /// that is confirmed at the last moment.
     pub fn answer_max_age(&self, line: LineId) -> Span {
         self.confirmed(line)
     }
 
-    /// Returns the time of a read of a digital module, its repetition, and the name of its module, each at the last
-    /// moment.
+    /// Returns the time that a read of a digital module takes with its repetition and the request for the module's
+    /// name, each answered at the last moment.
     fn confirmed(&self, line: LineId) -> Span {
         let read = self.short_exchange(line);
         read + read + read
     }
 
-    /// Returns the time of a transaction with a digital module, also one that writes or reads a name: no reply is longer
-    /// than a count.
+    /// Returns the time of a transaction with a digital module, including writes and requests for its name: no reply is
+    /// longer than a count.
     fn short_exchange(&self, line: LineId) -> Span {
         self.answered(line, LONGEST_DIGITAL_REPLY, self.digital_allowance())
     }
@@ -112,7 +113,7 @@ impl Wiring {
         Span::seconds(self.bus.analog_allowance_ms / 1000.0)
     }
 
-    /// Returns the time of characters on the wire, rounded up to the microsecond.
+    /// Returns the time that these characters take on the wire, rounded up to the microsecond.
     fn wire(&self, line: LineId, characters: u64) -> Span {
         const BITS_PER_CHARACTER: u64 = 10;
         Span(

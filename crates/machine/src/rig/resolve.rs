@@ -1,9 +1,10 @@
 //! Resolves the settings of `config/rig.toml` to a checked [`Wiring`].
 //!
-//! Checks what takes more than one key: every point is one of the machine, one that a kind of device declares, or the
-//! beam of a bin; it names an existing module, a channel of it, and terminals of the right kind; no two points share a
-//! terminal and no two modules an address on one line; a module has exactly the settings of its model; the axis has
-//! one point for each place; the ranges of the supply have codes of their own; the emergency stop acts in time.
+//! The resolution checks whatever involves more than one key: every point is one of the machine, one that a kind of
+//! device declares, or the beam of a bin; it names an existing module, a channel of it, and terminals of the right
+//! kind; no two points share a terminal and no two modules an address on one line; a module has exactly the settings of
+//! its model; the axis has one point for each place; the ranges of the supply have codes of their own; the emergency
+//! stop acts in time.
 
 use super::axis::AxisTable;
 use super::declared::{Declared, InputNames};
@@ -125,7 +126,7 @@ struct TerminalsInUse<'a> {
 }
 
 impl TerminalsInUse<'_> {
-    /// Reserves the terminal of `key`, or returns why it cannot.
+    /// Reserves the terminal of `key`; fails with the reason why it cannot.
     fn take(
         &mut self,
         key: &str,

@@ -15,11 +15,12 @@ pub struct Origin {
     pub module: ModuleId,
     /// The channel, from 0.
     pub channel: Channel,
-    /// The command that read it.
+    /// The command that read the sample.
     pub command: Command,
     /// The reply as received, lead included; checksum and CR only if the line passes them on.
     pub raw: Arc<str>,
-    /// Time of the request. The conversion may be older by its conversion time, and is never newer than the reply.
+    /// Time of the request. The converted voltage may be older by the time of one conversion, and is never newer than
+    /// the reply.
     pub at: RigTime,
 }
 

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 pub struct RigSettings {
     /// Bus lines by name.
     pub line: BTreeMap<String, LineSettings>,
-    /// Times and counts of every line.
+    /// Times and counts that hold for every line.
     pub bus: BusSettings,
     /// Demands of the plant on the emergency stop.
     pub safety: SafetySettings,
@@ -35,7 +35,7 @@ pub struct RigSettings {
     pub digital_in: BTreeMap<String, DigitalInSettings>,
     /// Digital outputs by point name.
     pub digital_out: BTreeMap<String, ChannelSettings>,
-    /// Longest strokes by actuator.
+    /// Longest time of a stroke, by actuator.
     pub actuator: BTreeMap<String, ActuatorSettings>,
     /// Stations of the sort axis that are not bins.
     pub axis: BTreeMap<String, StationSettings>,
@@ -131,7 +131,7 @@ pub struct AnalogOutSettings {
 /// One range of the supply.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct SupplyRangeSettings {
-    /// Bits of the two outputs that select it, read back alike.
+    /// Bits of the two outputs that select the range; the two inputs read back the same bits.
     pub code: u8,
     /// Multiplies the gains of the sources and divides those of the inputs behind the amplifier.
     pub factor: f64,
@@ -164,7 +164,7 @@ pub struct DigitalInSettings {
 /// Supervision of an actuator's strokes.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct ActuatorSettings {
-    /// Longest stroke before an alarm, ms.
+    /// Longest time of a stroke before an alarm, ms.
     pub timeout_ms: f64,
 }
 

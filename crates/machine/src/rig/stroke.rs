@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use units::Span;
 
 named! {
-    /// Actuator of a time-out, a retry or an alarm; both jaws are one clamp.
+    /// Actuator that a time-out, a retry or an alarm concerns; both jaws count as one, the clamp.
     ActuatorKey {
         /// Escapement between track and pocket.
         Escapement = "escapement",

@@ -1,7 +1,7 @@
 //! Ranges of the supply: an amplifier whose gain two outputs of the rig select and two inputs read back.
 //!
-//! The gains in `config/rig.toml` hold at factor 1. A lot runs in one range: [`Wiring::in_range`] returns the wiring with
-//! the gains of that range, so that levels, readings and rates need no range of their own.
+//! The gains in `config/rig.toml` hold at factor 1. A lot runs in one range: [`Wiring::in_range`] returns the wiring
+//! with the gains of that range, so that levels, readings and rates need no range of their own.
 
 use super::fault::Fault;
 use super::point::{DigitalInput, DigitalOutput};
@@ -19,9 +19,9 @@ pub const READ_BACK: [&str; 2] = ["supply_range_0_set", "supply_range_1_set"];
 /// One range of the supply.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SupplyRange {
-    /// Name in the file; the module of the strongest source on a rig without ranges.
+    /// Name in the file; on a rig without ranges the name of the module of its strongest source.
     pub name: String,
-    /// Bits that select it and read it back.
+    /// Bits that select the range and read it back.
     pub code: u8,
     /// Multiplies the gains of all sources, and divides those of the inputs behind the amplifier.
     pub factor: f64,
@@ -62,16 +62,16 @@ impl fmt::Display for RangeMismatch {
 /// The points that select a range and read it back, bit 0 first.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RangeSelector {
-    /// Outputs.
+    /// Outputs that select the range.
     pub outputs: [DigitalOutput; 2],
-    /// Inputs.
+    /// Inputs that read the range back.
     pub inputs: [DigitalInput; 2],
     /// Names of the ranges by code.
     names: BTreeMap<u8, String>,
 }
 
 impl RangeSelector {
-    /// Returns the mismatch of the code read back with that of `range`; `None` when they agree.
+    /// Returns how the code read back differs from that of `range`; `None` when they agree.
     pub fn mismatch(&self, range: &SupplyRange, read_back: u8) -> Option<RangeMismatch> {
         let name = self.names.get(&read_back).cloned();
         (read_back != range.code).then(|| RangeMismatch {
@@ -123,7 +123,7 @@ impl SupplyDemand {
     /// Returns the smallest range that gives voltage and current; panics for a rig without sources.
     ///
     /// # Errors
-    /// Names the key that needs too much, and the limit of the rig.
+    /// Fails with the key that needs too much, and the limit of the rig.
     pub fn range<'a>(&self, wiring: &'a Wiring) -> Result<&'a SupplyRange, Fault> {
         let enough = |range: &&SupplyRange| self.volts <= range.max;
         let mut ranges = wiring.supply_ranges.iter().filter(enough);
@@ -160,7 +160,7 @@ impl SupplyDemand {
 }
 
 impl Wiring {
-    /// Returns this rig with its supply in `range`.
+    /// Returns this wiring with the gains that hold in `range`.
     pub fn in_range(&self, range: &SupplyRange) -> Self {
         assert!(self.supply_range.is_none(), "gains of one range already");
         let mut ranged = self.clone();

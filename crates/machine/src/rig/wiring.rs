@@ -107,7 +107,7 @@ pub struct Wiring {
     pub lines: Vec<Line>,
     /// Modules by line and address.
     pub modules: Vec<Module>,
-    /// Times and counts of every line.
+    /// Times and counts that hold for every line.
     pub bus: BusSettings,
     /// Demands of the plant on the emergency stop.
     pub safety: SafetySettings,

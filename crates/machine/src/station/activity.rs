@@ -1,13 +1,13 @@
-//! Activity of the station for views, in more detail than the state of the outer machine.
+//! Activity of the station for views, in more detail than the PackML state.
 
 use super::packml::State;
 
-/// Activity of the station.
+/// Activity of the station; each line says what the station does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Activity {
     /// The run is over.
     Ended,
-    /// Waits for the first reading of the safety inputs.
+    /// Waits until the safety inputs are read for the first time.
     WaitingForSensors,
     /// Moves actuators to their rest ends.
     Homing,
@@ -21,7 +21,7 @@ pub enum Activity {
     Running,
     /// Handles reference parts.
     ReferenceParts,
-    /// Rests in this state of the outer machine.
+    /// Stays in this PackML state, without an activity of its own.
     Resting(State),
 }
 

@@ -17,11 +17,11 @@ use units::RigTime;
 named! {
     /// State of a listed alarm.
     Condition {
-        /// The cause is present, no person has acknowledged it.
+        /// The cause is present, and no person has acknowledged the alarm.
         Unacknowledged = "unacknowledged",
-        /// The cause is present, a person has acknowledged it.
+        /// The cause is present, and a person has acknowledged the alarm.
         Acknowledged = "acknowledged",
-        /// The cause went away before the acknowledgement.
+        /// The cause went away before a person acknowledged the alarm.
         Returned = "returned",
     }
 }
@@ -31,7 +31,7 @@ named! {
 pub struct ListedAlarm {
     /// Code and arguments.
     pub alarm: Alarm,
-    /// Its state.
+    /// State of the alarm.
     pub condition: Condition,
     /// Time of the first occurrence.
     pub raised: RigTime,
@@ -39,9 +39,9 @@ pub struct ListedAlarm {
     pub count: u32,
     /// True when no other alarm was active before it.
     pub first_out: bool,
-    /// End of its time on the shelf.
+    /// End of the time for which the alarm is shelved; none while it is not shelved.
     pub shelved_until: Option<RigTime>,
-    /// True for an alarm of an earlier run, whose times do not apply to this one.
+    /// True for an alarm of an earlier run, whose times do not apply to this run.
     pub inherited: bool,
 }
 
@@ -74,8 +74,8 @@ impl Annunciator {
         std::mem::take(&mut self.changed)
     }
 
-    /// Lists an alarm that was unacknowledged when the program ended, as returned: this run detects the cause again. A
-    /// shelved alarm stays shelved.
+    /// Lists, as returned, an alarm that was unacknowledged when the program ended; if the cause remains, this run
+    /// detects it again. A shelved alarm stays shelved.
     pub fn inherit(&mut self, alarm: Alarm, count: u32, shelved_until: Option<RigTime>) {
         self.changed = true;
         self.listed.push(ListedAlarm {
@@ -134,7 +134,7 @@ impl Annunciator {
         again || PER_PART.contains(&known.alarm.code)
     }
 
-    /// Clears the sensor-cleared alarms whose cause is not in `there`.
+    /// Clears the alarms that a sensor clears, except those whose code is in `there`.
     pub fn sensed(&mut self, there: &[Alarm]) {
         self.gone(|one| {
             let by_sensor = one.entry().cleared_by == ClearedBy::Sensor;
@@ -142,7 +142,7 @@ impl Annunciator {
         });
     }
 
-    /// Clears the operator-cleared alarms.
+    /// Clears the alarms that an operator clears.
     pub fn cleared(&mut self) {
         self.gone(|one| one.entry().cleared_by == ClearedBy::Operator);
     }
@@ -168,7 +168,7 @@ impl Annunciator {
         assert!(!active, "an alarm without cause is active");
     }
 
-    /// Acknowledges the alarm of this code, or all; returns false when there is none.
+    /// Acknowledges the alarm with this code, or all alarms without a code; returns false when there is none.
     pub fn acknowledge(&mut self, code: Option<&str>) -> bool {
         let mut found = false;
         for one in &mut self.listed {
@@ -186,7 +186,7 @@ impl Annunciator {
         found
     }
 
-    /// Shelves the alarm of this code; returns false when there is none.
+    /// Shelves the alarm with this code; returns false when there is none.
     pub fn shelve(&mut self, code: &str, until: RigTime) -> bool {
         let one = self
             .listed
@@ -213,7 +213,7 @@ impl Annunciator {
             .find(|one| one.is_active() && one.entry().reaction == stops)
     }
 
-    /// Returns the first active alarm with an abort whose sensor still shows the cause.
+    /// Returns the first active alarm with the reaction `Abort` whose sensor still shows the cause.
     pub fn still_sensed(&self) -> Option<&ListedAlarm> {
         self.listed.iter().find(|one| {
             let entry = one.entry();

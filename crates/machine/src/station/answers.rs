@@ -81,7 +81,7 @@ impl Station {
         let (commands, stuck) = self.alarms.panel.look(now, image, self.machine.state);
         for command in commands {
             let answer = self.order(Order::Command(command), now, output);
-            // No person can restart an unattended machine.
+            // A stop ends an unattended run, because no person could restart the machine.
             self.machine.stopping |= command == Command::Stop && !self.plan.attended;
             output.pressed.push((command, answer));
         }
@@ -91,7 +91,7 @@ impl Station {
     /// Checks that the state allows a command now; a screen shows the reason next to the button.
     ///
     /// # Errors
-    /// Returns the reason.
+    /// Fails with the reason when the state does not allow the command.
     pub fn may(&self, command: Command) -> Result<(), Refused> {
         if packml::next(self.machine.state, On::Command(command)).is_none() {
             return Err(Refused::WrongState(command, self.machine.state));
@@ -125,7 +125,7 @@ impl Station {
     /// Checks that the operator may leave the lot as it is, so that another lot can begin.
     ///
     /// # Errors
-    /// Returns the reason.
+    /// Fails with the reason when the operator must not leave the lot.
     pub fn may_leave(&self) -> Result<(), Refused> {
         if self.machine.mode != Mode::Production {
             return Err(self.wrong_mode("start", Mode::Production));
@@ -166,7 +166,7 @@ impl Station {
     /// Checks that the lot may end before its count.
     ///
     /// # Errors
-    /// Returns the reason.
+    /// Fails with the reason when the lot must not end yet.
     pub fn may_close(&self) -> Result<(), Refused> {
         self.may(Command::Complete).or_else(|_| self.may_leave())
     }
@@ -174,7 +174,7 @@ impl Station {
     /// Checks that the state allows a change of mode.
     ///
     /// # Errors
-    /// Returns the reason.
+    /// Fails with the reason when the state does not allow the change.
     pub fn may_change_mode(&self) -> Result<(), Refused> {
         if packml::may_change_mode(self.machine.state) {
             return Ok(());
@@ -185,7 +185,7 @@ impl Station {
     /// Checks that an actuator may be jogged now; the guard checks the motion itself.
     ///
     /// # Errors
-    /// Returns the reason.
+    /// Fails with the reason when no actuator may be jogged.
     pub fn may_jog(&self) -> Result<(), Refused> {
         if self.machine.mode == Mode::Production {
             return Err(self.wrong_mode("jog", Mode::Manual));
@@ -202,7 +202,7 @@ impl Station {
     /// Checks that a motion of the sequence is waiting for a step.
     ///
     /// # Errors
-    /// Returns the reason.
+    /// Fails with the reason when no motion waits.
     pub fn may_step(&self) -> Result<(), Refused> {
         if self.machine.mode != Mode::Maintenance {
             return Err(self.wrong_mode("step", Mode::Maintenance));
@@ -239,7 +239,7 @@ impl Station {
     }
 }
 
-/// Checks that no alarm remains.
+/// Fails with the alarm whose cause remains, if there is one.
 fn gone(cause: Option<&ListedAlarm>) -> Result<(), Refused> {
     match cause {
         Some(cause) => Err(Refused::CauseRemains(Box::new(cause.alarm.clone()))),

@@ -7,7 +7,7 @@ use crate::rig::stroke::ActuatorKey;
 use std::fmt;
 use texts::{Args, Lang, Message};
 
-/// Reaction of the machine to an alarm.
+/// Reaction of the machine to an alarm; each line says what the machine does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reaction {
     /// Makes the outputs safe at once.
@@ -20,14 +20,14 @@ pub enum Reaction {
     Nothing,
 }
 
-/// How the cause of an alarm ends.
+/// What ends the cause of an alarm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ClearedBy {
     /// The sensor that has shown the cause.
     Sensor,
     /// The order `clear`, `unhold` or `reset`.
     Operator,
-    /// The alarm itself: it reports an instant.
+    /// The alarm itself, because it reports an instant.
     Itself,
 }
 
@@ -36,7 +36,7 @@ pub enum ClearedBy {
 pub struct Entry {
     /// Reaction of the machine.
     pub reaction: Reaction,
-    /// How the cause ends.
+    /// What ends the cause.
     pub cleared_by: ClearedBy,
 }
 
@@ -48,7 +48,7 @@ macro_rules! codes {
         pub enum AlarmCode { $($(#[$doc])* $code $(($subject))?,)+ }
 
         impl AlarmCode {
-            /// Every code, with each of its subjects.
+            /// Returns every code, with each of its subjects (actuators or wearing parts).
             pub fn all() -> impl Iterator<Item = Self> {
                 [$(each!($code $($subject)?)),+].concat().into_iter()
             }
@@ -139,7 +139,7 @@ codes! {
     MagazineEmpty = "magazine_empty", Suspend, Sensor;
     /// The beam of a bin stays dark.
     BinFull = "bin_full", Suspend, Sensor;
-    /// A stroke has missed its end; the machine repeats it once.
+    /// A stroke has not reached its end; the machine repeats the stroke once.
     Retried of ActuatorKey = "retried", Nothing, Itself;
     /// A push button stays down.
     ButtonStuck = "button_stuck", Nothing, Sensor;
@@ -163,13 +163,13 @@ codes! {
     RejectRateLimit = "lot_discard_limit", Hold, Operator;
     /// The contact of the probes at the coil exceeds its limit.
     ProbeContact = "probe_contact", Nothing, Operator;
-    /// Probes or jaws have reached their limit of uses.
+    /// The use count of the probes or the jaws has reached its limit.
     Worn of Wearing = "worn", Nothing, Operator;
     /// The stored calibration is not valid for a lot.
     CalibrationInvalid = "calibration_invalid", Abort, Operator;
 }
 
-/// Alarms after which the station tests no part before a new calibration.
+/// Alarms after which the station tests no part until it has a new calibration.
 pub const NEEDS_CALIBRATION: [AlarmCode; 2] =
     [AlarmCode::CalibrationFailed, AlarmCode::CalibrationOverdue];
 

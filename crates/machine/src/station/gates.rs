@@ -1,13 +1,15 @@
 //! Gates of a lot: conditions for the test of the next part, in addition to those of the machine.
 //!
-//! - *First article*: the first parts get confirmation measurements, every result a mean.
-//! - *Reference check*: compares a reference part, measured like a first article, with its certificate: at the start on a
-//!   stored calibration, after a number of parts, or after a number of hours. By parts the machine expects it at its place
-//!   in the magazine; by hours the line holds and requests it. A failed check holds the line, and only reference parts
-//!   are judged until one agrees with its certificate. An interrupted check begins again.
-//! - *Calibration*: one that expires during a lot stops it; the next start makes a new one.
+//! - *First article*: the first parts get confirmation measurements, so that every result is a mean.
+//! - *Reference check*: compares a reference part, measured like a first article, with its certificate: at the start on
+//!   a stored calibration, after a number of parts, or after a number of hours. When the check is due by parts, the
+//!   machine expects the reference part at its place in the magazine; when it is due by hours, the line holds and
+//!   requests the part. A failed check holds the line, and only reference parts are judged until one agrees with its
+//!   certificate. An interrupted check begins again.
+//! - *Calibration*: a calibration that expires during a lot stops the lot; the next start makes a new one.
 //! - *Reject-rate limit*: too many failed parts hold the line, once.
-//! - *Wear*: a counter at its limit raises an alarm, once, and the line continues; so does the mean probe contact.
+//! - *Wear*: a counter at its limit raises an alarm, once, and the line continues; the mean resistance of the probe
+//!   contact does the same.
 
 use super::Station;
 use super::catalogue::AlarmCode;
@@ -22,7 +24,7 @@ use crate::handling::wear::{Uses, Wearing};
 use serde::Deserialize;
 use units::{Ohm, RigTime, Span};
 
-/// Parts judged before the reject-rate limit applies to a lot of unknown size.
+/// Number of parts judged before the reject-rate limit applies to a lot of unknown size.
 const MIN_JUDGED: u64 = 20;
 
 /// Settings of `lot.toml`; by default no gate applies.
@@ -37,7 +39,7 @@ pub struct LotSettings {
     /// When a reference part is checked.
     #[serde(rename = "golden_check")]
     pub reference_check: CheckSettings,
-    /// Uses after which probes and jaws are worn.
+    /// Use counts at which probes and jaws count as worn, and the limit of the probe contact.
     pub wear: WearSettings,
 }
 
@@ -64,11 +66,11 @@ impl CheckSettings {
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default)]
 pub struct WearSettings {
-    /// Limit of the strokes of the probes.
+    /// Number of probe strokes at which the probes count as worn.
     pub probe_touches: Option<u64>,
-    /// Limit of the closings of the jaws.
+    /// Number of jaw closings at which the jaws count as worn.
     pub jaw_closings: Option<u64>,
-    /// Limit of the resistance of the coil's two force contacts, ohm.
+    /// Resistance of the coil's two force contacts above which an alarm is raised, ohm.
     pub probe_contact_ohm: Option<f64>,
 }
 
@@ -77,7 +79,7 @@ pub struct WearSettings {
 pub(super) struct Gates {
     /// True while only reference parts are tested, until one agrees with its certificate.
     checking: bool,
-    /// Time of the last good check, and number of parts of the lot in the nest until then.
+    /// Time of the last good check, and number of parts of the lot that had entered the nest by then.
     good: Option<(RigTime, u64)>,
     judged: u64,
     failed: u64,
@@ -135,7 +137,7 @@ impl Gates {
 }
 
 impl Station {
-    /// Plans a reference part next; only reference parts are judged until one agrees with its certificate.
+    /// Plans a reference part as the next part; only reference parts are judged until one agrees with its certificate.
     pub(super) fn begin_check(&mut self) {
         let serials = &self.plan.reference_serials;
         self.lot.plan_references(&serials[..serials.len().min(1)]);
@@ -178,7 +180,7 @@ impl Station {
         !self.lot.reference_left.is_empty() || !self.device.is_calibrated()
     }
 
-    /// Returns true when the part in the nest gets confirmation measurements.
+    /// Returns true when every result of the part in the nest gets confirmation measurements.
     pub(super) fn is_thorough(&self) -> bool {
         match self.line.ledger.part(Place::NEST).map(|part| &part.kind) {
             Some(Kind::Lot(seq)) => *seq <= self.plan.lot.first_article_parts,
@@ -187,7 +189,7 @@ impl Station {
         }
     }
 
-    /// Concludes a reference check; begins it again when it was interrupted or has failed.
+    /// Concludes a reference check; begins the check again when it was interrupted or has failed.
     pub(super) fn check(&mut self, judged: &Judged, serial: &str, outcome: &mut Outcome) {
         if judged.part.interrupted.is_some() {
             return self.begin_check();
@@ -225,7 +227,7 @@ impl Station {
         }
     }
 
-    /// Returns the uses of wearing parts in this run.
+    /// Returns the use counts of the wearing parts in this run.
     pub fn uses(&self) -> Uses {
         self.line.mechanism.uses()
     }

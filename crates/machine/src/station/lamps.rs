@@ -5,7 +5,7 @@
 //! | green | the line feeds or finishes parts |
 //! | yellow | the line waits or comes to rest: idle, held, suspended, complete |
 //! | red | aborted, or an unacknowledged alarm with a reaction |
-//! | buzzer | the first [`CALL`] of a red light |
+//! | buzzer | for [`CALL`] after the red light has come on |
 
 use super::annunciator::{Condition, ListedAlarm};
 use super::catalogue::Reaction;

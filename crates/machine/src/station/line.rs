@@ -20,7 +20,7 @@ pub(super) struct Line {
     pub recovery: Recovery,
     /// True while every actuator is homed; a jog and the safe state reset it.
     pub homed: bool,
-    /// Dark beams, each with the time since which it is dark.
+    /// Beams that are dark, each with the time since which it has been dark.
     pub dark: Vec<(DigitalInput, RigTime)>,
     /// Motions that wait for the order `step`, in maintenance.
     pub stepwise: VecDeque<Move>,
@@ -101,7 +101,8 @@ impl Line {
         self.mechanism.situation(parts, now, image)
     }
 
-    /// Holds motions back until every end sensor is debounced: for an undecided one the guard assumes the whole stroke.
+    /// Holds motions back until every end sensor is debounced, because for an undecided one the guard assumes the whole
+    /// stroke.
     pub fn postpone(&mut self, now: RigTime, output: &mut TurnOutput) {
         self.postponed.append(&mut output.rig.motions);
         if self.mechanism.is_undecided() {
@@ -122,7 +123,8 @@ impl Line {
             && self.mechanism.moving().next().is_none()
     }
 
-    /// Returns true when no part is inside and every row is durable; without `pocket` a part may wait there.
+    /// Returns true when no part is inside and every row is durable; unless `pocket`, a part of this run may wait in
+    /// the pocket.
     pub fn is_finished(&self, pocket: bool, recorded: u64, output: &TurnOutput) -> bool {
         let ledger = &self.ledger;
         let empty = ledger.each().all(|(place, _)| place == Place::Pocket);

@@ -1,9 +1,9 @@
-//! State and mode of the outer machine, with the pending requests of operator and program.
+//! State and mode of the rig's state machine ([`packml`]), with the pending requests of operator and program.
 
 use super::packml::{self, Mode, On, State};
 use units::RigTime;
 
-/// State and mode of the outer machine.
+/// State and mode of the rig's state machine ([`packml`]), with the pending requests.
 #[derive(Debug)]
 pub(super) struct Machine {
     pub state: State,
@@ -12,7 +12,7 @@ pub(super) struct Machine {
     /// Time at which the state was entered; zero before the first turn.
     pub entered: RigTime,
     pub mode: Mode,
-    /// Time of the first turn, or of the first since the modules were verified.
+    /// Time of the first turn, or of the first turn after the modules were verified.
     pub began: Option<RigTime>,
     /// True before the first command, which the program itself gives.
     pub fresh: bool,

@@ -1,11 +1,14 @@
-//! The station: the sequence as a specification.
+//! The station: takes the rig through a lot. This page is its specification.
 //!
-//! `Station::step(now, inputs) -> TurnOutput` is a function of its state and arguments: no clock, no I/O, no `async`. The
-//! caller may call it at any time; the states hold the deadlines.
+//! `Station::step(now, inputs) -> TurnOutput` is a function of its state and arguments: no clock, no I/O, no `async`.
+//! The caller may call it at any time; the states hold the deadlines.
 //!
-//! The outer machine is [`packml`]; `states` performs its states, `answers` answers orders.
-//! 1. `Resetting`: [`crate::handling::recovery`] brings every actuator to its rest end and discharges what is found inside;
-//! 2. `Starting`: without a valid calibration probes up in the empty nest, measurements of the references;
+//! The state machine of the whole rig, around those of feed, nest and sorter, is [`packml`]: names of ISA-TR88.00.02
+//! (PackML). `states` performs its states, `answers` answers orders.
+//! 1. `Resetting`: [`crate::handling::recovery`] brings every actuator to its rest end and discharges the parts found
+//!    inside;
+//! 2. `Starting`: without a valid calibration the probes rise in the empty nest and the station measures the
+//!    references;
 //! 3. `Execute`: reference parts when there is no calibration, then the lot behind its [`gates`], through the
 //!    [`crate::handling::feeder`];
 //! 4. `Completing`, `Stopping`, `Holding`, `Suspending`: the parts inside go to their waiting positions.
@@ -14,8 +17,8 @@
 //! cause is gone and a person has acknowledged it. After `clear` and `reset` the station continues; a part inside is
 //! void, "interrupted". A stale sensor raises an alarm; the station never guesses its state.
 //!
-//! A run ends with its lot, or when a person leaves the lot for another one. Unattended ([`Plan::attended`] is false) it
-//! also ends with an alarm that needs a person. The station resets and starts a lot by itself; between lots
+//! A run ends with its lot, or when a person leaves the lot for another one. Unattended ([`Plan::attended`] is false)
+//! it also ends with an alarm that needs a person. The station resets and starts a lot by itself; between lots
 //! ([`Plan::between_lots`]) it acts only on orders.
 
 mod activity;
@@ -69,7 +72,7 @@ pub struct Plan {
     pub reference_serials: Vec<String>,
     /// True with a valid calibration: the run measures neither references nor reference parts.
     pub calibrated: bool,
-    /// Life of a calibration, microseconds.
+    /// How long a calibration is valid, microseconds.
     pub valid_us: i64,
     /// Wall clock at rig time zero, microseconds since 1970 UTC.
     pub epoch_us: i64,
@@ -80,9 +83,9 @@ pub struct Plan {
     /// State in which the last lot left the machine, between lots; `None` during a lot. Between lots the machine
     /// discharges parts found inside and begins nothing by itself.
     pub between_lots: Option<State>,
-    /// Gates of the lot.
+    /// Settings of the lot's gates.
     pub lot: LotSettings,
-    /// Uses of wearing parts before this run.
+    /// Use counts of the wearing parts before this run.
     pub worn: Uses,
     /// Parts that the previous run left inside.
     pub left: Inside,
@@ -184,7 +187,7 @@ impl Station {
         &self.line.ledger
     }
 
-    /// Returns sensors and motions.
+    /// Returns the mechanism: end sensors and motions.
     pub fn mechanism(&self) -> &Mechanism {
         &self.line.mechanism
     }
@@ -209,17 +212,17 @@ impl Station {
         self.plan.between_lots.is_some()
     }
 
-    /// Returns strokes, touches and bounces since the start, by name.
+    /// Returns the counts of strokes, touches and bounces since the program started, by name.
     pub fn wear(&self) -> Vec<(&'static str, u64)> {
         self.line.mechanism.wear()
     }
 
-    /// Returns the state of the outer machine.
+    /// Returns the PackML state of the rig.
     pub fn outer(&self) -> State {
         self.machine.state
     }
 
-    /// Returns the mode of the outer machine.
+    /// Returns the PackML mode of the rig.
     pub fn mode(&self) -> Mode {
         self.machine.mode
     }

@@ -11,9 +11,9 @@ use texts::Message;
 /// One order.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Order {
-    /// A command of the outer machine.
+    /// A command to the rig's state machine.
     Command(Command),
-    /// Another mode.
+    /// Changes the mode.
     Mode(Mode),
     /// One motion by hand, through the same guard as every other.
     Jog(Move),
@@ -23,11 +23,11 @@ pub enum Order {
     LampTest,
     /// Ends the run and leaves the lot as it is, so that another one can begin.
     Leave,
-    /// Ends the lot after the parts inside, whatever its count.
+    /// Ends the lot once the parts inside are finished, whatever its count.
     Close,
-    /// Acknowledges the alarm of this code; `None`: every alarm.
+    /// Acknowledges the alarm with this code; `None`: every alarm.
     Acknowledge(Option<String>),
-    /// Hides the alarm of this code for a number of minutes, see [`shelf_minutes`].
+    /// Hides the alarm with this code for a number of minutes, see [`shelf_minutes`].
     Shelve(String, u32),
 }
 
@@ -36,7 +36,7 @@ pub fn shelf_minutes(requested: Option<u32>) -> u32 {
     requested.unwrap_or(30).clamp(1, 480)
 }
 
-/// Reason of a refused order.
+/// Reason why an order is refused.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Refused {
     /// The run is over.
@@ -49,7 +49,7 @@ pub enum Refused {
         order: &'static str,
         /// The mode.
         found: Mode,
-        /// The mode that allows it.
+        /// The mode that allows the order.
         needed: Mode,
     },
     /// Actuators have been jogged since the reset.
@@ -58,7 +58,7 @@ pub enum Refused {
     NoLot,
     /// A part of the lot is still in nest or gripper.
     PartInside,
-    /// Another lot needs a machine at rest; with the command that leads there, if any.
+    /// Another lot needs a machine at rest; holds the state, and the command that leads to rest, if there is one.
     NotAtRest(State, Option<Command>),
     /// The mode can change only at rest.
     ModeLocked(State),
@@ -70,17 +70,17 @@ pub enum Refused {
     NoMotionWaits,
     /// The cause of this alarm remains.
     CauseRemains(Box<Alarm>),
-    /// The list has no alarm of this code.
+    /// The list has no alarm with this code.
     NoSuchAlarm,
     /// The guard refuses the motion, for this reason.
     Collision(String),
-    /// The program has refused the order before the station, for this reason.
+    /// The program has refused the order before it reached the station, for this reason.
     Denied(String),
     /// A member of the order has an unknown word.
     UnknownWord {
         /// Name of the member.
         member: &'static str,
-        /// Its word; empty when it is missing.
+        /// The unknown word; empty when the member is missing.
         found: String,
         /// Every allowed word.
         known: Vec<&'static str>,
@@ -90,7 +90,7 @@ pub enum Refused {
 }
 
 impl Refused {
-    /// Returns its text with the arguments.
+    /// Returns the text of the refusal, with its arguments.
     pub fn message(&self) -> Message {
         let of = |code| Message::new("refusal", code);
         let in_state = |code, state: &State| of(code).with("state", state.name());

@@ -1,4 +1,4 @@
-//! The outer machine: states, commands and modes with the names of ISA-TR88.00.02 (PackML).
+//! State machine of the whole rig, around those of feed, nest and sorter: names of ISA-TR88.00.02 (PackML).
 //!
 //! [`TRANSITIONS`] alone defines the order of states: station, screen buttons and `golden/packml.dot` derive from it.
 //! `Execute` feeds, clamps, measures and sorts parts; `Completing`, `Stopping` and `Holding` finish them.
@@ -9,13 +9,13 @@
 //! - Files hold the names, never numbers.
 
 named! {
-    /// State of the outer machine.
+    /// State of the rig; each line says what the rig does, or how it stands.
     State {
         /// Powered, outputs safe, every position unknown.
         Stopped = "Stopped",
         /// Reads sensors, homes actuators, discharges parts found inside.
         Resetting = "Resetting",
-        /// Homed and empty, waits for a start.
+        /// Homed and empty; waits for a start.
         Idle = "Idle",
         /// Measures the references in the empty nest if there is no calibration.
         Starting = "Starting",
@@ -25,15 +25,15 @@ named! {
         Completing = "Completing",
         /// The lot is done, outputs are safe.
         Complete = "Complete",
-        /// Moves to a point at which the sequence can rest, cause inside the machine.
+        /// Moves to a point at which the sequence can rest; the cause is inside the machine.
         Holding = "Holding",
-        /// At rest, cause inside the machine.
+        /// At rest; the cause is inside the machine.
         Held = "Held",
         /// Checks that parts and actuators are where they were.
         Unholding = "Unholding",
-        /// Moves to a point at which the sequence can rest, cause outside the machine.
+        /// Moves to a point at which the sequence can rest; the cause is outside the machine.
         Suspending = "Suspending",
-        /// At rest, cause outside the machine.
+        /// At rest; the cause is outside the machine.
         Suspended = "Suspended",
         /// Resumes after the cause outside has gone.
         Unsuspending = "Unsuspending",
@@ -49,13 +49,13 @@ named! {
 }
 
 named! {
-    /// Commands that a person or another machine may give.
+    /// Commands that a person or another machine may give; each line says what the rig then does.
     Command {
         /// Homes and empties the machine.
         Reset = "reset",
         /// Begins the lot.
         Start = "start",
-        /// Ends the run after the parts inside.
+        /// Ends the run once the parts inside are finished.
         Stop = "stop",
         /// Brings the line to rest at the next possible point.
         Hold = "hold",
@@ -69,13 +69,13 @@ named! {
         Abort = "abort",
         /// Leaves `Aborted` after the cause has gone.
         Clear = "clear",
-        /// Ends the lot after the parts inside, before its count is reached.
+        /// Ends the lot once the parts inside are finished, before its count is reached.
         Complete = "complete",
     }
 }
 
 named! {
-    /// Mode of use of the machine.
+    /// Mode of the rig; each line says what an operator may have it do.
     Mode {
         /// Runs lots.
         Production = "production",
@@ -100,7 +100,7 @@ pub enum On {
 pub struct Transition {
     /// State that the machine leaves.
     pub from: State,
-    /// Cause.
+    /// Cause of the transition.
     pub on: On,
     /// State that the machine enters.
     pub to: State,

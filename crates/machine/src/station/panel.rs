@@ -21,9 +21,9 @@ use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
 use units::{RigTime, Span};
 
-/// Debounce time: contacts bounce for some 10 ms, a finger stays for 100.
+/// Debounce time: contacts bounce for some 10 ms, a finger stays down for 100 ms.
 const SETTLED: Span = Span::ms(30);
-/// Time down after which a button counts as stuck.
+/// Time for which a button must be down to count as stuck.
 const HELD: Span = Span::ms(5_000);
 
 /// State of the three buttons.
@@ -35,7 +35,7 @@ struct Button {
     point: DigitalIn,
     /// Last sampled state, and the time of the sample that first showed it.
     seen: Option<(bool, RigTime)>,
-    /// True after a release since its last order, or since the start.
+    /// True when the button has been released since its last order, or since the start.
     armed: bool,
 }
 

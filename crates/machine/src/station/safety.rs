@@ -80,7 +80,8 @@ impl Station {
         }
     }
 
-    /// Returns the alarms of the safety inputs: of an open one, and after the first scan of an unread one.
+    /// Returns an alarm for each safety input that is open, and one for an unread input once all have been read before
+    /// or the time for the first scan is over.
     fn safety(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
         let late = now.since(self.machine.began.unwrap_or(now)) > FIRST_SCAN;
         let (mut alarms, mut unread) = (Vec::new(), Vec::new());
@@ -117,7 +118,7 @@ impl Station {
         alarms
     }
 
-    /// Returns true while low pressure follows from an emergency stop and no actuator has to move.
+    /// Returns true while an emergency stop explains the low pressure and no actuator has to move.
     fn is_vented(&self, now: RigTime) -> bool {
         let rests = packml::is_aborted(self.machine.state)
             || matches!(self.machine.state, State::Stopped | State::Complete);
@@ -169,7 +170,7 @@ impl Station {
         self.show(now, output);
     }
 
-    /// Lists the alarms of this turn and reacts to them; `output` keeps the new ones.
+    /// Lists the alarms of this turn and reacts to them; adds the new ones to `output`.
     pub(super) fn raise_all(&mut self, now: RigTime, output: &mut TurnOutput) {
         for alarm in std::mem::take(&mut output.notes.trouble) {
             self.raise(alarm.clone(), now, output);
@@ -177,14 +178,14 @@ impl Station {
         }
     }
 
-    /// Lists an alarm; `output` keeps a new one.
+    /// Lists an alarm; adds it to `output` if it is new.
     pub(super) fn raise(&mut self, alarm: Alarm, now: RigTime, output: &mut TurnOutput) {
         if self.alarms.annunciator.raise(&alarm, now) {
             output.record.alarms.push(alarm);
         }
     }
 
-    /// Shows state and alarms on the stack light; notes a change of the list of alarms.
+    /// Shows state and alarms on the stack light; tells `output` when the list of alarms has changed.
     pub(super) fn show(&mut self, now: RigTime, output: &mut TurnOutput) {
         let listed = self.alarms.annunciator.listed();
         let stack = self

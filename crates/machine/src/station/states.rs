@@ -1,4 +1,4 @@
-//! Actions of each state of the outer machine in a turn, and its end.
+//! What the station does in each PackML state during a turn, and when it leaves the state.
 
 use super::Station;
 use super::catalogue::{AlarmCode, Reaction};

@@ -46,12 +46,12 @@ pub struct Timeouts {
 }
 
 impl Timeouts {
-    /// Restarts every clock, at a new state of the outer machine.
+    /// Restarts every clock, because the rig has entered another PackML state.
     pub fn forget(&mut self) {
         self.since.clear();
     }
 
-    /// Returns the alarm of the last step beyond its timeout.
+    /// Returns the alarm of a step that has exceeded its timeout; of several, that of the last one.
     pub fn look(
         &mut self,
         now: RigTime,

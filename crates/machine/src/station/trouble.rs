@@ -16,7 +16,7 @@ use units::Span;
 pub struct Alarm {
     /// What happened.
     pub code: AlarmCode,
-    /// Arguments of its text.
+    /// Arguments of the alarm's text.
     pub args: Args,
 }
 
@@ -53,14 +53,14 @@ impl From<Trouble> for Alarm {
 }
 
 impl Alarm {
-    /// Returns the text; the cause for an alarm that an older version stored without arguments.
+    /// Returns the text of the alarm; only its cause when an older version stored the alarm without arguments.
     pub fn text(&self, lang: Lang) -> String {
         let said = self.code.message(self.args.clone()).try_say(lang);
         let [cause, ..] = self.code.help(lang);
         said.unwrap_or_else(|| cause.to_owned())
     }
 
-    /// Returns the text of a refusal because of this alarm.
+    /// Returns the message of a refusal that this alarm causes; the arguments name the alarm.
     pub fn inside(&self, refusal: &'static str) -> Message {
         let args = self.args.clone().with("alarm", self.code.text_id());
         Message::of("refusal", refusal, args)
@@ -79,13 +79,13 @@ impl Alarm {
         }
     }
 
-    /// Makes an alarm whose text contains that of `fault`, with its arguments.
+    /// Makes an alarm whose text contains the text and the arguments of `fault`.
     fn of_a_fault(code: AlarmCode, fault: &Message) -> Self {
         let args = fault.args().clone().with("fault", fault.code());
         Self { code, args }
     }
 
-    /// An actuator did not show the end of its motion in time.
+    /// Returns the alarm that an actuator did not show the end of its motion in time.
     pub fn not_reached(movement: Move, limit: Span) -> Self {
         let wanted = movement.arrival();
         let wanted = wanted
@@ -97,81 +97,81 @@ impl Alarm {
             .with("expects", wanted.collect::<Vec<_>>().join(", "))
     }
 
-    /// A stroke has not arrived; the machine repeats it once.
+    /// Returns the alarm that a stroke has not arrived; the machine repeats the stroke once.
     pub fn retried(movement: Move, limit: Span) -> Self {
         Self::of_a_move(AlarmCode::Retried(movement.key()), movement)
             .with("limit_ms", limit.0 / 1000)
     }
 
-    /// An actuator left its end by itself.
+    /// Returns the alarm that an actuator left its end by itself.
     pub fn left_end(movement: Move) -> Self {
         Self::of_a_move(AlarmCode::LeftEnd(movement.key()), movement)
             .with("place", movement.actuator_key())
     }
 
-    /// Both end sensors of an actuator are on.
+    /// Returns the alarm that both end sensors of an actuator are on.
     pub fn both_ends(movement: Move) -> Self {
         Self::of_a_move(AlarmCode::BothEnds(movement.key()), movement)
             .with("place", movement.actuator_key())
     }
 
-    /// The guard refused a motion.
+    /// Returns the alarm that the guard refused a motion.
     pub fn refused(movement: Move, refusal: &str) -> Self {
         Self::of_a_move(AlarmCode::MotionRefused, movement).with("detail", refusal)
     }
 
-    /// A line or module fails to answer correctly.
+    /// Returns the alarm that a line or module fails to answer correctly.
     pub fn bus(text: &str) -> Self {
         Self::from(AlarmCode::BusTrouble).with("detail", text)
     }
 
-    /// A safety input has no fresh sample.
+    /// Returns the alarm that a safety input has no fresh sample.
     pub fn stale(input: DigitalIn) -> Self {
         Self::from(AlarmCode::SensorStale).with("input", input)
     }
 
-    /// A push button stays down.
+    /// Returns the alarm that a push button stays down.
     pub fn button_stuck(button: DigitalIn) -> Self {
         Self::from(AlarmCode::ButtonStuck).with("input", button)
     }
 
-    /// A step has exceeded its timeout.
+    /// Returns the alarm that a step has exceeded its timeout.
     pub fn step_too_long(step: &str, waited: Span) -> Self {
         Self::from(AlarmCode::StepTooLong)
             .with("step", step)
             .with("waited_s", format!("{:.0}", waited.as_seconds()))
     }
 
-    /// The host watchdog of a module has made its outputs safe.
+    /// Returns the alarm that the host watchdog of a module has made its outputs safe.
     pub fn watchdog_tripped(module: &str) -> Self {
         Self::from(AlarmCode::WatchdogTripped).with("module", module)
     }
 
-    /// The mean probe contact over the last parts exceeds its limit.
+    /// Returns the alarm that the mean probe contact over the last parts exceeds its limit.
     pub fn probe_contact(mean_ohm: f64, limit_ohm: f64) -> Self {
         Self::from(AlarmCode::ProbeContact)
             .with("mean_ohm", format!("{mean_ohm:.2}"))
             .with("limit_ohm", format!("{limit_ohm:.2}"))
     }
 
-    /// A reference check is due by time, so the operator must load the reference part.
+    /// Returns the alarm that a reference check is due by time, so the operator must load the reference part.
     pub fn reference_check_due(serial: &str) -> Self {
         Self::from(AlarmCode::ReferenceCheckDue).with("serial", serial)
     }
 
-    /// A reference part disagrees with its certificate.
+    /// Returns the alarm that a reference part disagrees with its certificate.
     pub fn reference_check_failed(fault: &Message) -> Self {
         Self::of_a_fault(AlarmCode::ReferenceCheckFailed, fault)
     }
 
-    /// The test of a reference part was interrupted and begins again.
+    /// Returns the alarm that the test of a reference part was interrupted and begins again.
     pub fn reference_repeated(serial: &str, why: &str) -> Self {
         Self::from(AlarmCode::ReferenceRepeated)
             .with("serial", serial)
             .with("detail", why)
     }
 
-    /// More parts have failed than the reject-rate limit allows.
+    /// Returns the alarm that more parts have failed than the reject-rate limit allows.
     pub fn reject_rate_limit(failed: u64, judged: u64, limit_pct: f64) -> Self {
         Self::from(AlarmCode::RejectRateLimit)
             .with("failed", failed)
@@ -179,14 +179,14 @@ impl Alarm {
             .with("limit_pct", limit_pct)
     }
 
-    /// The supply is in another range than the one selected.
+    /// Returns the alarm that the supply is in another range than the one selected.
     fn supply_range(RangeMismatch { selected, found }: RangeMismatch) -> Self {
         Self::from(AlarmCode::SupplyRange)
             .with("selected", selected)
             .with("found", found)
     }
 
-    /// A wearing part has reached its limit of uses.
+    /// Returns the alarm that the use count of a wearing part has reached its limit.
     pub fn worn(what: Wearing, count: u64, limit: u64) -> Self {
         Self::from(AlarmCode::Worn(what))
             .with("wears", what.name())
@@ -194,17 +194,17 @@ impl Alarm {
             .with("limit", limit)
     }
 
-    /// An interrupted calibration has left its channel mask in a module.
+    /// Returns the alarm that an interrupted calibration has left its channel mask in a module.
     pub fn calibration_cut_off(module: &str) -> Self {
         Self::from(AlarmCode::CalibrationCutOff).with("module", module)
     }
 
-    /// References or reference parts give no calibration.
+    /// Returns the alarm that references or reference parts give no calibration.
     pub fn calibration(fault: &Message) -> Self {
         Self::of_a_fault(AlarmCode::CalibrationFailed, fault)
     }
 
-    /// The stored calibration is unusable, so that no lot begins.
+    /// Returns the alarm that the stored calibration is unusable, so that no lot begins.
     pub fn calibration_invalid(why: &str) -> Self {
         Self::from(AlarmCode::CalibrationInvalid).with("detail", why)
     }

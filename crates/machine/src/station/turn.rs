@@ -14,15 +14,15 @@ use units::RigTime;
 pub struct Inputs<'a> {
     /// Process image.
     pub image: &'a Image,
-    /// Result of the requested job, once.
+    /// Result of the requested job, in one turn only.
     pub job: Option<NestDone>,
     /// Ordinal up to which parts are durably recorded.
     pub recorded: u64,
-    /// Trouble of a line or module, once.
+    /// Trouble of a line or module, in one turn only.
     pub bus: Option<Alarm>,
-    /// True when the operator ends the lot after the parts inside (Ctrl-C, once).
+    /// True when the operator ends the lot after the parts inside (one Ctrl-C).
     pub stop: bool,
-    /// True when the operator ends the lot at once (Ctrl-C, twice).
+    /// True when the operator ends the lot at once (two Ctrl-C).
     pub abort: bool,
     /// Orders of screens in order of arrival; [`TurnOutput::answers`] has the answer to each.
     pub orders: Vec<Order>,
@@ -42,13 +42,13 @@ pub struct Checked {
 }
 
 named! {
-    /// How a run ends, by the name in its summary.
+    /// How a run ends; the summary of the run uses these names.
     Ending {
         /// Every part was judged and binned.
         Complete = "complete",
-        /// The operator stopped it after the parts inside.
+        /// The operator stopped the run, which ended after the parts inside.
         Stopped = "stopped",
-        /// An alarm stopped it.
+        /// An alarm stopped the run.
         Alarm = "alarm",
     }
 }
@@ -62,13 +62,13 @@ pub struct Record {
     pub alarms: Vec<Alarm>,
     /// True when the list of alarms has changed.
     pub alarms_changed: bool,
-    /// A complete calibration.
+    /// Calibration that was completed in this turn.
     pub calibrated: Option<Calibration>,
-    /// Result of a reference check.
+    /// Result of the reference check that ended in this turn.
     pub checked: Option<Checked>,
     /// True when the lot itself begins, after calibration and reference parts.
     pub lot_began: bool,
-    /// The end of the run.
+    /// How the run ended, if it ended in this turn.
     pub ending: Option<Ending>,
 }
 

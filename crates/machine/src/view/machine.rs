@@ -5,10 +5,10 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use texts::Message;
 
-/// The PackML state and everything that belongs to it on the page.
+/// The PackML state of the rig and everything that belongs to it on the page.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Machine {
-    /// State by its PackML name, `Execute`.
+    /// State by its PackML name, for example `Execute`.
     pub state: String,
     /// `production`, `maintenance`, `manual`.
     pub mode: String,
@@ -28,9 +28,9 @@ pub struct Machine {
     pub jogs: Vec<MotionView>,
     /// The last motion that the guard refused; null after the next driven one.
     pub refused: Option<MotionView>,
-    /// Wall time spent in each phase of the cycle since the start, seconds.
+    /// Wall time spent in each phase of the cycle since the program started, seconds.
     pub phases_s: BTreeMap<String, f64>,
-    /// Strokes and contacts since the start of the program, by name.
+    /// Counts of strokes, touches and bounces since the program started, by name.
     pub wear: BTreeMap<String, u64>,
     /// Resistance of the two force contacts of the coil in series, ohm, mean over the last parts of the lot; null
     /// before the first.
@@ -63,7 +63,7 @@ pub struct ActuatorView {
     pub from_mm: f64,
     /// Highest possible position, mm; equal to `from_mm` when the actuator is known to rest there.
     pub to_mm: f64,
-    /// True while it moves.
+    /// True while the actuator moves.
     pub moving: bool,
 }
 
@@ -76,7 +76,7 @@ pub struct Token {
     pub name: String,
     /// Bin of the part; empty before its verdict.
     pub bin: String,
-    /// Reason for the interrupted test; empty without one.
+    /// Reason for the interruption of the test; empty without one.
     pub interrupted: String,
 }
 
@@ -87,6 +87,6 @@ pub struct Reaction {
     pub bound_ms: f64,
     /// Longest reaction that the plant accepts.
     pub accepted_ms: f64,
-    /// Longest age of the emergency-stop input since the start.
+    /// Longest age of the emergency-stop input since the program started.
     pub worst_age_ms: f64,
 }

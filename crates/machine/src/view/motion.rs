@@ -33,7 +33,7 @@ pub struct RefusedView {
     pub mover: String,
     /// Body in its way; empty when the motion itself is invalid.
     pub blocker: String,
-    /// Least distance of the two during the motion, mm.
+    /// Least distance between the two bodies during the motion, mm.
     pub distance_mm: f64,
     /// Least distance required, mm.
     pub margin_mm: f64,

@@ -33,7 +33,7 @@ pub struct Order {
     /// For `mode`: `production`, `maintenance`, `manual`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mode: Option<String>,
-    /// For `jog`: `pusher_extend`, ...
+    /// For `jog`: name of the motion, for example `pusher_extend`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<String>,
     /// For `acknowledge` (all alarms if absent) and `shelve`: code of the alarm.
@@ -62,7 +62,7 @@ pub struct Order {
     pub counter: Option<String>,
 }
 
-/// Person who gives an order, and network address.
+/// Person who gives an order, and the network address from which it comes.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct By {
     /// Name at login.
@@ -78,7 +78,7 @@ pub struct By {
 pub struct AnsweredOrder {
     /// The order.
     pub order: Order,
-    /// The person who gave it.
+    /// The person who gave the order.
     pub by: By,
     /// Reason for the refusal, English; `None` for an accepted order.
     pub refused: Option<String>,

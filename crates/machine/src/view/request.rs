@@ -11,7 +11,7 @@ pub type Answer = Result<(), Message>;
 pub struct OrderRequest {
     /// The order.
     pub order: Order,
-    /// The person who gives it.
+    /// The person who gives the order.
     pub by: By,
     /// Reason for a refusal decided before the station; the request then serves the audit trail only.
     pub denied: Option<String>,
@@ -29,7 +29,7 @@ impl OrderRequest {
         }
     }
 
-    /// Makes a request that is refused already and serves the audit trail only; it sends no answer.
+    /// Makes a request that is already refused and serves the audit trail only; it sends no answer.
     pub fn denied(order: Order, by: By, why: String) -> Self {
         Self {
             denied: Some(why),

@@ -20,6 +20,6 @@ pub struct Message {
     pub way: String,
     /// Characters; non-printable ones as `\r` or `\xNN`.
     pub text: String,
-    /// Meaning of request and reply in words; empty for a request.
+    /// Meaning of the reply and its request, in words; empty when the frame is a request.
     pub meaning: String,
 }

@@ -22,7 +22,7 @@ pub enum Read {
     Gate,
     /// Temperature of the magazine track, taken as that of the part.
     Track,
-    /// Reads the restart flag of each module with outputs; a restart raises an alarm.
+    /// Restart flag of each module with outputs; a set flag raises an alarm.
     Resets,
 }
 
@@ -33,9 +33,10 @@ pub enum Act {
     Board(Vec<(DigitalOut, bool)>),
     /// Sets supply outputs one after the other, in volts at the coil.
     Supply(Vec<(AnalogOut, Volt)>),
-    /// Reads once.
+    /// Reads these inputs once.
     Read(Read),
-    /// Selects the range of the supply with this code; the board takes it once the drive is off and all sources are at zero.
+    /// Selects the range of the supply with this code; the board switches once the drive is off and all sources are at
+    /// zero.
     SelectRange(u8),
     /// Reads the board until it is in the range with this code; if the wait ends first, the runner skips the acts after
     /// this one. A rig with one range reads the board once.
@@ -67,7 +68,8 @@ pub enum Act {
 }
 
 impl Points {
-    /// Translates acts for this rig; `scanned` are the enabled channels of the coil converter.
+    /// Translates acts into those of a rig, whose points are these; `scanned` lists the enabled channels of the coil
+    /// converter.
     pub fn wired(&self, acts: Vec<Act>, scanned: &[AnalogIn]) -> Vec<act::Act> {
         let acts = acts.into_iter();
         acts.map(|act| self.wired_act(act, scanned)).collect()
@@ -109,7 +111,7 @@ impl Points {
         }
     }
 
-    /// Sets the level output, ramps the other two.
+    /// Translates new supply voltages: into a level act when only the level output changes, else into a ramp act.
     fn supplied(&self, outputs: Vec<(AnalogOut, Volt)>) -> act::Act {
         let ramps = |(output, _): &(AnalogOut, Volt)| *output != AnalogOut::SupplyLevel;
         let ramps = outputs.iter().any(ramps);

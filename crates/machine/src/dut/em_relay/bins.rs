@@ -4,7 +4,7 @@ use crate::rig::bin::Bin;
 
 /// Coil resistance out of limits.
 pub const COIL: Bin = Bin::named("coil");
-/// Contact resistance out of limits, stuck contact.
+/// Contact resistance out of limits, or a stuck contact.
 pub const CONTACT: Bin = Bin::named("contact");
 /// Operate or release voltage out of limits.
 pub const VOLTAGE: Bin = Bin::named("voltage");

@@ -63,7 +63,7 @@ pub struct Overshoot {
     /// Indicated minus certified threshold on the fine ramp, volts; positive for operate, negative for release.
     pub fine_v: Factor,
     /// Mean certified threshold of those parts, volts. [`Overshoot::fine_v`] contains the gain error of the supply at
-    /// this voltage, so that only the distance from it adds uncertainty.
+    /// this voltage; for other thresholds, the gain adds uncertainty in proportion to the difference from it.
     #[serde(default)]
     pub at_v: f64,
     /// Mean of coarse minus fine indication of those parts, volts.
@@ -77,7 +77,7 @@ pub struct Overshoot {
     pub judges: bool,
 }
 
-/// Parts of a lot that teach the coarse overshoot before it gives results.
+/// Number of parts of a lot that teach the model of the coarse overshoot before it gives results.
 const FIRST_PARTS: u32 = 20;
 
 impl Overshoot {
@@ -114,12 +114,12 @@ fn assumed_model() -> OvershootModel {
     OvershootModel::guess(0.0, 1.0)
 }
 
-/// Factor of a calibration that was stored by a program without ranges.
+/// Returns the range factor of a calibration stored by a version of the program that had no supply ranges.
 fn only_range() -> f64 {
     1.0
 }
 
-/// Overshoot of both directions.
+/// Overshoots of the ramps in both directions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Overshoots {
     /// Rising ramp to NO make.
@@ -128,7 +128,7 @@ pub struct Overshoots {
     pub release: Overshoot,
 }
 
-/// All factors of a rig with their date, as the history stores them.
+/// All factors of a rig with their dates, as the history stores them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
     /// Time of the measurement, microseconds since 1970 UTC.
@@ -139,7 +139,7 @@ pub struct Calibration {
     pub simulated: bool,
     /// Nominal coil voltage of the reference parts; the overshoot is valid for this voltage only.
     pub nominal_v: f64,
-    /// Line of the converter that reads the coil.
+    /// Straight line of the converter inputs that read the coil.
     pub coil_input: InputLine,
     /// Ohms per unit of (voltage reading / current reading) on the fine channels.
     pub ohm_fine: Factor,
@@ -148,12 +148,14 @@ pub struct Calibration {
     /// [`Calibration::ohm_fine`] on the high current channel; none on a rig without one.
     #[serde(default)]
     pub ohm_high: Option<Factor>,
-    /// Factor of the supply range; outputs and coil voltage hold for no other.
+    /// Factor of the supply range in which the calibration was made; the lines of outputs and coil voltage hold in no
+    /// other range.
     #[serde(default = "only_range")]
     pub range_factor: f64,
-    /// Milliohms per volt of contact drop at the terminal, half the difference of both polarities.
+    /// Milliohms per volt of contact drop at the terminal, where the drop is half the difference between both
+    /// polarities.
     pub contact_mohm_per_v: Factor,
-    /// Delay of the gates of counters 0 and 1, microseconds; each gate counts longer by it.
+    /// Delays of the gates of counters 0 and 1, microseconds; each gate counts too long by its delay.
     pub gate_delay_us: [Factor; 2],
     /// Supply output for levels.
     pub level: OutputLine,
@@ -216,7 +218,7 @@ impl Calibration {
         }
     }
 
-    /// Returns ohms per unit of (voltage reading / current reading) with these channels.
+    /// Returns ohms per unit of (voltage reading / current reading) for these channels.
     pub fn ohm(&self, channels: CoilChannels) -> Factor {
         match channels {
             CoilChannels::Fine => self.ohm_fine,

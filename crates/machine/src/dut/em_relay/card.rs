@@ -77,7 +77,7 @@ impl CardStep {
         }
     }
 
-    /// Returns the drive of the coil or the supply of the contact.
+    /// Returns the pieces that say how the step drives the coil or feeds the contact.
     fn drive(self, relay: &RelayRecipe) -> Vec<Piece> {
         let (test, nominal) = (&relay.test, Piece::Figure(relay.part.nominal_v));
         let prebias = Piece::Figure(test.prebias_v);

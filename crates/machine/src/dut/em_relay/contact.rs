@@ -21,7 +21,8 @@ pub struct Closure {
 }
 
 impl Closure {
-    /// Evaluates readings with the source in the directions of `polarities`; `None` unless there is one for each.
+    /// Evaluates readings taken with the source in the directions of `polarities`; `None` unless there is one reading
+    /// for each direction.
     pub fn of(readings: &[Volt], polarities: Polarities) -> Option<Self> {
         let signs = polarities.signs();
         let n = signs.len() as f64;
@@ -37,7 +38,8 @@ impl Closure {
         })
     }
 
-    /// Returns the standard uncertainty of drop and of zero from that of one reading, `reading_v`.
+    /// Returns the standard uncertainty of the drop, volts; the zero has the same. `reading_v`: standard uncertainty of
+    /// one reading.
     pub fn u_v(&self, reading_v: f64) -> f64 {
         reading_v / (self.readings as f64).sqrt()
     }

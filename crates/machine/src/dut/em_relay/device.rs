@@ -30,7 +30,8 @@ pub struct Device {
     context: Context,
     certificates: Vec<ReferencePart>,
     reference_parts: ReferenceRun,
-    /// Models of the coarse overshoot, operate and release, learned from reference parts and from every part that passes.
+    /// Models of the coarse overshoot, operate and release, learned from reference parts and from every part that
+    /// passes.
     coarse: (OvershootModel, OvershootModel),
     /// The same models, learned from parts of this lot alone.
     of_lot: (OvershootModel, OvershootModel),
@@ -41,7 +42,7 @@ impl Device {
     /// Resolves the points of the recipe on a rig, and selects the reference parts of its nominal voltage.
     ///
     /// # Errors
-    /// Names the first point that the rig lacks, or the section of its references.
+    /// Fails with the first point that the rig lacks, or with the section of references that `rig.toml` lacks.
     pub fn new(
         recipe: Arc<Recipe>,
         relay: &RelayRecipe,
@@ -120,7 +121,7 @@ impl Device {
         }
     }
 
-    /// Takes over the overshoot of the reference parts and the probe contact that it contains.
+    /// Takes over the overshoot of the reference parts and, with it, the probe contact resistance that it contains.
     fn teach(&mut self, overshoots: Overshoots) {
         let probe_contact_ohm = self.reference_parts.probe_contact_ohm();
         self.calibrate(|calibration| calibration.probe_contact_ohm = probe_contact_ohm);
@@ -225,7 +226,7 @@ impl DeviceUnderTest for Device {
         Ok(dut::Calibration::EmRelay(calibration))
     }
 
-    /// The overshoot models take only parts that `pass`, the trend of the probes takes every part.
+    /// Only parts that `pass` teach the overshoot models; every part adds to the trend of the probe contact.
     fn learn(&mut self, record: &TestRecord, pass: bool) {
         let observed = observed(record);
         if let Some(ohm) = observed.probe_contact {
@@ -249,8 +250,8 @@ impl DeviceUnderTest for Device {
         self.probe_contact.mean()
     }
 
-    /// Less what the calibration of the supply level leaves in doubt (k = 2): an ohm cannot be told from the error of the
-    /// level where the coil has thousands.
+    /// Subtracts the expanded uncertainty (k = 2) that the gain of the supply level causes: on a coil of thousands of
+    /// ohms, one ohm of probe contact cannot be told from the error of the level.
     fn settled_probe_contact(&self) -> Option<Ohm> {
         let Ohm(mean) = self.probe_contact.settled()?;
         let level = self.context.calibration.level.gain;

@@ -3,7 +3,7 @@
 //!
 //! | parameter | is at least |
 //! |---|---|
-//! | operate voltage | the greatest supply command at which NO of the driven coil was still open at the last sample before the next change; stages wait for the end of a ramp |
+//! | operate voltage | the greatest supply command that left NO of the driven coil open, up to the last sample before the next change of a command; stages wait for the end of a ramp |
 //! | operate time | from the drive at nominal voltage to the last sample with NO open |
 //! | release time | from the last switch-off to the last sample with NC open |
 //!
@@ -14,12 +14,13 @@ use super::Parameter;
 use super::points::{AnalogOut, BOARD, DigitalOut};
 use crate::instrument::curve::Curve;
 
-/// Margin: copper 5 K from the reference (2 %), tolerance of the supply, and one poll of the board.
+/// Margin as a share of the bound: copper 5 K from the reference temperature (2 %), tolerance of the supply, and one
+/// poll of the board.
 pub const DOUBT: f64 = 0.03;
 /// Share of the nominal voltage from which the coil counts as driven at nominal.
 const NOMINAL: f64 = 0.98;
 
-/// Returns the lower bound in the unit of the parameter, for a coil of `nominal_v`.
+/// Returns the lower bound of `parameter` in its unit, for a coil of `nominal_v`; none when the curves prove nothing.
 pub fn at_least(curves: &[Curve], parameter: Parameter, nominal_v: f64) -> Option<f64> {
     let proven = Bounds::of(curves, nominal_v);
     let ms = |us: i64| us as f64 / 1e3;

@@ -1,4 +1,4 @@
-//! Checks before any motion that the modules of a rig can perform a recipe, and that its limits are wider than the
+//! Checks, before any motion, that the modules of a rig can perform a recipe, and that its limits are wider than the
 //! guard bands.
 //!
 //! A strategy needs outputs that step or slew, a counter in counting mode and enabled channels.
@@ -23,17 +23,17 @@ use crate::rig::wiring::Wiring;
 pub use supply::demand;
 use units::Celsius;
 
-/// Longest refresh interval of an output that ramps: 2 ms make steps of 0.19 V of a ramp of 96 V/s.
+/// Longest accepted refresh interval of an output that ramps, ms: at 96 V/s an interval of 2 ms makes steps of 0.19 V.
 pub const SLOWEST_REFRESH_MS: f64 = 2.0;
-/// Fewest reference parts that a calibration takes.
+/// Fewest reference parts that a calibration accepts.
 const FEWEST_PARTS: usize = 3;
 /// Conversions per second of an I-7017F outside its fast mode.
 const SLOW_CONVERSIONS_PER_S: f64 = 10.0;
 /// Type code of an I-7080 in counting mode; 51 is frequency mode.
 const COUNTS: u8 = 0x50;
 
-/// Returns every reason why the rig cannot perform the recipe, each with its key: missing references, bins or points first,
-/// then what the supply, the modules or the uncertainty forbid.
+/// Returns every reason why the rig cannot perform the recipe, each with its key: missing references, bins or points
+/// first, then what the supply, the modules or the uncertainty forbid.
 pub fn faults(recipe: &RelayRecipe, limits: &Limits, rig: &Rig) -> Vec<Fault> {
     let references = check_references(recipe.part.nominal_v, rig);
     let mut faults = Vec::from_iter(references.err());
@@ -46,16 +46,16 @@ pub fn faults(recipe: &RelayRecipe, limits: &Limits, rig: &Rig) -> Vec<Fault> {
     faults
 }
 
-/// The rig as far as a recipe reaches: its wiring in the range of the supply that serves the recipe, and its points.
+/// The part of the rig that a recipe uses: its wiring in the supply range that serves the recipe, and its points.
 struct Reach {
     wiring: Wiring,
     points: Points,
 }
 
-/// Finds bins, points and supply range of the recipe.
+/// Finds the bins, the points and the supply range that the recipe uses.
 ///
 /// # Errors
-/// Names the first that the rig does not have.
+/// Fails with the first of them that the rig does not have.
 fn reach(recipe: &RelayRecipe, limits: &Limits, rig: &Rig) -> Result<Reach, Fault> {
     let wiring = rig.wiring;
     if let Some(missing) = bins::BY_RANK.iter().find(|bin| !wiring.axis.has(**bin)) {
@@ -71,7 +71,7 @@ fn reach(recipe: &RelayRecipe, limits: &Limits, rig: &Rig) -> Result<Reach, Faul
     Ok(Reach { wiring, points })
 }
 
-/// Returns what lies beyond the supply, the converters and the modules.
+/// Returns a fault for each demand of the recipe that supply, converters or modules cannot meet.
 fn out_of_reach(
     recipe: &RelayRecipe,
     limits: &Limits,
@@ -91,7 +91,8 @@ fn out_of_reach(
     faults
 }
 
-/// Checks that closures which stop early have limits to be clear of.
+/// Checks that a recipe which ends closures early (once the result is clear of its limits) limits both contact
+/// resistances.
 fn check_early_stop(recipe: &RelayRecipe, limits: &Limits) -> Result<(), Fault> {
     if recipe.test.strategy.contact.stops_early {
         for parameter in [
@@ -111,7 +112,7 @@ fn check_early_stop(recipe: &RelayRecipe, limits: &Limits) -> Result<(), Fault> 
     Ok(())
 }
 
-/// Returns the limits between which the guard bands leave nothing.
+/// Returns a fault for each pair of limits that lie so close together that the guard bands leave nothing between them.
 fn guard_band_faults(
     recipe: &RelayRecipe,
     limits: &Limits,
@@ -133,7 +134,7 @@ fn guard_band_faults(
 /// Refuses a rig without references on its board, or without enough reference parts of this nominal voltage.
 ///
 /// # Errors
-/// Names what `rig.toml` lacks, or the coil voltages of the reference parts.
+/// Fails with what `rig.toml` lacks, or with the nominal voltages of the reference parts that the rig has.
 fn check_references(nominal_v: f64, rig: &Rig) -> Result<(), Fault> {
     let lacks = match (rig.reference, rig.reference_parts.parts.is_empty()) {
         (Some(_), false) => return check_reference_parts(nominal_v, rig.reference_parts),

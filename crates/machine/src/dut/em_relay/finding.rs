@@ -20,7 +20,7 @@ pub enum Contact {
 pub enum Finding {
     /// No current through the coil.
     CoilOpen,
-    /// The coil draws more than the current channel reads.
+    /// The coil draws more than the current channel can read.
     CoilCurrentOverRange,
     /// NO is closed without drive.
     NoClosedAtRest,
@@ -28,7 +28,7 @@ pub enum Finding {
     NcOpenAtRest,
     /// NC stays closed at nominal voltage.
     NcDoesNotOpen,
-    /// NO stays open at nominal voltage.
+    /// NO stays open at nominal voltage until the longest wait ends.
     NoDoesNotMake,
     /// NO makes only after the longest wait.
     OperatesTooLate,
@@ -38,7 +38,7 @@ pub enum Finding {
     AboveCoarseRamp,
     /// The drop of a contact is over range at the full current of the source.
     ContactOverRange(Contact),
-    /// The drop is over range and the source in compliance.
+    /// The drop of a contact is over range, and the source cannot drive its current (compliance).
     ContactOpen(Contact),
     /// COM alone has no Kelvin contact: a misoriented part or a dirty COM probe.
     Misoriented,
@@ -76,7 +76,7 @@ pub enum Finding {
     MadeOutsideWindow,
     /// Every fine ramp missed the event; detail: number of ramps.
     ThresholdNotFound(Direction),
-    /// A search by levels ended without an interval.
+    /// A search by levels ended without an interval that contains the threshold.
     SearchWithoutThreshold(Direction),
 }
 
@@ -121,7 +121,7 @@ impl Finding {
         Self::SearchWithoutThreshold(Direction::Falling),
     ];
 
-    /// Returns code and consequence.
+    /// Returns the code of the finding and its consequence for the part.
     pub fn entry(self) -> Entry {
         use Contact::{Nc, No};
         use Direction::{Falling, Rising};

@@ -1,4 +1,4 @@
-//! Statistics of the lot in the default simulated world, for made-up relays.
+//! Statistics of made-up relays: those of the lot in the default simulated world.
 
 use super::Parameter;
 use super::parameter::Expected;
@@ -8,7 +8,7 @@ use crate::dut::made_up::{Looks, MadeUp, Scatter};
 use crate::gauge::Budget;
 use crate::instrument::trace::Signal;
 
-/// Returns scatter and looks of made-up relays.
+/// Returns the scatter and the recorded signals of made-up relays.
 pub fn made_up(relay: &RelayRecipe) -> MadeUp {
     let all = Parameter::ALL.into_iter();
     MadeUp {
@@ -47,7 +47,7 @@ fn of(relay: &RelayRecipe, parameter: Parameter) -> Scatter {
     }
 }
 
-/// 30 polls of a contact, 120 samples of a voltage.
+/// Returns the recorded signals: 30 polls of a contact, 120 samples of a voltage.
 fn looks() -> Vec<Looks> {
     vec![
         Looks {

@@ -62,7 +62,7 @@ pub use strategy::Strategy;
 
 use super::KindDefinition;
 
-/// What is fixed about the kind.
+/// Constant data of this kind of device.
 pub const DEFINITION: KindDefinition = KindDefinition {
     name: "em_relay",
     sections: keys::recipe::SECTIONS,

@@ -16,31 +16,33 @@
 use serde::{Deserialize, Serialize};
 use units::Volt;
 
-/// Prior scatter about the line, volts of a 12 V coil (1 sd): two operations, and the residual of reference parts that lie far apart.
+/// Prior scatter about the line, volts of a 12 V coil (1 sd): two operations, and the residual of reference parts that
+/// lie far apart.
 const SCATTER_V: f64 = 0.004;
-/// Weight of the prior, in parts.
+/// Weight of the prior, as a number of parts.
 const PRIOR_WEIGHT: f64 = 4.0;
 /// Standard uncertainty of the assumed overshoot of the first part, volts of a 12 V coil.
 const GUESS_SD_V: f64 = 0.05;
-/// Prior elasticities of the overshoot, percent per percent of a result (mean and 1 sd), in the order of [`CoarseResults`]. A
-/// late armature is heavy: its flight is most of the delay of a rising ramp and half of an operate time. A high
-/// threshold delays an operation independently of mass, hence the negative terms. A falling ramp waits for the flux,
-/// which depends a little on each result.
+/// Prior elasticities of the overshoot, percent per percent of a result (mean and 1 sd), in the order of
+/// [`CoarseResults`]. A late armature is heavy: its flight is most of the delay of a rising ramp and half of an operate
+/// time. A high threshold delays an operation independently of mass, hence the negative terms. A falling ramp waits for
+/// the flux, which depends a little on each result.
 const RISING: [f64; RESULTS] = [-0.8, -0.8, 1.3, 0.0, 0.3];
 const FALLING: [f64; RESULTS] = [0.0; RESULTS];
 const ELASTICITY_SD: f64 = 0.25;
-/// Largest residual that the model learns from, in standard uncertainties: one outlier does not bend the line, and a
-/// wrong line widens until it fits.
+/// Largest residual that counts, in standard uncertainties; a larger one counts as this. So one outlier does not bend
+/// the line, whereas residuals that persist widen the uncertainty until the line bends.
 const OUTLIER: f64 = 3.0;
-/// Greatest squared distance from the parts learned, in standard deviations, and its widening after few parts: one
-/// similar part in two thousand lies further away (Hotelling's T2 of five variates, within a tenth from ten parts on).
+/// Greatest squared distance from the parts learned, in squared standard deviations, and how much wider it is after few
+/// parts: one similar part in two thousand lies further away (Hotelling's T2 of five variates, within a tenth from ten
+/// parts on).
 const MAX_DISTANCE2: f64 = 20.0;
 const WIDER: f64 = 20.0;
 const RESULTS: usize = 5;
 /// Number of coefficients: a constant, and a slope for each result.
 const TERMS: usize = RESULTS + 1;
 
-/// Results of a part at the event of its coarse ramp; NaN for a missing one.
+/// Results of a part that are known at the contact event of its coarse ramp; NaN for a missing result.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoarseResults {
     /// Indication of the coarse ramp.
@@ -94,21 +96,22 @@ pub struct Predicted {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OvershootModel {
     guess_v: f64,
-    /// Nominal coil voltage relative to 12 V, which the prior is stated for.
+    /// Nominal coil voltage as a multiple of 12 V, for which the prior is stated.
     #[serde(default = "of_12_v")]
     coil: f64,
     parts: u32,
     first: [f64; RESULTS],
-    /// Sums over prior and parts: products of the terms, and of the terms with the overshoot minus the guess.
+    /// Sums over prior and parts: products of the terms with each other.
     products: [[f64; TERMS]; TERMS],
+    /// Sums over prior and parts: products of the terms with the overshoot minus the guess.
     #[serde(rename = "with_lag")]
     with_overshoot: [f64; TERMS],
     squares: f64,
 }
 
 impl OvershootModel {
-    /// Returns the model before the first part, from a guess of the overshoot in volts; `coil`: nominal coil voltage relative
-    /// to 12 V.
+    /// Returns the model before the first part, from a guess of the overshoot in volts; `coil`: nominal coil voltage
+    /// relative to 12 V.
     pub fn guess(guess_v: f64, coil: f64) -> Self {
         let mut law = Self {
             guess_v,
@@ -133,7 +136,7 @@ impl OvershootModel {
         self.parts
     }
 
-    /// Learns from a part with both indications; ignores a part with a missing result.
+    /// Learns from a part that has both indications; ignores a part with a missing result.
     pub fn learn(&mut self, shown: &CoarseResults, fine: Volt) {
         let overshoot_v = (shown.indicated - fine).0;
         let Some(logarithms) = shown.logarithms().filter(|_| overshoot_v.is_finite()) else {
@@ -157,7 +160,8 @@ impl OvershootModel {
         self.parts += 1;
     }
 
-    /// Returns the expected overshoot of a part; with a missing result that of the first part, not `alike`.
+    /// Returns the expected overshoot of a part. For a part with a missing result this is the overshoot of the first
+    /// part, and `alike` is false.
     pub fn of(&self, shown: &CoarseResults) -> Predicted {
         let logarithms = shown.logarithms().filter(|_| self.parts > 0);
         let terms = self.terms(logarithms.unwrap_or(self.first));
@@ -220,7 +224,7 @@ impl OvershootModel {
     }
 }
 
-/// Coil of a model that was stored without one.
+/// Returns the coil factor of a model that was stored without one.
 fn of_12_v() -> f64 {
     1.0
 }

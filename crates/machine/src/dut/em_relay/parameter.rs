@@ -1,4 +1,5 @@
-//! The nine characteristics of a relay, as data: a new one needs a variant, a place in [`Parameter::ALL`] and a table row.
+//! The nine characteristics of a relay, as data: a new one needs a variant, a place in [`Parameter::ALL`] and a table
+//! row.
 
 use super::card::CardStep;
 use super::coil::to_reference;
@@ -21,9 +22,9 @@ pub enum Parameter {
     OperateVoltage,
     /// Quasi-static must-release threshold at the reference temperature.
     ReleaseVoltage,
-    /// Nominal coil voltage applied to first make of NO, bounce excluded.
+    /// Time from switching nominal voltage onto the coil to the first make of NO, bounce excluded.
     OperateTime,
-    /// Nominal coil voltage removed to first make of NC, bounce excluded.
+    /// Time from taking nominal voltage off the coil to the first make of NC, bounce excluded.
     ReleaseTime,
     /// Total open time of NO after its first make.
     OperateBounce,
@@ -49,7 +50,7 @@ impl Parameter {
         Self::ContactResistanceNc,
     ];
 
-    /// Returns the data that only relays have.
+    /// Returns the data that only parameters of relays have.
     pub const fn facts(self) -> &'static Facts {
         &TABLE[self as usize]
     }
@@ -65,28 +66,28 @@ impl Parameter {
     }
 }
 
-/// Data of a parameter that only relays have.
+/// Data that only parameters of relays have.
 #[derive(Debug, Clone, Copy)]
 pub struct Facts {
-    /// Key, unit and bin, as for every kind of part.
+    /// Key, unit and bin, as for every kind of device.
     pub definition: Definition,
     /// True when the parameter scales with the copper of the coil: results are converted to the reference temperature.
     pub copper: bool,
     /// Steps of the process card that list its limits.
     pub card: &'static [CardStep],
-    /// Stage that repeats its measurement.
+    /// Stage that confirmation measurements repeat for this parameter.
     pub stage: Stage,
     /// Expected distribution over a lot.
     pub expected: Expected,
-    /// Greatest acceptable rms error over a lot: ohm in percent, V in percent of the nominal coil voltage,
-    /// else in the unit of the key.
+    /// Greatest acceptable rms error over a lot: for resistances in ohm in percent, for voltages in percent of the
+    /// nominal coil voltage, for the others in the unit of the key.
     pub allowed_rms: f64,
 }
 
 /// Expected distribution of a parameter over a lot, in the unit of its key.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Expected {
-    /// Around the nominal coil of the recipe.
+    /// Around the nominal coil resistance of the recipe.
     Coil,
     /// Around the expected threshold of the recipe.
     Threshold(Direction),
@@ -179,7 +180,7 @@ impl KindCharacteristic for Parameter {
         &self.facts().definition
     }
 
-    /// Returns the factor of the copper of the coil; 1 for results independent of it.
+    /// Returns the conversion factor of copper; 1 for results that do not depend on the copper of the coil.
     fn conversion(&self, from: Celsius, to: Celsius) -> f64 {
         match self.facts().copper {
             true => to_reference(from, to),

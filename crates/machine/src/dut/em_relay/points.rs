@@ -60,7 +60,7 @@ named! {
 }
 
 impl AnalogIn {
-    /// Returns true for an input that every rig for relays has.
+    /// Returns true for an input that every rig for relays must have.
     pub const fn is_needed(self) -> bool {
         match self {
             Self::CoilCurrent
@@ -145,7 +145,7 @@ const QUANTITIES: [Quantity; 9] = [
     quantity("coil_current_fine", "A", 1e-8),
     quantity("coil_current_high", "A", 1e-7),
     quantity("reference_voltage", "V", 1e-5),
-    // Every test reads it, and no act sets its channel mask.
+    // Every test reads the track temperature, and no act sets the channel mask of its module.
     Quantity {
         enabled: true,
         ..quantity("contact_drop", "V", 1e-7)
@@ -189,7 +189,7 @@ const SWITCHES: [Switch; DigitalOut::COUNT + SELECT.len()] = {
 pub struct Points {
     inputs: [DigitalInput; DigitalIn::COUNT],
     outputs: [DigitalOutput; DigitalOut::COUNT],
-    /// Each with its gain, volts at the terminal per unit.
+    /// Analog inputs, each with its gain, volts at the terminal per unit.
     analog: [Option<(AnalogInput, f64)>; AnalogIn::COUNT],
     sources: [AnalogOutput; AnalogOut::COUNT],
     counters: [GatedCounter; Counter::COUNT],
@@ -205,7 +205,7 @@ impl Points {
     /// Resolves every point.
     ///
     /// # Errors
-    /// Names the first point that the rig lacks.
+    /// Fails with the first point that the rig lacks.
     pub fn resolve(wiring: &Wiring) -> Result<Self, MissingPoint> {
         let inputs = all("digital_in", DigitalIn::NAMES, |it| {
             wiring.digital_input(it)

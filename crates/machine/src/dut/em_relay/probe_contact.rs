@@ -1,28 +1,30 @@
 //! Contact resistance of the probes at the coil pins, from the voltage drop between supply and pins.
 //!
-//! The sense wires keep it out of the coil resistance, but thresholds are volts of the supply: each ohm in series
-//! raises them in proportion, 20 mV of 8 V at 400 ohm. Its change since the reference parts is an uncertainty of a
-//! threshold and no correction, since the pins of a part may differ from those before it. The Kelvin bits open only at
-//! 5 ohm a pin.
+//! The sense wires keep this resistance out of the coil resistance, but thresholds are volts of the supply: each ohm in
+//! series raises them in proportion, by 20 mV on 8 V at 400 ohm. Its change since the measurement of the reference
+//! parts is an uncertainty of a threshold and no correction, since the pins of a part may differ from those before it.
+//! The Kelvin bits open only at 5 ohm per pin.
 //!
 //! The supply is calibrated on the reference resistor, without probes. The difference between command and pin voltage,
 //! divided by the current, is the resistance of both force contacts in series.
 //!
-//! One part gives it with an uncertainty of 0.15 ohm, sixteen parts of 0.04. Drift of output and input since the
-//! calibration adds 0.4 ohm per 0.1 % on a coil of 400 ohm. It is a trend that fails no part. The probes of the
-//! contacts have no such figure, because no input reads the voltage of their source.
+//! One part gives the resistance with an uncertainty of 0.15 ohm, sixteen parts with 0.04 ohm. Drift of output and
+//! input since the calibration adds 0.4 ohm per 0.1 % on a coil of 400 ohm. The figure is a trend that fails no part.
+//! The probes of the contacts have no such figure, because no input reads the voltage of their source.
 
 use units::{Ohm, Volt};
 
-/// Parts before the mean counts as a trend; from then on each new part has the weight 1/16.
+/// Number of parts after which the mean counts as a trend; from then on each new part has the weight 1/16.
 const TREND_PARTS: u32 = 16;
 
-/// Returns the resistance of both force contacts: `coil` gets `at_pins` at the command `command`.
+/// Returns the resistance of both force contacts in series, when at `command` the pins of `coil` have the voltage
+/// `at_pins`.
 pub fn in_series(command: Volt, at_pins: Volt, coil: Ohm) -> Ohm {
     Ohm(coil.0 * (command.0 / at_pins.0 - 1.0))
 }
 
-/// Mean over the parts of a run, weighted towards the latest: after sixteen parts a weight has fallen to 0.37.
+/// Mean over the parts of a run, weighted towards the latest: sixteen parts later, the weight of a part has fallen to
+/// 0.37 of its first value.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Trend {
     mean: Option<f64>,
@@ -42,7 +44,7 @@ impl Trend {
         self.mean.map(Ohm)
     }
 
-    /// Returns the mean once it covers enough parts for an alarm.
+    /// Returns the mean once it covers enough parts to raise an alarm on it.
     pub fn settled(&self) -> Option<Ohm> {
         self.mean().filter(|_| self.parts >= TREND_PARTS)
     }

@@ -1,4 +1,4 @@
-//! Readings of a stage by kind: board inputs, scans of the coil, pairs of counters.
+//! Readings of a stage, sorted into board inputs, scans of the coil and pairs of counters.
 
 use super::points::{AnalogIn, Counter, DigitalIn, Points};
 use crate::instrument::readings::Readings as ByPoint;
@@ -8,21 +8,22 @@ use crate::rig::supply::code_of;
 /// Inputs of the interface board at one instant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BoardInputs {
-    /// Coil A, coil B, COM, NO, NC: force to sense below 5 ohm.
+    /// True where force and sense contact of a pin are connected by less than 5 ohm: coil A, coil B, COM, NO, NC.
     pub kelvin: [bool; 5],
-    /// Normally open contact is made.
+    /// True when the normally open contact is closed.
     pub no_closed: bool,
-    /// Normally closed contact is made.
+    /// True when the normally closed contact is closed.
     pub nc_closed: bool,
-    /// The contact source cannot drive its current.
+    /// True when the contact source cannot drive its current.
     pub compliance: bool,
-    /// Probes are up, by the hard-wired chain.
+    /// True when the hard-wired chain reports the probes up.
     pub probe_chain: bool,
     /// Code of the supply range; none on a rig with one range.
     pub range: Option<u8>,
 }
 
-/// One scan of the coil converter, currents at the gains of the shipped rig; `None` for a channel outside the scan.
+/// One scan of the coil converter, `None` for a channel outside the scan; the current ranges below hold for the shipped
+/// rig.
 #[derive(Debug, Clone)]
 pub struct CoilScan {
     /// Coil voltage.
@@ -39,7 +40,7 @@ pub struct CoilScan {
     pub supply: Option<Sample>,
 }
 
-/// All readings of a stage by kind, each in order.
+/// All readings of a stage, sorted by type, each type in order of time.
 #[derive(Debug, Clone, Default)]
 pub struct Readings {
     /// Board inputs.
@@ -59,7 +60,7 @@ pub struct Readings {
 }
 
 impl Readings {
-    /// Sorts the readings of a stage; `before` holds the last counts of the previous stage.
+    /// Sorts the readings of a stage by type; `before` holds the last counts of the previous stage.
     pub fn of(read: &ByPoint, points: &Points, before: Option<[CountSample; 2]>) -> Self {
         let analog = |input| analog(read, points, input);
         let count = |counter| read.counts(points.counter(counter)).cloned();

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use units::Celsius;
 
-/// Highest coil voltage of a relay of this class in multiples of the nominal one.
+/// Highest voltage that the coil of a relay of this class bears, as a multiple of the nominal voltage.
 const HIGHEST_RAMP: f64 = 1.3;
 
 /// The sections `[part]` and `[test]`.
@@ -27,7 +27,7 @@ const HIGHEST_RAMP: f64 = 1.3;
 pub struct RelayRecipe {
     /// The device.
     pub part: PartData,
-    /// Its measurement.
+    /// How the device is measured.
     pub test: TestPlan,
 }
 
@@ -72,11 +72,11 @@ impl KindRecipe for RelayRecipe {
         made_up::made_up(self)
     }
 
-    /// Checks that pre-bias and expected thresholds lie in their order below the nominal voltage, and that the coarse ramp ends
-    /// at a voltage that the coil bears.
+    /// Checks that pre-bias and expected thresholds are in ascending order below the nominal voltage, and that the
+    /// coarse ramp ends at a voltage that the coil bears.
     ///
     /// # Errors
-    /// Names the first key that does not.
+    /// Fails with the first key that breaks this order or bound.
     fn check(&self) -> Result<(), Fault> {
         let test = &self.test;
         let ordered = [
@@ -176,10 +176,10 @@ pub enum Suppression {
     Diode,
 }
 
-/// Measurement of the part.
+/// How the part is measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TestPlan {
-    /// Operations before the first measurement.
+    /// Number of operations before the first measurement.
     pub conditioning_operations: u32,
     /// Voltage at which the coil resistance is measured and the operate ramp starts, V.
     pub prebias_v: f64,
@@ -189,11 +189,11 @@ pub struct TestPlan {
     pub coil_channels: CoilChannels,
     /// Operate threshold expected of the lot, V.
     pub expected_operate_v: f64,
-    /// Its standard deviation, V.
+    /// Standard deviation of `expected_operate_v`, V.
     pub expected_operate_sd_v: f64,
     /// Release threshold expected of the lot, V.
     pub expected_release_v: f64,
-    /// Its standard deviation, V.
+    /// Standard deviation of `expected_release_v`, V.
     pub expected_release_sd_v: f64,
     /// Coil suppression during the timed release.
     #[serde(rename = "clamp")]

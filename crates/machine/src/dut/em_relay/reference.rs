@@ -1,9 +1,9 @@
 //! Calibration against the references on the interface board: 5.000 V, 400 ohm, 50 mOhm, 1.000 ms.
 //!
-//! Runs with an empty nest and the probes up (drive and source need the probe-up chain). It gives the coil converter's
-//! line, ohms per ratio on each current channel, milliohms per volt of drop, gate delays, gain and offset of the
-//! three supply outputs, and the slope of the fine ramp against the host's clock. The slope of the coarse ramp stays
-//! nominal: it only places the fine ramp.
+//! The calibration runs with an empty nest and the probes up (drive and source need the probe-up chain). It gives the
+//! straight line of the coil converter's inputs, ohms per ratio on each current channel, milliohms per volt of drop,
+//! gate delays, gain and offset of the three supply outputs, and the slope of the fine ramp against the host's clock.
+//! The slope of the coarse ramp stays nominal: this ramp only places the fine one.
 
 mod check;
 mod fault;
@@ -48,17 +48,17 @@ const SCANNED: [AnalogIn; 6] = [
     AnalogIn::SupplyVoltage,
     AnalogIn::CoilCurrentHigh,
 ];
-/// Scans per level: they average the 2.8 mV of one reading to 0.8 mV.
+/// Scans per level: their mean lowers the uncertainty of 2.8 mV of one reading to 0.8 mV.
 const SCANS: usize = 12;
-/// Scans along the fine ramp, and the share of a round of conversions between two of them: what is read is up to a round
-/// old, and at this share the ages spread evenly over the ramp and do not tilt it.
+/// Scans along the fine ramp, and the pause between two of them as a share of a round of conversions: a reading is up
+/// to one round old, and at this share the ages spread evenly over the ramp and do not tilt it.
 const RAMP_SCANS: usize = 56;
 const RAMP_ROUND: f64 = 0.6;
 /// Longest time until the sources have fallen to zero and the relays of the range have switched.
 const SWITCHES: Span = Span::ms(4000);
-/// Drops read per polarity.
+/// Number of drops read per polarity.
 const DROPS: usize = 8;
-/// Number of gate pulses: their sum errs by one count, their mean by 1/25.
+/// Number of gate pulses: their sum is uncertain by one count, their mean by 1/25 of a count.
 const PULSES: u32 = 25;
 
 /// Returns the inputs that [`acts`] scans; none on a rig that lacks a point of the kind.
@@ -209,7 +209,7 @@ fn pulses(acts: &mut Vec<Act>) {
 /// Computes the factors from the readings of [`acts`]. `made_at_us`: microseconds since 1970 UTC.
 ///
 /// # Errors
-/// Names the range, the channel or the reference that does not read as it must.
+/// Fails with the range, the channel or the reference that does not read as it must.
 pub fn conclude(
     context: &Context,
     readings: &ByPoint,
@@ -287,7 +287,7 @@ pub fn conclude(
     })
 }
 
-/// Computes the line of the coil converter from the reference voltage and the scans without drive.
+/// Computes the straight line of the coil converter's inputs from the reference voltage and the scans without drive.
 fn coil_input(
     context: &Context,
     zero: Level,

@@ -1,4 +1,4 @@
-//! Reference parts: indication minus certificate is the overshoot of the ramps.
+//! Calibration on reference parts: indication minus certificate is the overshoot of the ramps.
 //!
 //! The model of the coarse overshoot also learns from every good part of the lot with both ramps; the fine overshoot,
 //! which enters every result, comes from the certificates alone.
@@ -19,7 +19,7 @@ use texts::{Lang, Message};
 use thiserror::Error;
 use units::{Celsius, Ohm, Unit, Volt};
 
-/// Greatest distance of a reference part's overshoot from the mean, of a 12 V coil; a part further away is an outlier.
+/// Greatest difference of a reference part's overshoot from the mean, for a 12 V coil; a part beyond it is an outlier.
 const BAND: Volt = Volt(0.060);
 
 /// Reason why a reference part does not calibrate the rig, or disagrees with its certificate.
@@ -28,30 +28,30 @@ const BAND: Volt = Volt(0.060);
 pub enum Misfit {
     /// No certificate of this serial number.
     NoCertificate {
-        /// Its serial number.
+        /// Serial number of the part.
         serial: String,
     },
     /// A result is missing.
     Without {
-        /// Its serial number.
+        /// Serial number of the part.
         serial: String,
         /// Missing characteristic.
         characteristic: Parameter,
     },
     /// The temperature of the part is unknown.
     WithoutTemperature {
-        /// Its serial number.
+        /// Serial number of the part.
         serial: String,
     },
     /// The coil resistance differs from the certificate.
     OtherCoil {
-        /// Its serial number.
+        /// Serial number of the part.
         serial: String,
-        /// Resistance found.
+        /// Resistance found, ohm.
         ohm: f64,
-        /// Resistance certified.
+        /// Resistance certified, ohm.
         certified_ohm: f64,
-        /// Difference allowed.
+        /// Difference allowed, ohm.
         allowed_ohm: f64,
     },
     /// Too few reference parts were measured.
@@ -61,14 +61,14 @@ pub enum Misfit {
     },
     /// One part is an outlier.
     Outlier {
-        /// Its serial number.
+        /// Serial number of the part.
         serial: String,
         /// Distance from the mean, mV.
         off_mv: f64,
     },
     /// A result disagrees with the certificate.
     Reads {
-        /// Its serial number.
+        /// Serial number of the part.
         serial: String,
         /// Characteristic that disagrees.
         characteristic: Parameter,
@@ -76,15 +76,15 @@ pub enum Misfit {
         found: f64,
         /// Unit of the values.
         unit: Unit,
-        /// Value certified.
+        /// Value certified, in `unit`.
         certified: f64,
-        /// Difference allowed.
+        /// Difference allowed, in `unit`.
         allowed: f64,
     },
 }
 
 impl Misfit {
-    /// Returns its text of the family `fault`, with its figures.
+    /// Returns the misfit as a text of the family `fault`, with its figures.
     pub fn message(&self) -> Message {
         let of = |code, serial| Message::new("fault", code).with("serial", serial);
         match self {
@@ -126,7 +126,8 @@ impl Misfit {
     }
 }
 
-/// Indications of one reference part in both directions, minus certificate, at the part's temperature.
+/// Indications of one reference part in both directions, minus the certified values converted to the temperature of the
+/// part.
 #[derive(Debug, Clone)]
 struct Shift {
     serial: String,
@@ -144,7 +145,7 @@ pub struct ReferenceRun {
 }
 
 impl ReferenceRun {
-    /// Learns from a tested reference part; fails when the part is unusable.
+    /// Learns from a tested reference part; fails when the part cannot be used.
     pub fn learn<T>(
         &mut self,
         part: &ReferencePart,
@@ -182,7 +183,7 @@ impl ReferenceRun {
         Ok(())
     }
 
-    /// Returns the overshoot from all reference parts; the error names the outlier.
+    /// Returns the overshoots from all reference parts; fails with the part that is an outlier.
     pub fn overshoots(
         &self,
         parts: &[ReferencePart],
@@ -210,14 +211,14 @@ impl ReferenceRun {
         self.contact.mean().map_or(0.0, |Ohm(ohm)| ohm)
     }
 
-    /// Returns the mean of fine indication minus certificate so far, operate and release.
+    /// Returns the mean of fine indication minus certificate over the parts so far, volts, for operate and release.
     pub fn fine_v(&self) -> Option<(f64, f64)> {
         let n = self.shifts.len() as f64;
         let mean = |at: usize| self.shifts.iter().map(|it| it.fine_v[at]).sum::<f64>() / n;
         (n > 0.0).then(|| (mean(0), mean(1)))
     }
 
-    /// Returns the mean of coarse minus fine indication over the parts with both, 0 without any.
+    /// Returns the mean of coarse minus fine indication over the parts that have both, volts; 0 when none has.
     fn over(&self, direction: Direction) -> f64 {
         let both = || {
             let each = self
@@ -289,11 +290,11 @@ fn check_coil<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<(), Mis
     Ok(())
 }
 
-/// Greatest distance of a result from the certificate, in standard deviations: with three results one good part in 120
-/// exceeds it.
+/// Greatest difference of a result from the certificate, in standard deviations: with three results per part, one good
+/// part in 120 exceeds it.
 const CHECK_K: f64 = 3.0;
 
-/// Compares the results of a reference part with its certificate; the error names the result that disagrees.
+/// Compares the results of a reference part with its certificate; fails with the result that disagrees.
 pub fn check<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<(), Misfit> {
     let [operate, release, coil] = part.certified();
     for (parameter, certified) in [coil, operate, release] {

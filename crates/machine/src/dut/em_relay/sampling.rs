@@ -31,7 +31,7 @@ impl Polarities {
     /// Names in recipes.
     pub const NAMES: [&'static str; 2] = ["plus_minus", "plus_minus_minus_plus"];
 
-    /// Signs of the source in the order of the readings.
+    /// Returns the signs of the source in the order of the readings.
     pub fn signs(self) -> &'static [f64] {
         match self {
             Self::PlusMinus => &[1.0, -1.0],
@@ -85,15 +85,15 @@ impl ContactSampling {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct CoilSampling {
-    /// Time from the drive until a conversion may begin, ms.
+    /// Time from switching the drive on until a conversion may begin, ms.
     pub settles_ms: u32,
     /// Number of scans that are averaged.
     pub scans: u32,
 }
 
 impl Default for CoilSampling {
-    /// 32 ms: the current settles to 0.05 % within 13 ms (7.6 L/R of an open armature), but the pre-bias lifts the
-    /// armature from its stop, and its swing moves the current by up to 0.4 % until it dies out.
+    /// The default wait is 32 ms: the current settles to 0.05 % within 13 ms (7.6 L/R of an open armature), but the
+    /// pre-bias lifts the armature from its stop, and its swing moves the current by up to 0.4 % until it dies out.
     fn default() -> Self {
         Self {
             settles_ms: 32,

@@ -1,12 +1,12 @@
 //! Scales the voltages of the procedure to the coil and to the range of the supply.
 //!
 //! The constants of this kind are those of a 12 V coil in the range of factor 1. Voltages of the relay (thresholds,
-//! their scatter) scale with the nominal voltage. Voltages of the supply (the window of the board, the way of a ramp in a
-//! given time) scale with the factor of the range.
+//! their scatter) scale with the nominal voltage. Voltages of the supply (the window of the board, the way of a ramp in
+//! a given time) scale with the factor of the range.
 
 use units::Volt;
 
-/// Nominal voltage of the coil that the constants are stated for.
+/// Nominal coil voltage for which the constants are stated, V.
 const STATED_FOR_V: f64 = 12.0;
 
 /// Factors of a coil and of a supply range.
@@ -17,7 +17,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Makes the scale of a coil of this nominal voltage in a range of this factor.
+    /// Makes the scale for a coil of this nominal voltage in a supply range of this factor.
     pub fn new(nominal_v: f64, factor: f64) -> Self {
         Self {
             coil: nominal_v / STATED_FOR_V,
@@ -25,12 +25,12 @@ impl Scale {
         }
     }
 
-    /// Returns a voltage of the relay.
+    /// Scales a voltage of the relay, stated for a 12 V coil, to this coil.
     pub fn of_coil(self, of_12_v: Volt) -> Volt {
         of_12_v * self.coil
     }
 
-    /// Returns a voltage of the supply.
+    /// Scales a voltage of the supply, stated for the range of factor 1, to this range.
     pub fn of_range(self, at_factor_1: Volt) -> Volt {
         at_factor_1 * self.range
     }
@@ -40,7 +40,7 @@ impl Scale {
         self.range
     }
 
-    /// Returns the nominal voltage relative to that of a 12 V coil.
+    /// Returns the nominal coil voltage as a multiple of 12 V.
     pub fn coil(self) -> f64 {
         self.coil
     }

@@ -10,28 +10,28 @@ use serde::{Deserialize, Serialize};
 pub struct ReferenceSettings {
     /// Resistor in place of the coil, ohm.
     pub coil_ohm: f64,
-    /// Its tolerance, %.
+    /// Tolerance of `coil_ohm`, %.
     pub coil_tolerance_pct: f64,
     /// Four-wire resistor in place of the contact, mOhm.
     pub contact_mohm: f64,
-    /// Its tolerance, %.
+    /// Tolerance of `contact_mohm`, %.
     pub contact_tolerance_pct: f64,
-    /// Voltage at `reference_voltage`, V.
+    /// Voltage at the input `reference_voltage`, V.
     pub voltage_v: f64,
-    /// Its tolerance, %.
+    /// Tolerance of `voltage_v`, %.
     pub voltage_tolerance_pct: f64,
     /// Gate pulse that ARM triggers on the contact reference, ms.
     pub gate_pulse_ms: f64,
     /// Clock of the gated counters, Hz.
     pub counter_clock_hz: f64,
-    /// Its tolerance, ppm.
+    /// Tolerance of `counter_clock_hz`, ppm.
     pub counter_clock_tolerance_ppm: f64,
 }
 
 /// Validity and source of a calibration.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct CalibrationSettings {
-    /// Age at which the rig refuses a lot, hours.
+    /// Age beyond which the rig refuses a lot, hours.
     pub valid_h: f64,
     /// File of the reference parts, next to `rig.toml`; `None` when no recipe needs them.
     #[serde(rename = "golden")]
@@ -47,12 +47,12 @@ pub struct Certified {
     pub u: f64,
 }
 
-/// A relay with a certificate, run before a lot.
+/// A relay with a certificate that the rig measures to calibrate itself or to check itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ReferencePart {
     /// Serial number.
     pub serial: String,
-    /// Nominal coil voltage of the recipes that it calibrates.
+    /// Nominal coil voltage of the recipes that the part calibrates, V.
     pub nominal_v: f64,
     /// Operate threshold, V.
     pub operate_voltage_v: Certified,
@@ -84,7 +84,7 @@ impl ReferencePart {
 /// All reference parts of the plant.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ReferenceSet {
-    /// Temperature of the certified values, degrees Celsius.
+    /// Temperature to which the certified values refer, degrees Celsius.
     pub reference_temperature_c: f64,
     /// The parts.
     #[serde(rename = "golden")]

@@ -3,10 +3,10 @@
 //! | strategy | acts | gives |
 //! |---|---|---|
 //! | `pulse` | one step to the limit less the guard band | a proof of the limit; without it ramps measure the threshold |
-//! | `staircase` | steps of 20 mV with a dwell, until the contact changes | a value from levels alone: slow, the method in dispute |
+//! | `staircase` | steps of 20 mV with a dwell, until the contact changes | a value from levels alone: slow, and decisive in a dispute |
 //! | `bisection` | seven trials from rest, each halving the interval | a value to a hundredth of the interval |
 //! | `ramp` | the coarse ramp with the gated counter; for operate the overshoot follows the part's operate time ([`super::overshoot`]) | a value with the scatter of the coarse overshoot |
-//! | `two_rates` | coarse and fine ramp, the overshoot eliminated by its law | a value without reference parts |
+//! | `two_rates` | coarse and fine ramp; the law below eliminates the overshoot | a value without reference parts |
 //! | `coarse_fine` | a coarse ramp that places a fine one | a value with the scatter of the fine overshoot |
 //! | `adaptive` | the coarse ramp; the fine one when the limit lies within the uncertainty | the decision of the fine ramp at the speed of the coarse one |
 //!
@@ -21,9 +21,9 @@ use serde::{Deserialize, Serialize};
 pub enum Strategy {
     /// One step to the limit less the guard band.
     Pulse,
-    /// Steps that halve the interval.
+    /// Steps of 20 mV with a dwell, until the contact changes.
     Staircase,
-    /// Steps into a halved interval.
+    /// Trials from rest, each of which halves the interval.
     Bisection,
     /// The coarse ramp alone.
     Ramp,
@@ -90,8 +90,8 @@ impl Strategy {
     }
 }
 
-/// Returns the threshold from two rising ramps (or, with both signs reversed, two falling ones) by the law
-/// `seen = V + r (a - L ln r)`: rates in volts per second, `growth_s` is L.
+/// Returns the threshold from two rising ramps (or, with both signs reversed, two falling ones) by the law `seen = V +
+/// r (a - L ln r)`: `rates` in volts per second, `growth_s` is L in seconds.
 ///
 /// The two equations eliminate `a`.
 pub fn from_two_rates(seen_v: [f64; 2], rates: [f64; 2], growth_s: f64) -> f64 {

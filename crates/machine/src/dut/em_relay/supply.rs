@@ -1,7 +1,7 @@
 //! The coil supply as three outputs that add up: level (steps), coarse ramp, fine ramp.
 //!
-//! [`Supply`] holds the voltage last commanded of each, so that a stage sets a sum and keeps the ramps of the stage
-//! before: the coarse ramp rises once for operate and falls once for release.
+//! [`Supply`] holds the last commanded voltage of each output, so that a stage can set their sum and keep the ramps of
+//! the stage before: the coarse ramp rises once for operate and falls once for release.
 
 use crate::dut::em_relay::Calibration;
 use crate::dut::em_relay::act::Act;
@@ -11,7 +11,7 @@ use units::{Span, Volt};
 
 /// Rounding error of the sum of three outputs.
 const ROUNDING: Volt = Volt(1e-9);
-/// Slowest settling of an output after its last refresh.
+/// Longest time that an output takes to settle after its last refresh.
 pub const RAMP_MARGIN: Span = Span::ms(4);
 
 /// Voltage that each output contributes at the coil.
@@ -48,12 +48,12 @@ impl Supply {
         self.level_at + self.coarse_at + self.fine_at
     }
 
-    /// Returns the voltage that the coarse ramp adds at its end.
+    /// Returns the voltage that the coarse output contributes at the end of its ramp.
     pub fn coarse(&self) -> Volt {
         self.coarse_at
     }
 
-    /// Returns the voltage that the fine ramp adds at its end.
+    /// Returns the voltage that the fine output contributes at the end of its ramp.
     pub fn fine(&self) -> Volt {
         self.fine_at
     }

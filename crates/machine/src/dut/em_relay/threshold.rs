@@ -25,7 +25,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// +1 rising, -1 falling.
+    /// Returns +1 for rising, -1 for falling.
     pub fn sign(self) -> f64 {
         match self {
             Direction::Rising => 1.0,
@@ -44,12 +44,12 @@ pub fn indicated(
     start + (window + Volt(slope_v_per_s * gate.0)) * direction.sign()
 }
 
-/// Uncertainty terms of a threshold besides the shift of the reference parts.
+/// Uncertainty terms of a threshold in addition to that of the overshoot found on reference parts.
 #[derive(Debug, Clone, Copy)]
 pub struct RampUncertainty {
     /// Slope of the fine ramp, volts per second.
     pub slope_v_per_s: Factor,
-    /// True when the overshoot contains the error of the slope already.
+    /// True when the overshoot already contains the error of the slope.
     pub slope_known: bool,
     /// Scatter of the part's own threshold from operation to operation, volts.
     pub operation_v: f64,
@@ -57,8 +57,8 @@ pub struct RampUncertainty {
     pub refresh: Second,
     /// Relative standard uncertainty of the gain of the level at which the ramp starts.
     pub level_share: f64,
-    /// Change of the series resistance of the coil's force contacts since the reference parts, as a share of the coil
-    /// resistance.
+    /// Change of the series resistance of the coil's force contacts since the measurement of the reference parts, as a
+    /// share of the coil resistance.
     pub contact_share: f64,
     /// Difference between the temperatures of part and track, kelvin (1 sd).
     pub temperature_k: f64,

@@ -14,7 +14,7 @@ use units::Unit;
 pub struct Clock {
     /// Nominal frequency, hertz.
     pub hz: f64,
-    /// Half width of its tolerance, parts per million.
+    /// Half width of the tolerance of the frequency, parts per million.
     pub tolerance_ppm: f64,
 }
 

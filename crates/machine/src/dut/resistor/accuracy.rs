@@ -1,21 +1,21 @@
-//! Uncertainty of a resistance from the makers' accuracies: the kind has no calibration.
+//! Uncertainty of a resistance, computed from the makers' accuracies, since the kind has no calibration.
 
 use super::recipe::ResistorRecipe;
 use crate::dut::accuracy::AccuracySettings;
 use crate::gauge::Budget;
 use crate::gauge::budget::{rectangular, resolution};
 
-/// A +-10 V input: full scale and step of 12 bits, V at the terminal.
+/// Full scale and step (12 bits) of a +-10 V input, V at the terminal.
 const FULL_SCALE_V: f64 = 10.0;
 const STEP_V: f64 = 2.0 * FULL_SCALE_V / 4096.0;
 /// Share of the full scale that a good part may use.
 const USABLE: f64 = 0.98;
-/// Greatest difference of the part from the reference temperature, K.
+/// Greatest difference between the temperature of the part and the reference temperature, K.
 const TEMPERATURE_K: f64 = 10.0;
 /// Resistance of both probe contacts in series, ohm (half width).
 const PROBES_OHM: f64 = 0.2;
 
-/// Accuracies of the one channel of the test.
+/// Accuracies of the only channel that the test reads.
 #[derive(Debug, Clone, Copy)]
 pub struct ChannelAccuracy {
     /// Accuracies of the makers.

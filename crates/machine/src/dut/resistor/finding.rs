@@ -27,7 +27,7 @@ impl Finding {
         Self::OtherSupplyRange,
     ];
 
-    /// Returns code and consequence.
+    /// Returns the code of the finding and its consequence for the part.
     pub fn entry(self) -> Entry {
         match self {
             Self::Open => {
@@ -41,7 +41,7 @@ impl Finding {
         }
     }
 
-    /// Returns the reason with the names that its text holds.
+    /// Returns the reason with `detail`, the names that its text contains.
     pub fn with(self, detail: impl Into<String>) -> Reason {
         Reason {
             detail: detail.into(),

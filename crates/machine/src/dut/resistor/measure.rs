@@ -1,8 +1,8 @@
 //! The test of a resistor: drive on at a level, one channel read, drive off.
 //!
-//! R = V / I. V is the commanded level, I the reading of the fine channel; both have the makers' accuracies. The probe
-//! contacts are part of R and a term of its budget. A result inside the guard band is
-//! repeated `slow_repeats` times and averaged.
+//! R = V / I. V is the commanded level, I the reading of the fine channel; both have the makers' accuracies. R contains
+//! the probe contacts, and its budget has a term for them. A result inside the guard band is repeated `slow_repeats`
+//! times and averaged.
 
 use super::accuracy::ChannelAccuracy;
 use super::points::Points;
@@ -46,7 +46,7 @@ impl Device {
     /// Resolves the points of the recipe on a rig.
     ///
     /// # Errors
-    /// Names the first point that the rig lacks.
+    /// Fails with the first point that the rig lacks.
     pub fn new(
         recipe: Arc<Recipe>,
         resistor: &ResistorRecipe,
@@ -70,7 +70,8 @@ impl Device {
         })
     }
 
-    /// Returns the acts that select the range while all sources are at zero; without the range the runner skips the rest.
+    /// Returns the acts that select the range while all sources are at zero; when the range does not come, the runner
+    /// skips the remaining acts.
     fn range_acts(&self) -> Vec<Act> {
         let range = self.range.iter();
         let acts = range.flat_map(|(selector, range)| {
@@ -91,7 +92,7 @@ impl Device {
         acts.collect()
     }
 
-    /// Returns how the range that was read back differs from the selected one.
+    /// Returns how the range that was read back differs from the selected one; none when it does not.
     fn mismatch(&self, readings: &Readings) -> Option<RangeMismatch> {
         let (selector, range) = self.range.as_ref()?;
         let [low, high] = selector.inputs.map(|it| readings.states(it).last());
@@ -126,7 +127,7 @@ impl Device {
         ]
     }
 
-    /// Returns the resistance from the currents of one measurement, or the finding.
+    /// Returns the resistance from the currents of one measurement, or the finding that they show.
     fn resistance(&self, samples: &[Sample]) -> Result<Reading, Finding> {
         let mut sum = 0.0;
         for sample in samples {
@@ -220,7 +221,7 @@ impl Test {
         self.began = now;
     }
 
-    /// Adds one measurement; another follows when [`Self::needs_repeat`] holds.
+    /// Adds the result of one measurement; another measurement follows when [`Self::needs_repeat`] holds.
     fn conclude(&mut self, readings: &Readings, now: RigTime) {
         let samples: Vec<Sample> = readings
             .analog(self.device.points.current)
@@ -249,7 +250,7 @@ impl Test {
     }
 
     /// Returns true when a repeat is due: in a thorough test after every result, in others after one inside the guard
-    /// band; repeats once begun go on to the last.
+    /// band. Once begun, repeats continue to the last one.
     fn needs_repeat(&self) -> bool {
         let repeating = self.record.attempts(Parameter::Resistance) > 1;
         let conditional = |(_, judgement): &(Characteristic, Judgement)| match judgement {

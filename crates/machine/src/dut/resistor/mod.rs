@@ -31,7 +31,7 @@ pub use parameter::Parameter;
 
 use super::KindDefinition;
 
-/// What is fixed about the kind.
+/// Constant data of this kind of device.
 pub const DEFINITION: KindDefinition = KindDefinition {
     name: "resistor",
     sections: keys::SECTIONS,

@@ -8,11 +8,11 @@ use crate::rig::wiring::Wiring;
 /// Points as this rig has wired them.
 #[derive(Debug, Clone, Copy)]
 pub struct Points {
-    /// Connects the supply to the two pins.
+    /// Output that connects the supply to the two pins.
     pub drive: DigitalOutput,
-    /// Voltage of the supply.
+    /// Output that sets the voltage of the supply.
     pub level: AnalogOutput,
-    /// Current through the part.
+    /// Input that reads the current through the part.
     pub current: AnalogInput,
 }
 
@@ -20,7 +20,7 @@ impl Points {
     /// Resolves every point.
     ///
     /// # Errors
-    /// Names the first point that the rig lacks.
+    /// Fails with the first point that the rig lacks.
     pub fn resolve(wiring: &Wiring) -> Result<Self, MissingPoint> {
         let missing = |section, name| MissingPoint { section, name };
         let (drive, level, current) = ("coil_drive", "supply_level", "coil_current_fine");

@@ -24,7 +24,7 @@ use units::{Ampere, Celsius, Volt};
 pub struct ResistorRecipe {
     /// The resistor.
     pub part: PartData,
-    /// Its measurement.
+    /// How the resistor is measured.
     pub test: TestPlan,
 }
 
@@ -35,18 +35,18 @@ pub struct PartData {
     pub body_mm: [f64; 3],
     /// Length of the pins below the body, mm.
     pub pin_length_mm: f64,
-    /// Temperature that results refer to, degrees Celsius.
+    /// Temperature to which results are converted, degrees Celsius.
     pub reference_temperature_c: f64,
     /// Temperature coefficient of the resistor, ppm/K, either sign.
     pub tcr_ppm_per_k: f64,
 }
 
-/// Measurement of the part.
+/// How the part is measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TestPlan {
-    /// Voltage across the part, V.
+    /// Voltage of the supply across part and probes, V.
     pub level_v: f64,
-    /// Time from the drive until a conversion may begin, ms.
+    /// Time from switching the drive on until a conversion may begin, ms.
     pub settles_ms: u32,
     /// Number of readings that are averaged.
     pub readings: u32,
@@ -122,7 +122,7 @@ impl ResistorRecipe {
     /// Returns the wiring in the supply range of the recipe, and its points.
     ///
     /// # Errors
-    /// Names the bin, the point or the range that the rig does not have.
+    /// Fails with the bin, the point or the range that the rig does not have.
     fn reach(&self, limits: &Limits, rig: &Rig) -> Result<(Wiring, Points), Fault> {
         let wiring = rig.wiring;
         if !wiring.axis.has(BIN) {
@@ -167,7 +167,7 @@ impl ResistorRecipe {
     }
 }
 
-/// Checks that the level steps, and that the converter reads the channel of the current.
+/// Checks that the level output steps instead of ramping, and that the converter reads the channel of the current.
 fn check_modules(wiring: &Wiring, points: &Points) -> Result<(), Fault> {
     let source = wiring.module(wiring.analog_out(points.level).module);
     if source

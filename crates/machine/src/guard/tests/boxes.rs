@@ -1,6 +1,6 @@
 //! Reads the scene a second time, as plain boxes, to check the motions that the guard clears.
 //!
-//! Replaces a cylinder by the box inside it, so that no clear pose counts as a collision.
+//! This reading replaces a cylinder by the box inside it, so that no clear pose counts as a collision.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,4 +1,4 @@
-//! The guard gives the same answer to equal questions, and its offers hold.
+//! The guard gives the same answer to equal questions, and every pose that it offers is clear.
 
 use super::*;
 

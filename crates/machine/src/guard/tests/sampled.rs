@@ -1,6 +1,6 @@
 //! Checks cleared motions pose by pose with an independent reading of the scene.
 //!
-//! Reads bodies as boxes, moves them by sampled strokes and compares them pair by pair.
+//! The check reads bodies as boxes, moves them by sampled strokes and compares them pair by pair.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,5 +1,5 @@
-//! Steps feed, nest and sorter from every state under every combination of their inputs and compares the transitions
-//! with a drawing, `golden/{feed,nest,sorter}.dot`.
+//! These tests step feed, nest and sorter from every state under every combination of their inputs and compare the
+//! transitions with a drawing, `golden/{feed,nest,sorter}.dot`.
 //!
 //! Inputs are those that the machine reads: the sensors of each actuator (one end, the other, neither), part sensors,
 //! the ledger, permissions, and passed deadlines. The drawing omits a step that keeps its state, unless it commands

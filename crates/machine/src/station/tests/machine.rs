@@ -33,7 +33,7 @@ pub enum Specimen {
 }
 
 impl Specimen {
-    /// Returns the bin in which it belongs.
+    /// Returns the bin to which the part belongs.
     pub fn bin(self) -> Bin {
         match self {
             Self::MissingPin => Bin::RETEST,
@@ -207,7 +207,7 @@ impl Machine {
         self.station.device = device_of(context);
     }
 
-    /// Sets the uses of wearing parts before the run.
+    /// Sets the use counts of the wearing parts before the run.
     pub fn wore(&mut self, worn: Uses) {
         self.station.plan.worn = worn;
     }

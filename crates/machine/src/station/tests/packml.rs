@@ -1,4 +1,4 @@
-//! The outer machine: every state with every command, and its drawing.
+//! The rig's state machine: every state with every command, and its drawing.
 
 use crate::station::packml::{Command, On, State, TRANSITIONS, dot, next};
 use std::collections::BTreeSet;

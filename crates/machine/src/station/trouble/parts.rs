@@ -9,7 +9,7 @@ impl Alarm {
         self.with("case", case)
     }
 
-    /// The beam of a bin counted no part, or more than one.
+    /// Returns the alarm that the beam of a bin counted no part, or more than one.
     pub fn beam(bin: Bin, counted: u32) -> Self {
         let alarm = Self::from(AlarmCode::BinBeam)
             .with("bin", bin)
@@ -20,39 +20,39 @@ impl Alarm {
         }
     }
 
-    /// The run ended before the beam of the bin had counted the released part.
+    /// Returns the alarm that the run ended before the beam of the bin had counted the released part.
     pub fn beam_unread(bin: Bin) -> Self {
         Self::from(AlarmCode::BinBeam)
             .with("bin", bin)
             .case("unread")
     }
 
-    /// A sensor shows a part that the ledger does not have.
+    /// Returns the alarm that a sensor shows a part that the ledger does not have.
     pub fn part_found(place: Place) -> Self {
         Self::from(AlarmCode::PartFound).with("place", place.name())
     }
 
-    /// No sensor shows a part that the ledger has.
+    /// Returns the alarm that no sensor shows a part that the ledger has.
     pub fn part_lost(place: Place) -> Self {
         Self::from(AlarmCode::PartLost).with("place", place.name())
     }
 
-    /// No sensor shows a part that an earlier run left inside.
+    /// Returns the alarm that no sensor shows a part that an earlier run left inside.
     pub fn part_gone(place: Place) -> Self {
         Self::part_lost(place).case("gone")
     }
 
-    /// An earlier run ended between the release of a part and its beam.
+    /// Returns the alarm that an earlier run ended between the release of a part and its beam.
     pub fn fall_unseen(bin: Bin) -> Self {
         Self::from(AlarmCode::FallUnseen).with("bin", bin)
     }
 
-    /// A part sticks in the open gripper.
+    /// Returns the alarm that a part sticks in the open gripper.
     pub fn part_sticks() -> Self {
         Self::from(AlarmCode::PartStuck).case("between_fingers")
     }
 
-    /// The beam of a bin stays dark.
+    /// Returns the alarm that the beam of a bin stays dark.
     pub fn bin_full(bin: Bin) -> Self {
         Self::from(AlarmCode::BinFull).with("bin", bin)
     }

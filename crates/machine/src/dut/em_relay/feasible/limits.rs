@@ -1,4 +1,4 @@
-//! Limits that a test can reach: beyond them every part would fail, or a bad one would pass.
+//! Limits of a recipe beyond the reach of its test: with them every part would fail, or a bad one would pass.
 
 use super::Reach;
 use super::supply::READABLE_V;
@@ -12,7 +12,7 @@ use crate::rig::fault::Fault;
 /// Current of the contact source of the board, ampere.
 const CONTACT_SOURCE_A: f64 = 1.0;
 
-/// Returns the limits beyond the reach of the test, with where the reach ends.
+/// Returns a fault for each limit beyond the reach of the test; the fault states where that reach ends.
 pub(super) fn faults(
     recipe: &RelayRecipe,
     limits: &Limits,
@@ -31,8 +31,8 @@ pub(super) fn faults(
     })
 }
 
-/// Returns the highest value that the test can find, in the unit of the parameter, and what ends it; `None` for the coil,
-/// whose current channel is checked by itself.
+/// Returns the highest value that the test can find, in the unit of the parameter, and what sets this bound. `None` for
+/// the coil resistance, whose current channel another check covers.
 fn most(parameter: Parameter, recipe: &RelayRecipe, reach: &Reach) -> Option<(f64, String)> {
     let test = &recipe.test;
     let most = match parameter {

@@ -1,4 +1,4 @@
-//! What a test asks of the supply, and whether the range that gives it suits the recipe.
+//! Demand of a test on the supply, and whether the supply range that meets this demand suits the recipe.
 
 use super::{Reach, nominal_v_per_s};
 use crate::dut::accuracy::AccuracySettings;
@@ -11,15 +11,15 @@ use crate::rig::supply::SupplyDemand;
 use crate::rig::wiring::Wiring;
 use units::{Ampere, Volt};
 
-/// Highest voltage at a terminal of the coil converter that still counts: 98 % of its +-10 V.
+/// Highest voltage that a reading at a terminal of the coil converter may have: 98 % of its +-10 V.
 pub(super) const READABLE_V: f64 = 9.8;
-/// Lowest voltage at a terminal that tells a current from none.
+/// Lowest voltage at a terminal that can be told from the voltage without current.
 const LEAST_CURRENT_V: f64 = 0.3;
 /// Share by which a good coil may differ from its nominal resistance where the recipe sets no limit.
 const USUAL_SPREAD: f64 = 0.1;
 
-/// Returns what a test asks of the supply: the nominal voltage or the top of the coarse ramp, with the tolerance of the
-/// sources, and the current of the lowest accepted coil at nominal voltage.
+/// Returns the demand of a test on the supply: the nominal voltage or the top of the coarse ramp, with the tolerance of
+/// the sources, and the current of the lowest accepted coil at nominal voltage.
 pub fn demand(recipe: &RelayRecipe, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand {
     let (part, test) = (&recipe.part, &recipe.test);
     let tolerance = 1.0 + accuracy.ao_gain_pct / 100.0;
@@ -53,7 +53,7 @@ fn accepted_ohm(recipe: &RelayRecipe, limits: &Limits) -> (f64, f64) {
     )
 }
 
-/// Returns what the outputs and the channels of the range cannot do for the recipe.
+/// Returns a fault for each demand of the recipe that the outputs or the channels of the range cannot meet.
 pub(super) fn faults(recipe: &RelayRecipe, limits: &Limits, reach: &Reach) -> Vec<Fault> {
     let Reach { wiring, points } = reach;
     let mut faults = Vec::from_iter(output_faults(recipe, wiring, points));
@@ -62,7 +62,8 @@ pub(super) fn faults(recipe: &RelayRecipe, limits: &Limits, reach: &Reach) -> Ve
     faults
 }
 
-/// Returns the level and the coarse output where they do not reach the pre-bias and the height of the coarse ramp.
+/// Returns a fault when the level output does not reach the pre-bias, and one when the coarse output does not reach the
+/// height of the coarse ramp.
 fn output_faults(
     recipe: &RelayRecipe,
     wiring: &Wiring,
@@ -129,7 +130,7 @@ fn check_current(
 }
 
 /// Checks that the coarse ramp is slow enough: between two refreshes of its output it may rise by no more than the
-/// thresholds of the lot scatter, or it tells nothing about the part.
+/// scatter of the lot's thresholds; a faster ramp cannot tell one part from another.
 pub(super) fn check_ramp(
     recipe: &RelayRecipe,
     reach: &Reach,

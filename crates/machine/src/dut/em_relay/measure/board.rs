@@ -13,7 +13,7 @@ use crate::dut::em_relay::recipe::Suppression;
 use crate::dut::em_relay::supply::Supply;
 use units::{Span, Volt};
 
-/// Rounding error of a difference between two sums of the same three voltages.
+/// Rounding error of a difference between two sums of the same three voltages, volts.
 const ROUNDING_V: f64 = 1e-6;
 
 /// State of board and supply between two stages.
@@ -25,7 +25,7 @@ pub struct BoardState {
     pub armature: Armature,
     /// The ramp that the present stage sends.
     pub ramp: Option<SentRamp>,
-    /// Time from the mark until the last ramp that no stage has waited for ends.
+    /// Time from the mark to the end of the last ramp, if no stage has waited for that end yet.
     pub still_ramping: Span,
 }
 
@@ -106,8 +106,8 @@ impl BoardState {
     }
 }
 
-/// Selects the coil suppression of the recipe, or the zener again; returns no act when the recipe uses the zener. The
-/// board switches the suppression only below 1 mA of coil current.
+/// Selects the coil suppression of the recipe when `on`, else the zener; returns no act when the recipe uses the zener.
+/// The board switches the suppression only below 1 mA of coil current.
 pub(super) fn select_diode(context: &Context, on: bool) -> Option<Act> {
     match context.relay.test.suppression {
         Suppression::Zener => None,

@@ -18,9 +18,9 @@ use crate::dut::em_relay::supply::Supply;
 use crate::rig::sample::{Quality, Sample};
 use units::{Ohm, Span, Volt};
 
-/// Channels of the coil converter that a recipe has enabled.
+/// Number of channels of the coil converter that a recipe enables.
 const CHANNELS: usize = 2;
-/// Below this fraction of the pre-bias, supply or probe-up chain are faulty, not the coil.
+/// Fraction of the pre-bias below which the supply or the probe-up chain is faulty, not the coil.
 const LEAST_PREBIAS: f64 = 0.5;
 /// Terminal voltage of the fine current channel (0.25 mA) below which the coil counts as open.
 const NO_CURRENT: Volt = Volt(0.15);
@@ -42,8 +42,8 @@ const IDLE: [(DigitalOut, bool); 8] = [
     (KelvinTest, true),
 ];
 
-/// Converts the coil and meanwhile prepares the board for the operate ramp: the supply stays still between ARM and
-/// ramp. A repeated stage first releases the relay and takes the ramps down.
+/// Reads the coil and meanwhile prepares the board for the operate ramp: the supply stays still between ARM and ramp. A
+/// repeated stage first releases the relay and takes the ramps down.
 pub(super) fn acts(context: &Context, board: BoardState, repeated: bool) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let prebias = Volt(context.relay.test.prebias_v);
@@ -187,7 +187,7 @@ pub(super) fn conclude(
     None
 }
 
-/// Returns the series resistance of supply and pins of `coil`, from the calibrated input and supply.
+/// Returns the resistance in series with `coil`, between supply and pins, from the calibrated input and supply.
 fn probe_contact(context: &Context, scans: &[CoilScan], coil: Ohm) -> Option<Ohm> {
     let at_pins = |scan: &CoilScan| {
         let Sample {

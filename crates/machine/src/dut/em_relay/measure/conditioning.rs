@@ -42,7 +42,7 @@ pub(super) fn acts(context: &Context, board: BoardState) -> (Vec<Act>, BoardStat
     (acts, left)
 }
 
-/// Returns the longest time of `operations`.
+/// Returns the longest time that this number of operations takes.
 pub(super) fn longest(operations: u32) -> Span {
     Span(OPERATION.0 * u64::from(operations))
 }

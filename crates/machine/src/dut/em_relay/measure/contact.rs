@@ -30,7 +30,7 @@ fn directed(context: &Context, reverse: bool) -> [Act; 4] {
     ]
 }
 
-/// Reads the polarities after the first forward one and leaves the source on in its last direction.
+/// Returns the acts that read the polarities after the first forward one; the source stays on in its last direction.
 pub(super) fn reversed(context: &Context) -> Vec<Act> {
     let mut acts = directed(context, true).to_vec();
     match context.relay.test.strategy.contact.polarities {

@@ -22,8 +22,8 @@ use units::{Celsius, Ohm, Span, Volt};
 /// Resolution of a +-10 V input of 12 bits, volts per step.
 const LSB_V: f64 = 20.0 / 4096.0;
 
-/// Assumed overshoot of a 96 V/s ramp before the first reference part; it only places the first fine ramp. A ramp of
-/// another range overshoots for as long, and so by as many volts as its rate is higher.
+/// Assumed overshoot of a 96 V/s ramp before the first reference part; it only places the first fine ramp. In another
+/// supply range the overshoot lasts as long, so its volts are proportional to the rate of the ramp.
 const ASSUMED_OPERATE: Volt = Volt(0.85);
 const ASSUMED_RELEASE: Volt = Volt(-1.05);
 
@@ -102,8 +102,8 @@ impl Context {
         self.accuracy.operation_v(self.relay.part.nominal_v)
     }
 
-    /// Returns the relative standard uncertainty of a threshold caused by the change of the probe contact since the
-    /// reference parts; no correction removes it.
+    /// Returns the relative standard uncertainty of a threshold from the change of the probe contact since the
+    /// measurement of the reference parts; no correction removes it.
     pub fn contact_share(&self) -> f64 {
         let then_ohm = self.calibration.probe_contact_ohm;
         let changed = self.probe_contact.map_or(0.0, |Ohm(now)| now - then_ohm);
@@ -163,7 +163,7 @@ impl Context {
         ASSUMED_FINE.map(|volts| self.scale().of_range(volts).0)
     }
 
-    /// Returns the scale of the constants of this kind for the coil and its range.
+    /// Returns the scale that adapts the constants of this kind to the coil and the supply range.
     pub fn scale(&self) -> Scale {
         let factor = self.range.as_ref().map_or(1.0, |range| range.factor);
         Scale::new(self.relay.part.nominal_v, factor)
@@ -175,8 +175,8 @@ impl Context {
         range.filter(|it| it.is_selected()).map(|it| it.code)
     }
 
-    /// Returns how the range that was read back differs from the selected one; none where it does not, or where no range
-    /// was read.
+    /// Returns how the range that was read back differs from the selected one; none when it does not differ, or when no
+    /// range was read.
     pub fn range_mismatch(&self, read_back: Option<u8>) -> Option<RangeMismatch> {
         let (range, selector) = (self.range.as_ref()?, self.points.range.as_ref()?);
         selector.mismatch(range, read_back?)

@@ -12,7 +12,7 @@ use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::threshold::{Direction, WINDOW, indicated};
 use units::{Second, Span, Volt};
 
-/// Fine ramps that may miss the threshold before the test is void.
+/// Number of fine ramps that may miss the threshold before the test is void.
 const ATTEMPTS: u8 = 5;
 
 enum Outcome {

@@ -24,7 +24,8 @@ pub(super) fn gate0(context: &Context, readings: &Readings) -> Option<Second> {
     ))
 }
 
-/// Returns the threshold from a coarse ramp by the overshoot model; `None` for a part unlike those that taught the model.
+/// Returns the threshold from a coarse ramp by the overshoot model; `None` for a part unlike those that taught the
+/// model.
 ///
 /// The learned scatter already contains resolution, repeatability and slope error, so the budget does not add them.
 pub(super) fn coarse_reading(
@@ -34,7 +35,8 @@ pub(super) fn coarse_reading(
     direction: Direction,
 ) -> Option<Reading> {
     let predicted = overshoot.coarse.of(&seen);
-    // The learned scatter includes that of the fine operation, which this value does not have.
+    // The learned scatter includes the scatter of the operation on the fine ramp, but this value comes from the coarse
+    // ramp alone.
     let operation_v = context.operation_v();
     let own_v = (predicted.u_v.powi(2) - operation_v.powi(2)).max(operation_v.powi(2));
     let uncertainty = RampUncertainty {
@@ -61,7 +63,7 @@ pub(super) fn coarse_reading(
     predicted.alike.then_some(reading)
 }
 
-/// Returns the threshold from a fine ramp by the overshoot of reference parts, or from both ramps by two rates.
+/// Returns the threshold: from a fine ramp and the overshoot of reference parts, or from both ramps by their two rates.
 pub(super) fn fine_reading(
     context: &Context,
     (ramps, gate): (Ramp, Second),
@@ -100,7 +102,7 @@ pub(super) fn fine_reading(
     reading
 }
 
-/// Returns the uncertainty terms of a fine ramp beyond those of the reference parts.
+/// Returns the uncertainty terms of a fine ramp in addition to that of the overshoot found on reference parts.
 fn uncertainty(context: &Context) -> RampUncertainty {
     RampUncertainty {
         slope_v_per_s: context.calibration.fine_v_per_s,

@@ -19,7 +19,8 @@ const COM: usize = 2;
 /// Longest time until the relays of a range have switched.
 const SWITCHES: Span = Span::ms(500);
 
-/// Selects the range of the supply too: safe outputs have deselected it, with all sources at zero.
+/// Returns the acts of the check. They also select the supply range, which the safe outputs had deselected with all
+/// sources at zero.
 pub(super) fn acts(context: &Context) -> Vec<Act> {
     let kelvin = [set(&[(KelvinTest, true)]), Act::Wait(Span::ms(1))];
     let within = SWITCHES;

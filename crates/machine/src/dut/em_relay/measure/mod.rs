@@ -83,7 +83,7 @@ const SLOW: [Stage; 5] = [
     Stage::ReleaseFine(0),
 ];
 
-/// Longest remaining time of a ramp that the previous test has left running: one over a new interval takes 0.3 s.
+/// Longest remaining time of a ramp that the previous test has left running: a ramp over a new interval takes 0.3 s.
 const CUT_OFF: Span = Span::ms(400);
 
 /// A test under way.
@@ -130,7 +130,7 @@ impl Test {
         self
     }
 
-    /// Gives up the stage under way: its acts have not left the board as they were to.
+    /// Gives up the stage under way when its acts did not leave the board as planned.
     fn abandon(&mut self, why: String) {
         let seen = std::mem::take(&mut self.runner.readings.trace);
         self.state.record.trace.append(seen);
@@ -165,7 +165,7 @@ impl Test {
             self.stages = VecDeque::from([Stage::Off]);
         } else if let Some(stage) = again {
             if matches!(self.stage, Stage::Search(_)) {
-                // The search places the fine ramp that is planned already.
+                // The search places the fine ramp that is already planned.
                 self.stages.retain(|waiting| {
                     stage.is_fine().is_none() || waiting.is_fine() != stage.is_fine()
                 });
@@ -281,7 +281,7 @@ impl TestProcedure for Test {
         std::mem::take(&mut self.state.record).of_any_kind(Own::EmRelay)
     }
 
-    /// The stages that measure, and the conditioning.
+    /// Returns the longest time of the stages that measure and of the conditioning.
     fn longest(&self) -> Span {
         MEASURING + conditioning::longest(self.context.relay.test.conditioning_operations)
     }

@@ -14,13 +14,13 @@ use crate::dut::em_relay::supply::RAMP_MARGIN;
 use crate::dut::em_relay::threshold::{Direction, WINDOW, indicated};
 use units::{Span, Volt};
 
-/// Start of the coarse release ramp above the highest threshold of the lot, volts.
+/// How far above the highest threshold of the lot the coarse release ramp starts, volts.
 const RELEASE_HEADROOM: Volt = Volt(0.8);
 /// Time for flux and armature to reach equilibrium at the start level.
 pub(super) const SETTLES: Span = Span::ms(25);
 /// Longest time to poll the latch and write the ramp's reversal.
 const TURNS: Span = Span::ms(10);
-/// Latest contact event after the end of a ramp that still counts.
+/// Time after the end of a ramp up to which a contact event still counts.
 pub(super) const LATE: Span = Span::ms(25);
 
 /// Returns the height of the coarse output at which the release ramp begins.
@@ -117,8 +117,8 @@ pub(super) fn conclude_coarse(
         .then_some(Stage::OperateFine(0))
 }
 
-/// Returns the time from the event until the coarse ramp is back at [`release_start`]; it rises during the poll that
-/// detects the event and the write that reverses it.
+/// Returns the time from the event until the coarse ramp is back at [`release_start`]; the ramp still rises during the
+/// poll that detects the event and the write that reverses the ramp.
 fn turning(context: &Context, climbed: Volt) -> Span {
     let per_s = context.calibration.coarse_v_per_s.value;
     let over = climbed.0 + per_s * TURNS.as_seconds();

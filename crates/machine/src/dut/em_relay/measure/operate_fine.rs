@@ -18,10 +18,12 @@ use units::{Span, Volt};
 
 /// First step of the approach, as a fraction of the start of the fine ramp.
 pub(super) const APPROACH: f64 = 0.93;
-/// A fine output up to here stays.
+/// Highest voltage of the fine output that the stage leaves standing instead of taking it to 0.
 const LEFT: Volt = Volt(0.02);
-/// Voltage that the level keeps of an approach, and how much less it may be for the coarse output to stay.
+/// Least voltage that the level output contributes to the first step of the approach; the coarse output contributes at
+/// most the rest.
 const ROOM: Volt = Volt(0.3);
+/// How far the coarse output may exceed that rest before the stage lowers it.
 const CLOSE: Volt = Volt(0.05);
 
 pub(super) fn acts(
@@ -92,8 +94,8 @@ fn falling(board: BoardState) -> Span {
     }
 }
 
-/// Lowers the coarse output to what the approach leaves room for, and the fine output to 0. The previous ramp has been
-/// falling for `falls` already.
+/// Lowers the coarse output to what the approach leaves room for, and the fine output to 0. The previous ramp falls
+/// until `falls` after the mark.
 fn make_room(context: &Context, supply: &mut Supply, falls: Span, start: Volt) -> Vec<Act> {
     let (mut acts, scale) = (Vec::new(), context.scale());
     let mut wait = Span(0);

@@ -11,11 +11,12 @@ use units::{Span, Volt};
 
 /// Operate time assumed for a part without a measured one.
 const UNKNOWN_MS: f64 = 5.0;
-/// Range of operate times that scale the waits.
+/// Shortest operate time to which the waits adapt, ms; a shorter one counts as this.
 const SHORTEST_MS: f64 = 2.5;
+/// Longest operate time to which the waits adapt, ms; a longer one counts as this.
 const LONGEST_MS: f64 = 20.0;
 
-/// Operate time of a part, limited to the range above.
+/// Operate time of a part, limited to the two times above.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Pace {
     operate_ms: f64,
@@ -40,7 +41,7 @@ impl Pace {
         self.times(2.5)
     }
 
-    /// Returns the wait from the second, smaller step to the fine ramp; reference parts share the remaining swing.
+    /// Returns the wait from the second, smaller step to the fine ramp; reference parts have the same remaining swing.
     pub fn settles(self) -> Span {
         self.times(4.2)
     }
@@ -51,8 +52,8 @@ impl Pace {
         self.times(6.3)
     }
 
-    /// Returns the distance of a ramp of `v_per_s` before the interval that it searches: an armature just below its
-    /// threshold swings after the approach and operates up to 50 mV early.
+    /// Returns the run-up of a ramp of `v_per_s`, that is, its distance before the interval that it searches. An
+    /// armature just below its threshold swings after the approach and operates up to 50 mV early.
     pub fn run_up(self, v_per_s: f64) -> Volt {
         Volt(self.times(8.5).as_seconds() * v_per_s)
     }

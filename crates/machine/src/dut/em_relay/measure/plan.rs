@@ -18,7 +18,7 @@ pub struct Plan {
     release: Option<Expected>,
     /// The search by levels under way.
     pub search: Option<Search>,
-    /// Terminal voltage of the contact drop without current.
+    /// Voltage at the terminal of the contact drop while no current flows.
     pub drop_zero: Option<Volt>,
     /// NC drops of the closures read so far, free of offset.
     pub nc_drops: Vec<Volt>,
@@ -35,7 +35,7 @@ impl Plan {
         }
     }
 
-    /// Returns the interval in which the stages so far expect the event of a direction.
+    /// Returns the interval in which the stages so far expect the contact event of a direction.
     pub fn expected(&self, direction: Direction) -> Option<Expected> {
         match direction {
             Direction::Rising => self.operate,
@@ -43,8 +43,8 @@ impl Plan {
         }
     }
 
-    /// Returns the interval of the next fine ramp: around the first indication for a repeat. Panics without an
-    /// expectation.
+    /// Returns the interval of the next fine ramp: for a repeat that around the first indication, else the expected
+    /// one. Panics when no stage has set an expectation.
     pub fn interval(&self, record: &TestRecord, direction: Direction, scale: Scale) -> Expected {
         let repeated = record
             .ramp(direction)

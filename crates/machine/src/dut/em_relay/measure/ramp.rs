@@ -21,7 +21,7 @@ pub(super) const JUMP: Volt = Volt(0.045);
 /// Distance of a falling ramp before the interval that it searches: the flux of a sealed armature follows at 6 to 9 ms
 /// and still decays from the seal.
 const RUN_DOWN: Volt = Volt(0.085);
-/// Distance after which 1 mV remains of the seal's effect: a later event belongs to the ramp.
+/// Distance of a falling ramp after which 1 mV of the seal's effect remains: a later event belongs to the ramp.
 pub(super) const SETTLED_DOWN: Volt = Volt(0.068);
 /// Length of a ramp beyond the far end of its interval, for the scatter of the overshoot.
 const FAR_MARGIN: Volt = Volt(0.015);
@@ -35,10 +35,11 @@ const WIDEST_SD: Volt = Volt(0.02);
 const WIDEST: Volt = Volt(0.2);
 /// Standard uncertainty of the assumed overshoot of a fine ramp, volts.
 const FINE_GUESS_SD: Volt = Volt(0.020);
-/// Scatter of two operations, volts, and of 0.25 K between reference parts, as a share of the threshold (1 sd).
+/// Scatter between two operations, volts (1 sd), then that from 0.25 K between reference parts, as a share of the
+/// threshold.
 const TWO_OPERATIONS: Volt = Volt(0.004);
 const TWO_TEMPERATURES: f64 = 0.001;
-/// Width of the next interval relative to the missed one.
+/// Width of the next interval, as a multiple of that of the missed one.
 const WIDER: f64 = 3.0;
 
 /// Interval of indicated voltage that a fine ramp searches for the contact event.
@@ -53,7 +54,7 @@ pub struct Expected {
 /// Start and length of a fine ramp.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placed {
-    /// Supply before the ramp.
+    /// Supply voltage before the ramp.
     pub start: Volt,
     /// Length of the ramp, positive.
     pub span: Volt,
@@ -108,7 +109,7 @@ impl Expected {
         }
     }
 
-    /// Returns an interval of the same width around `end`, for an event after the ramp had stopped there: the gate
+    /// Returns an interval of the same width around `end`, for an event after the ramp had stopped at `end`: the gate
     /// then shows time at rest, not volts.
     pub fn around(&self, end: Volt) -> Self {
         Self {
@@ -137,13 +138,13 @@ impl Expected {
     }
 }
 
-/// Returns the end of a ramp from `start` when the indicated voltage `seen` lies beyond it.
+/// Returns the end of a ramp from `start` when the indicated voltage `seen` lies beyond that end.
 pub(super) fn stopped_at(start: Volt, span: Volt, seen: Volt) -> Option<Volt> {
     ((seen - start).abs() > span).then_some(start + Volt(span.0.copysign((seen - start).0)))
 }
 
-/// Places the fine ramp after a coarse one, and records the coarse result when the recipe trusts it. Returns true when
-/// the part needs a fine ramp that the recipe has not planned.
+/// Places the fine ramp after a coarse one, and records the coarse result when the strategy accepts it as a result.
+/// Returns true when the part needs a fine ramp that the recipe has not planned.
 pub(super) fn after_coarse(
     context: &Context,
     readings: &Readings,

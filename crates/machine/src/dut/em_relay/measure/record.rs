@@ -10,19 +10,19 @@ use units::{Celsius, Ohm, Volt};
 /// Indications of the ramps of one direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ramp {
-    /// Results of the part when its coarse ramp ended, including its indication.
+    /// Results of the part at the end of its coarse ramp, including the indication of that ramp.
     pub coarse: CoarseResults,
     /// Indicated voltage of the fine ramp.
     pub fine: Option<Volt>,
 }
 
 impl Ramp {
-    /// Returns the indication of a coarse ramp without a fine one.
+    /// Returns the ramps of a direction that has only a coarse indication.
     pub fn coarse_only(coarse: CoarseResults) -> Self {
         Self { coarse, fine: None }
     }
 
-    /// Returns the indication of a fine ramp without a coarse one.
+    /// Returns the ramps of a direction that has only a fine indication.
     pub fn fine_only(seen: Volt) -> Self {
         Self {
             coarse: CoarseResults::NONE,
@@ -38,7 +38,7 @@ pub struct Observed {
     pub probe_contact: Option<Ohm>,
     /// Temperature of the magazine track when the test began.
     pub track: Option<Celsius>,
-    /// Limits proven without a measured value.
+    /// Judgements of limits that were proven without a measured value.
     pub proven: Vec<(Parameter, Judgement)>,
     /// Operate ramps.
     pub operate: Option<Ramp>,

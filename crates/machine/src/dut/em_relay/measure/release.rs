@@ -21,14 +21,14 @@ use units::{Span, Volt};
 
 /// Fraction of nominal at which the armature is sealed.
 pub const SEAL: f64 = 0.95;
-/// Refreshes before the end of the ramp within which the output may have stopped: an event there gives no estimate.
+/// Last part of the ramp, in refreshes, in which the output may have stopped already: an event there gives no estimate.
 const LAST_REFRESHES: f64 = 1.5;
 /// Time for operation, bounce and flux to settle.
 const SEAL_TIME: Span = Span::ms(25);
 /// Time for the seal's flux to decay to a few per cent before a fine ramp; the model of the coarse overshoot includes
 /// what remains after [`SETTLES`].
 const FINE_SETTLES: Span = Span::ms(35);
-/// Latest break after the end of a ramp that still counts.
+/// Time after the end of a ramp up to which a break still counts.
 const LATE: Span = Span::ms(12);
 
 /// Seals the armature, steps to the start of the falling ramp and arms. An operated armature is sealed from where it
@@ -36,7 +36,7 @@ const LATE: Span = Span::ms(12);
 fn seal(context: &Context, board: BoardState, start: Volt) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let seal = supply.step_to(Volt(SEAL * context.relay.part.nominal_v));
-    // Source off: the ramp breaks a contact that other stages have read.
+    // The source is off: the ramp breaks a contact whose resistance other stages have read.
     let falling = [
         (SourceOn, false),
         (SourceReverse, false),
@@ -132,7 +132,8 @@ pub(super) fn conclude_coarse(
         gate0(context, readings).filter(|gate| seen && coarse_v_per_s * gate.0 < start.0 - floor_v);
     let (plan, record) = (&mut state.plan, &mut state.record);
     let Some(gate) = gate else {
-        // Below the range of the coarse ramp the lot gives no estimate: the threshold is far from the expected one.
+        // The threshold lies below the coarse ramp, far from the one that the lot expects: a wide search must place the
+        // fine ramp.
         let expected = Expected::new(Volt(test.expected_release_v), test.expected_release_sd_v);
         plan.expect(Direction::Falling, expected);
         plan.search = Some(Search::placing(context, record, Direction::Falling));

@@ -14,7 +14,7 @@ pub enum Stage {
     Kelvin,
     /// Operations before the first measurement, if the recipe demands any.
     Conditioning,
-    /// NC contact at rest, all polarities.
+    /// Resistance of the NC contact at rest, with all polarities.
     NcContact,
     /// Coil resistance at the pre-bias.
     Coil,
@@ -24,9 +24,9 @@ pub enum Stage {
     OperateCoarse,
     /// Fine ramp from just below the coarse estimate; a later attempt searches a wider interval.
     OperateFine(u8),
-    /// Step to nominal with both gates, and NO contact on that closure.
+    /// Step to nominal voltage, timed by both gates; then the resistance of the NO contact on that closure.
     TimedOperate,
-    /// Drive off with both gates, and NC contact on that closure.
+    /// Drive off, timed by both gates; then the resistance of the NC contact on that closure.
     TimedRelease,
     /// Coarse falling ramp from a sealed armature.
     ReleaseCoarse,

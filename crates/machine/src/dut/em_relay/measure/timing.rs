@@ -24,14 +24,14 @@ pub const LONGEST_OPERATION: Span = Span::ms(60);
 pub const BOUNCE_WINDOW: Span = Span::ms(20);
 /// Time from the latch until the window has closed for certain.
 const WINDOW_AFTER_LATCH: Span = Span::ms(21);
-/// Greatest difference between the delays of both gates, in counts; gate 1 is open whenever gate 0 is.
+/// Greatest difference between the delays of both gates, in counts; nominally, gate 1 is open whenever gate 0 is.
 const GATE_SKEW: u32 = 4;
 /// Time from the latch until the source drives its current: bounce ends within 6 ms (twice the specified class), and
 /// the source requires 5 ms of closed contact.
 const SOURCE_FLOWS: Span = Span::ms(11);
 
-/// Operates at nominal voltage. Reads the counters after ARM unless the NC stage has: a window that an early end left
-/// open closes at ARM.
+/// Operates at nominal voltage. Reads the counters after ARM unless the NC stage has read them: a window that an early
+/// end left open closes at ARM.
 pub(super) fn acts_operate(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let mut acts = drive_off(board.armature);
@@ -65,8 +65,9 @@ pub(super) fn acts_operate(context: &Context, board: BoardState) -> (Vec<Act>, B
     (acts, left)
 }
 
-/// Takes the drive off and times NC. The counters of a timed operation still hold: the latch shuts both gates until
-/// ARM. A release into the diode operates anew, since the board selects the diode only without coil current.
+/// Takes the drive off and times NC. The counter readings of a timed operation remain valid, because the latch shuts
+/// both gates until ARM. A release into the diode operates the relay anew, since the board selects the diode only
+/// without coil current.
 pub(super) fn acts_release(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
     let diode = select_diode(context, true);
     let counted = board.armature == Armature::Operated && diode.is_none();
@@ -112,7 +113,7 @@ fn operated(
     (acts, board)
 }
 
-// ARM rises in the same write as the selection: it clears window and latch, and no selection starts them.
+// ARM rises in the same write as the selection: it clears window and latch, so that the selection starts neither.
 
 /// Waits for the contact event and marks it; bounce, window and source settle after that mark.
 fn until_made() -> [Act; 2] {
@@ -126,7 +127,8 @@ fn until_made() -> [Act; 2] {
 }
 
 /// Reads the gates after the window has closed, then the forward drop. The source is on before the contact makes and
-/// drives it after 5 ms of closure, in the direction of the contact monitor, so that gate 1 counts no opening.
+/// drives current through it after 5 ms of closure, in the direction of the contact monitor, so that gate 1 counts no
+/// opening.
 fn drop_of_closure(context: &Context) -> [Act; 6] {
     [
         Act::WaitSinceMark(WINDOW_AFTER_LATCH),
@@ -206,8 +208,8 @@ pub(super) fn conclude_operate(
     None
 }
 
-/// Concludes a closure that did not come: the relay is late, or its contact does not move. The coil may be the cause,
-/// so the test measures it before it judges the part.
+/// Concludes a stage in which the contact did not close: the relay is late, or its contact does not move. The coil may
+/// be the cause, so the test measures the coil before it judges the part.
 fn not_made(readings: &Readings, state: &mut TestState) -> Option<Stage> {
     let TestState { plan, record, .. } = state;
     plan.unmoved = match readings.boards.last() {

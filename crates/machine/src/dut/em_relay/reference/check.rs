@@ -1,4 +1,4 @@
-//! What must hold before the factors count: the range of the supply, its voltage, the gain of the converter.
+//! Checks before the factors are accepted: the supply range, the supply voltage, the gain of the converter.
 
 use super::ReferenceFault;
 use super::taken::mean;
@@ -8,7 +8,8 @@ use crate::dut::em_relay::points::AnalogIn;
 use crate::dut::em_relay::readings::{CoilScan, Readings};
 use units::Volt;
 
-/// Largest difference between the supply and the coil voltage of the reference, relative: the next range is twice as high.
+/// Largest relative difference between the supply and the coil voltage of the reference; the next range has twice the
+/// voltage.
 const SAME_SUPPLY: f64 = 0.1;
 
 /// Fails when the board is in another range than the one selected: nothing was driven then.
@@ -20,7 +21,8 @@ pub(super) fn check_range(context: &Context, readings: &Readings) -> Result<(), 
     }
 }
 
-/// Fails when the supply, which reads alike in every range, is another voltage than the coil channel says.
+/// Fails when the supply voltage, which reads the same in every range, differs from the one that the coil channel
+/// reads.
 pub(super) fn check_supply(
     context: &Context,
     scans: &[CoilScan],
@@ -41,7 +43,8 @@ pub(super) fn check_supply(
     Ok(())
 }
 
-/// Fails when the gain error exceeds 1.5 times the accuracy of the maker: calibration does not correct a defect.
+/// Fails when the gain error exceeds 1.5 times the maker's accuracy: such an error is a defect, which calibration must
+/// not hide.
 pub(super) fn check_gain(context: &Context, line: &InputLine) -> Result<(), ReferenceFault> {
     let promised = context.accuracy.ai_gain_pct / 100.0;
     let found = line.gain.value - 1.0;

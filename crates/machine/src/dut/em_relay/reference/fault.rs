@@ -13,10 +13,10 @@ pub enum ReferenceFault {
     Reads {
         /// Name of the channel.
         name: &'static str,
-        /// The reply.
+        /// The raw reply.
         raw: String,
     },
-    /// A channel is masked out.
+    /// A channel is masked out, that is, not enabled in its module.
     NotEnabled {
         /// Name of the channel.
         name: &'static str,
@@ -33,16 +33,16 @@ pub enum ReferenceFault {
         /// Scans asked for.
         expected: usize,
     },
-    /// The gain error exceeds 1.5 times the accuracy of the maker.
+    /// The gain error exceeds 1.5 times the maker's accuracy.
     Gain {
         /// Gain found minus 1, %.
         off_pct: f64,
-        /// Accuracy of the maker, half width, %.
+        /// The maker's accuracy, half width, %.
         promised_pct: f64,
     },
     /// The board is in another supply range than the one selected.
     Range(RangeMismatch),
-    /// The supply and the coil channel disagree: the range relays and their read-back do.
+    /// The supply and the coil channel disagree, so the range relays are not where their read-back says.
     Supply {
         /// Supply in front of the drive, V.
         supply_v: f64,
@@ -56,16 +56,16 @@ pub enum ReferenceFault {
     },
     /// The slope of the fine ramp does not match its slew code.
     Slope {
-        /// Slope found.
+        /// Slope found, volts per second.
         v_per_s: f64,
-        /// Slope of the slew code.
+        /// Nominal slope of the slew code, volts per second.
         nominal_v_per_s: f64,
     },
     /// The drop of the reference contact is out of range: a fault of source or amplifier.
     Drop {
         /// Drop found, V at the terminal.
         volts: f64,
-        /// Drop of the reference resistor.
+        /// Drop expected across the reference resistor, V at the terminal.
         expected_v: f64,
     },
     /// No counter readings before and after the pulses.
@@ -74,7 +74,7 @@ pub enum ReferenceFault {
     Pulse {
         /// Index of the counter.
         gate: usize,
-        /// Count of a pulse, us.
+        /// Mean count of one pulse, us.
         each_us: f64,
     },
 }
@@ -87,7 +87,7 @@ impl ReferenceFault {
         }
     }
 
-    /// Returns its text of the family `fault`, with its figures.
+    /// Returns the fault as a text of the family `fault`, with its figures.
     pub fn message(&self) -> Message {
         let of = |code| Message::new("fault", code);
         match self {

@@ -1,31 +1,32 @@
-//! Levels of the reference coil, within the limits of the supply range.
+//! Supply levels at which the reference coil is measured, within the limits of the supply range.
 
 use super::SCANS;
 use crate::dut::em_relay::measure::Context;
 use std::ops::Range;
 use units::Volt;
 
-/// The higher level at the coil in the range of factor 1: within the range of the fine channels at 400 ohm.
+/// The higher level at the coil in the range of factor 1; at 400 ohm the fine channels can read it.
 const HIGH: Volt = Volt(5.7);
 /// The lower level as a share of the higher one.
 const LOW: f64 = 1.5 / 5.7;
-/// Distance from both ends of the fine ramp within which readings are excluded from the slope, as a share of the higher level.
+/// Distance from both ends of the fine ramp within which readings are excluded from the slope, as a share of the higher
+/// level.
 const SLOPE_MARGIN: f64 = 0.3 / 5.7;
 /// Share of the limits of a supply range that a level uses.
 const USED: f64 = 0.9;
-/// Scans where voltage or current is a small part of the range of its channel.
+/// Number of scans at a level where voltage or current is a small part of the range of its channel.
 const CURRENT_SCANS: usize = 4 * SCANS;
 /// Full scale of the coil converter.
 const FULL: Volt = Volt(10.0);
-/// Relative difference of two levels that are as good as one.
+/// Relative difference up to which two levels count as the same.
 const ALIKE: f64 = 0.1;
 
-/// Levels of the reference coil.
+/// Supply levels at which the reference coil is measured.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Levels {
     pub(super) low: Volt,
     pub(super) high: Volt,
-    /// Where the current channel of the recipe reads the reference coil best; none where that is `high`.
+    /// Level at which the current channel of the recipe reads the reference coil best; none where that is `high`.
     pub(super) current: Option<Volt>,
 }
 
@@ -56,13 +57,13 @@ impl Levels {
         self.high - self.low
     }
 
-    /// Returns the voltages of the fine ramp whose readings count for its slope.
+    /// Returns the part of the fine ramp, as a range of voltages, whose readings enter the slope.
     pub(super) fn counted(self) -> Range<f64> {
         let margin = self.high * SLOPE_MARGIN;
         (self.low + margin).0..(self.high - margin).0
     }
 
-    /// Returns the levels of the level output in order, each with the number of its scans.
+    /// Returns the steps of the level output in order, each with the number of its scans.
     pub(super) fn steps(self) -> impl Iterator<Item = (Volt, usize)> {
         let current = self.current.map(|level| (level, CURRENT_SCANS));
         [Some((self.low, SCANS)), Some((self.high, SCANS)), current]

@@ -1,4 +1,4 @@
-//! Ohms per ratio of the coil voltage to each current channel, from the reference coil.
+//! Ohms per ratio of coil voltage to current reading, for each current channel, from the reference coil.
 
 use super::levels::Levels;
 use super::taken::{Taken, current, mean};
@@ -11,10 +11,10 @@ use crate::gauge::Factor;
 use crate::gauge::budget::rectangular;
 use units::Volt;
 
-/// Highest voltage at a terminal of the converter that still counts.
+/// Highest voltage that a reading at a terminal of the converter may have.
 const READABLE: Volt = Volt(9.5);
 
-/// What the factors of the current channels follow from.
+/// Data from which the factors of the current channels are computed.
 pub(super) struct Ohms<'a> {
     pub(super) context: &'a Context,
     pub(super) taken: &'a Taken<'a>,
@@ -24,7 +24,7 @@ pub(super) struct Ohms<'a> {
 }
 
 impl Ohms<'_> {
-    /// Returns ohms per ratio of a current channel, read at the highest level within its range.
+    /// Returns ohms per ratio for a current channel, read at the highest level within the range of that channel.
     pub(super) fn factor(&self, channels: CoilChannels) -> Result<Factor, ReferenceFault> {
         let (context, known) = (self.context, &self.context.reference);
         let per_volt = context.points.gain(channels.current()).unwrap_or(0.0) / known.coil_ohm;
@@ -47,8 +47,8 @@ impl Ohms<'_> {
         ))
     }
 
-    /// Returns the coil voltage of a level at its terminal, free of offset, and its uncertainty. Beyond the range of its
-    /// channel it is that of the level output, whose line the other levels give.
+    /// Returns the coil voltage of a level at its terminal, free of offset, and its uncertainty. Beyond the range of
+    /// the voltage channel the voltage is computed from the line of the level output, which the other levels determine.
     fn voltage(
         &self,
         at: Volt,

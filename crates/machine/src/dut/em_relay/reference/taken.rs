@@ -1,4 +1,4 @@
-//! The scans of a calibration, sorted by what they were taken at.
+//! The scans of a calibration, sorted by the step in which they were taken.
 
 use super::levels::Levels;
 use super::{DROPS, RAMP_SCANS, ReferenceFault, SCANS};
@@ -7,7 +7,7 @@ use crate::dut::em_relay::recipe::CoilChannels;
 use crate::rig::sample::{Quality, Sample};
 use units::Volt;
 
-/// Returns the mean of one channel over scans; fails when a scan lacks it.
+/// Returns the mean of one channel over the scans; fails when a scan lacks the channel.
 pub(super) fn mean(
     scans: &[CoilScan],
     channel: fn(&CoilScan) -> &Option<Sample>,
@@ -34,7 +34,7 @@ pub(super) fn mean(
     }
 }
 
-/// Terminal volts at one level: coil voltage and reference.
+/// Mean terminal volts at one level: coil voltage and reference.
 pub(super) struct Level {
     pub(super) voltage_v: f64,
     pub(super) reference_v: f64,
@@ -47,7 +47,7 @@ pub(super) fn level(scans: &[CoilScan]) -> Result<Level, ReferenceFault> {
     })
 }
 
-/// Returns the mean of a current channel at its terminal.
+/// Returns the mean reading of a current channel, volts at the terminal.
 pub(super) fn current(scans: &[CoilScan], channels: CoilChannels) -> Result<f64, ReferenceFault> {
     match channels {
         CoilChannels::Fine => mean(scans, |scan| &scan.current_fine, "coil current (fine)"),
@@ -58,10 +58,10 @@ pub(super) fn current(scans: &[CoilScan], channels: CoilChannels) -> Result<f64,
     }
 }
 
-/// Scans of a calibration by what they were taken at.
+/// Scans of a calibration, sorted by the step in which they were taken.
 pub(super) struct Taken<'a> {
     pub(super) zero: &'a [CoilScan],
-    /// Levels of the level output, in the order of [`Levels::steps`].
+    /// Levels of the level output with their scans, in the order of [`Levels::steps`].
     pub(super) steps: Vec<(Volt, &'a [CoilScan])>,
     pub(super) coarse: &'a [CoilScan],
     pub(super) ramp: &'a [CoilScan],

@@ -26,12 +26,13 @@ use units::{Celsius, Span, Volt};
 const REACH: f64 = 4.5;
 /// Half width for a search that only places a ramp, in standard deviations of the lot.
 const WIDE: f64 = 6.0;
-/// Largest and smallest overshoot of a coarse ramp relative to other parts; a dragging hinge causes the largest.
+/// Largest and smallest overshoot of a coarse ramp, as multiples of the overshoot of usual parts; a dragging hinge
+/// causes the largest.
 const MOST_OVERSHOOT: f64 = 3.5;
 const LEAST_OVERSHOOT: f64 = 0.3;
 /// Lowest level of a search, as a fraction of nominal.
 const LOWEST: f64 = 0.02;
-/// Attempt number of a fine ramp that a search has placed.
+/// Number of the attempt that a fine ramp placed by a search counts as.
 pub(super) const AFTER_SEARCH: u8 = 2;
 
 /// A search under way.
@@ -43,7 +44,7 @@ pub struct Search {
     pub direction: Direction,
     /// Level at which the contact has not changed.
     pub untouched: Volt,
-    /// Level at which it has changed; before any trial the end of the interval.
+    /// Level at which the contact has changed; before any trial the end of the interval.
     pub changed: Volt,
     /// Level of the trial under way.
     pub at: Volt,
@@ -62,7 +63,7 @@ pub enum Next {
     Try(Volt),
     /// Threshold, and its resolution.
     Found(Volt, Volt),
-    /// The part keeps the limit.
+    /// The trial proves that the part keeps the limit.
     Proven,
     /// The search proves nothing, or the threshold lies outside the interval: ramps must measure it.
     Ramp,
@@ -172,7 +173,8 @@ impl Search {
     }
 }
 
-/// Returns the interval that the range of coarse overshoots leaves; `None` without a coarse ramp.
+/// Returns the interval of the threshold, from the coarse indication less the largest and the smallest overshoot;
+/// `None` without a coarse ramp.
 fn overshot(context: &Context, record: &TestRecord, direction: Direction) -> Option<(Volt, Volt)> {
     let indicated = record.ramp(direction)?.coarse.indicated;
     let overshoot_v = context
@@ -185,7 +187,7 @@ fn overshot(context: &Context, record: &TestRecord, direction: Direction) -> Opt
     (near.0.is_finite() && near.0 > 0.0).then_some((near, end))
 }
 
-/// Returns an interval far to both sides of the lot, not below [`LOWEST`].
+/// Returns an interval that extends far to both sides of the lot's thresholds, but not below [`LOWEST`].
 fn far(context: &Context, direction: Direction) -> (Volt, Volt) {
     let test = &context.relay.test;
     let (centre, sd) = test.expected(direction);

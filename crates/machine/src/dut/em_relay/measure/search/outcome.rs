@@ -14,7 +14,7 @@ use crate::gauge::budget::{Budget, Reading, resolution};
 use crate::rig::sample::CountSample;
 use units::{Unit, Volt};
 
-/// Least standard deviation of a threshold that levels have placed, of a 12 V coil.
+/// Least standard deviation assumed for a threshold that a search by levels has found, for a 12 V coil.
 const LEAST_SD: Volt = Volt(0.010);
 
 pub(in crate::dut::em_relay::measure) fn conclude(

@@ -7,10 +7,11 @@ use crate::dut::em_relay::measure::Context;
 use crate::dut::em_relay::threshold::Direction;
 use units::{Celsius, Volt};
 
-/// Share of the level by which a step operates below the quasi-static threshold: the armature swings over.
+/// Share of the level by which a single step operates a relay below its quasi-static threshold: the armature swings
+/// beyond its balance.
 const SWING_SHARE: f64 = 0.0035;
 
-/// Returns the level of the pulse; the expected threshold when the recipe sets no limit.
+/// Returns the level of the pulse; where the recipe sets no limit, the expected threshold takes its place.
 pub(super) fn level(context: &Context, direction: Direction, part: Celsius) -> Volt {
     let (recipe, sign) = (&context.recipe, direction.sign());
     let limit = recipe.limits.of(parameter(direction));
