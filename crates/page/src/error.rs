@@ -74,7 +74,7 @@ pub(super) enum ApiError {
     ReaderLost,
 }
 
-/// JSON, or the reason why not.
+/// JSON answer, or the refusal of the request.
 pub(super) type JsonResult<T> = Result<Json<T>, ApiError>;
 
 /// Members of a query string, or the reason why they are malformed.
@@ -93,7 +93,7 @@ where
 }
 
 impl ApiError {
-    /// Returns `value`, or `default` without one. Fails out of 1 to `most`.
+    /// Returns `value`, or `default` when the client gives none. Fails when the result is not from 1 to `most`.
     pub fn ranged<N: PartialOrd + From<u8> + Display>(
         member: &str,
         value: Option<N>,
@@ -132,7 +132,7 @@ impl ApiError {
         }
     }
 
-    /// Returns the further members of the answer.
+    /// Returns the members of the answer besides `error` and `reason`.
     fn more(&self) -> serde_json::Value {
         match self {
             Self::Revision {
@@ -193,7 +193,7 @@ fn of_history(history: &HistoryError) -> Option<&'static str> {
     }
 }
 
-/// Returns the status of a configuration error; `wrong` is that of a refused text.
+/// Returns the status of a configuration error; `wrong` is the status for a text that the configuration refuses.
 fn of_config(found: &ConfigError, wrong: StatusCode) -> StatusCode {
     match found {
         ConfigError::UnknownRecipe { .. } | ConfigError::UnknownRevision { .. } => {

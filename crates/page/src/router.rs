@@ -20,7 +20,7 @@ pub(super) const BODY_LIMIT: usize = 16 * 1024;
 #[derive(Debug, Clone)]
 pub(super) struct AppState {
     pub shared: Shared,
-    /// True when the program ends.
+    /// Turns true when the program ends.
     pub ended: watch::Receiver<bool>,
     /// Number of open event streams.
     pub streams: Arc<AtomicUsize>,
@@ -63,7 +63,8 @@ async fn wrong_method(method: Method, uri: Uri) -> ApiError {
     ApiError::WrongMethod { path, method }
 }
 
-/// Forbids browsers and proxies to keep an answer that does not allow it itself, to guess its type, and to frame it.
+/// Adds the headers by which browsers and proxies must not guess the type of an answer, frame it, or, unless the answer
+/// itself allows it, store it.
 async fn default_headers(request: Request, next: Next) -> Response {
     const ALWAYS: [(HeaderName, &str); 4] = [
         (header::CACHE_CONTROL, "no-store"),

@@ -38,7 +38,7 @@ impl fmt::Display for Role {
     }
 }
 
-/// The word found, which names no role.
+/// Error of a word that names no role.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{0:?}: expected operator, maintainer or engineer")]
 pub struct NoRole(String);
