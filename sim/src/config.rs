@@ -35,7 +35,7 @@ pub enum ConfigError {
         /// Found and expected content.
         message: String,
     },
-    /// A value has the right type but is not possible.
+    /// A value has the right type but is impossible.
     #[error("{path}: {key}: {message}")]
     Value {
         /// The file.

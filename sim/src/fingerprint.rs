@@ -6,7 +6,7 @@
 //! | 03 | I-7033, hex | the same with module 2 |
 //! | 04, 05 | I-7080 | module (4 bits), channel (1 bit), time in steps of 64 us (27 bits) |
 //! | 06, 07 | I-7051 | module (4 bits), time in steps of 512 us (12 bits) |
-//! | 08, 09 | I-7043 | module (4 bits), the rest is the host's; so at power-on and when safe |
+//! | 08, 09 | I-7043 | module (4 bits), a number of the host (12 bits); number 0 at power-on and when safe |
 //! | 0A, 0B | I-7021P, hex | the same |
 //!
 //! The module number is the address less one, except at analog inputs. Time at an analog input rises and falls as

@@ -101,7 +101,7 @@ pub struct Overdrive {
     pub t_us: u64,
     /// Code of the commanded range.
     pub commanded: u8,
-    /// Code of the range of the supply.
+    /// Code of the range that the supply really has.
     pub range: u8,
     /// Voltage of the supply without load, V.
     pub supply_v: f64,
@@ -140,9 +140,9 @@ pub enum Place {
 /// One body, with its path; reference parts included.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyTruth {
-    /// Marks a reference part.
+    /// True for a reference part.
     pub is_reference: bool,
-    /// Marks a body that clung to the body before it, followed the same path, and was never tested.
+    /// True for a body that clung to the body before it: it followed the same path and was never tested.
     pub clung: bool,
     /// Places with the time of arrival, rig time in microseconds, in order of time.
     pub path: Vec<(u64, Place)>,

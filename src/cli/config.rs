@@ -27,7 +27,7 @@ pub enum Args {
 /// Runs the command on the configuration in `dir`.
 ///
 /// # Errors
-/// The first fault of the configuration: exit status 2.
+/// Fails with the first fault of the configuration; the exit status is then 2.
 pub fn run(dir: &Path, args: &Args) -> anyhow::Result<Exit> {
     let text = match args {
         Args::Check => overview(dir)?,

@@ -66,7 +66,7 @@ pub struct StudyArgs {
 /// Runs the command.
 ///
 /// # Errors
-/// Bad input, a lot that ended with bad input, or an output that cannot be written.
+/// Fails on bad input, when a lot ends with bad input, or when an output cannot be written.
 pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<Exit> {
     let Some(wanted) = args.name else {
         print(&listed(args.json))?;

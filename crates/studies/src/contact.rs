@@ -1,4 +1,5 @@
-//! Seconds against error of contact resistance: polarities, a drifting EMF, closures, early stop.
+//! Study `contact`: test time against error of contact resistance, for polarities, a drifting EMF, numbers of closures
+//! and early stop.
 //!
 //! - Error is the difference from the resistance of the closures that were read. Every world here has an EMF of 10 uV.
 //! - Repeatability is the scatter of the same bodies fed again and again. Films on the contact cause nearly all of it, and
@@ -46,7 +47,7 @@ fn recipe(polarities: &str, closures: i64, stops_early: bool) -> Vec<Change> {
 /// Runs the lots and makes the report.
 ///
 /// # Errors
-/// A lot that did not run.
+/// Fails when a lot cannot be run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let groups = vec![
         polarities(order)?,
@@ -108,8 +109,8 @@ fn films(order: &Order) -> anyhow::Result<Vec<Figure>> {
     Ok(by_root(figures))
 }
 
-/// Adds to each row the value of the first row of its contact, scaled with the root of the number of closures; NC has one
-/// more closure, at rest.
+/// Adds the column `by_root` to each row: the value of the first row of the same contact, if scatter falls with the
+/// root of the number of closures. NC has one closure more than NO, at rest.
 fn by_root(figures: Vec<Figure>) -> Vec<Figure> {
     let first: Vec<Option<f64>> = figures.iter().take(2).map(|row| row.value).collect();
     let root = |place: usize| {

@@ -38,7 +38,7 @@ const PIECES: [(&str, &str); 4] = [
 /// Runs the lots and makes the report.
 ///
 /// # Errors
-/// A lot that did not run.
+/// Fails when a lot cannot be run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let lots = order.run_all()?;
     let adaptive = order.recipe.name.ends_with("-adaptive");

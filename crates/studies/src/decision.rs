@@ -26,14 +26,14 @@ use std::ops::RangeInclusive;
 const PPM: f64 = 1e6;
 /// Rated voltage of the part that `[lot]` of a world describes, V.
 const LOT_V: f64 = 12.0;
-/// A value has a confirmation measurement when its uncertainty is below this share of the usual one; noise alone changes
-/// it by less.
+/// Share of the usual uncertainty: a value with less has had a confirmation measurement, since noise alone changes an
+/// uncertainty by less.
 const AGAIN: f64 = 0.98;
 
 /// Runs the lots and makes the report.
 ///
 /// # Errors
-/// A lot that did not run.
+/// Fails when a lot cannot be run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let lots = order.run_all()?;
     let (rows, risks): (Vec<Figure>, Vec<Option<(f64, f64)>>) = order

@@ -54,7 +54,7 @@ type Interval = (f64, f64);
 /// Plays a lot and draws one part of it as SVG.
 ///
 /// # Errors
-/// A lot that did not run, or without a part that went through all stations.
+/// Fails when a lot cannot be run, or when no part of it goes through all stations.
 pub fn svg(order: &Order) -> anyhow::Result<String> {
     let plant = Plant::load(&order.config)?;
     let folder = TempDir::new()?;

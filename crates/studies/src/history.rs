@@ -34,7 +34,7 @@ const LOOK: Duration = Duration::from_millis(5);
 /// Writes the file, runs every query and makes the report.
 ///
 /// # Errors
-/// A file that cannot be written or read.
+/// Fails when a file cannot be written or read.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let folder = TempDir::new()?;
     let db = folder.path().join("history.db");

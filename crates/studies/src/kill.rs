@@ -52,7 +52,7 @@ struct Counts {
 /// Kills the lots of the order and makes the report.
 ///
 /// # Errors
-/// A process that does not start, or a history that cannot be read.
+/// Fails when a process does not start, or when the history cannot be read.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let folder = TempDir::new()?;
     let db = folder.path().join("history.db");

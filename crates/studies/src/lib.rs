@@ -119,7 +119,7 @@ impl Study {
     /// Runs the study and makes its report.
     ///
     /// # Errors
-    /// A study without lots, a file that cannot be read or written, or a lot that did not start.
+    /// Fails for a study without lots, when a file cannot be read or written, or when a lot cannot be run.
     pub fn report(self, order: &Order) -> anyhow::Result<Report> {
         match self {
             Self::Accuracy => parameters::accuracy(order),

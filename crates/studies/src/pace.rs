@@ -21,7 +21,7 @@ const SEED: u64 = 1;
 /// Runs the lot several times and makes the report.
 ///
 /// # Errors
-/// A lot that did not run.
+/// Fails when a lot cannot be run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let order = &Order {
         lots: order.lots.max(2),

@@ -14,7 +14,7 @@ pub fn cores() -> usize {
 /// Calls `work` for every item on at most `threads` threads. After a failure no further item is begun.
 ///
 /// # Errors
-/// The first failure in the order of the items.
+/// Fails when `work` fails for an item, with the first failure in the order of the items.
 pub fn map<I: Sync, T: Send>(
     items: &[I],
     threads: usize,

@@ -72,7 +72,7 @@ impl SweepResult {
 /// Plays the lots and makes the report.
 ///
 /// # Errors
-/// A configuration that does not load, or a story that does not run.
+/// Fails when the configuration does not load, or when a story does not run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let plant = Plant::load(&order.config)?;
     let bound_ms = plant.wiring.longest_reaction().as_seconds() * 1e3;

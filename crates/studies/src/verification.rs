@@ -26,7 +26,7 @@ type Day = BTreeMap<String, f64>;
 /// Calibrates one rig per lot of the order, verifies it once per part of a lot, and makes the report.
 ///
 /// # Errors
-/// A process that does not start, or whose answer does not parse.
+/// Fails when a process does not start, or when its answer does not parse.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let folder = TempDir::new()?;
     let rigs: Vec<u64> = (1..=order.lots).collect();

@@ -17,7 +17,7 @@ fn state(slice: &[f64]) -> State {
 /// Integrates with root finding for all four stops.
 ///
 /// # Errors
-/// Returns the error of diffsol.
+/// Fails when diffsol fails, with its error.
 pub fn tsit45(model: &Model, rtol: f64) -> Result<NoContactTimes, DiffsolError> {
     let drive = Drive::still(VOLTS);
     let evaluations = Cell::new(0u64);

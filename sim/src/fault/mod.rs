@@ -47,7 +47,7 @@ struct FaultEntry {
     what: &'static str,
 }
 
-/// Faults of one kind, with the requests that are active.
+/// A family of faults, with those that the command line or a script has requested.
 trait Family {
     fn list(&self) -> &'static [FaultEntry];
 

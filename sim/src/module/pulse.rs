@@ -11,11 +11,11 @@ pub(super) struct Channel {
     pub(super) maximum: u32,
     pub(super) running: bool,
     pub(super) overflowed: bool,
-    /// Open time of the gate that the counter has accounted for, microseconds.
+    /// Open time of the gate while the counter was running, microseconds.
     pub(super) counted_us: f64,
     /// Open time of the gate at the last update, microseconds.
     pub(super) seen_us: f64,
-    /// Pulses that had passed when the counter was at `start` above its preset.
+    /// Number of pulses that had passed the gate when the counter stood at its preset plus `start`.
     zero_pulses: u64,
     start: u64,
     /// Frequency at a bench input, hertz; `None` on a rig, where the plant's reference clock applies.

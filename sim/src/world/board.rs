@@ -48,7 +48,7 @@ pub struct Board {
     clamp_diode: bool,
     chain: bool,
     touching: bool,
-    /// Film on both coil probes together, and its growth per touch.
+    /// Film on both coil probes together, ohm; below: its growth per touch.
     film_ohm: f64,
     film_per_touch_ohm: f64,
     source_live: bool,

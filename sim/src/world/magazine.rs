@@ -75,7 +75,7 @@ pub struct Magazine {
     parts: Option<u64>,
     /// Number of lot parts between two reference parts, once the lot has begun.
     reference_every: Option<u64>,
-    /// Reference parts and lot parts that have left.
+    /// Number of reference parts and number of lot parts that have left.
     out: (u64, u64),
     /// Values of `out` when the magazine was filled.
     filled_at: (u64, u64),

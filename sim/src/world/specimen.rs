@@ -64,7 +64,7 @@ pub enum LotKind {
     Resistor,
 }
 
-/// A specimen outside the magazine.
+/// A part that has left the magazine, of any kind.
 #[derive(Debug, Clone)]
 pub enum Specimen {
     /// An electromagnetic relay.

@@ -12,7 +12,7 @@ pub struct Wire<S> {
     pub signal: S,
     /// The terminal reads 0 while the signal is present.
     pub active_low: bool,
-    /// Volts at the terminal per unit of the quantity.
+    /// Volts at the terminal per unit of the quantity (inputs), or units per volt (outputs).
     pub gain: f64,
 }
 

@@ -79,7 +79,7 @@ fn one_part(archive: &Archive, args: &ShowArgs, seq: u64, out: &mut Output) -> a
         })
 }
 
-/// Writes a part as text; CSV has no form for a part with its replies, so it gets this text too.
+/// Writes a part as text, for `--format csv` too: CSV has no form for a part with its replies.
 fn page(part: &Part, out: &mut Output) -> anyhow::Result<()> {
     let Part {
         lot,

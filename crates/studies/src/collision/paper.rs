@@ -1,4 +1,5 @@
-//! The method of the paper, rebuilt from the published part: it checks poses one after the other, and nothing between them.
+//! The method of the paper (layer-based projection model of Peng and others, 2010), rebuilt from its published part: it
+//! checks poses one after the other, and nothing between them.
 //!
 //! Each layer between neighbouring bottoms and tops of the elements holds a square grid of element numbers. A pose passes
 //! the tests in the paper's order: layers, silhouettes on x and y, oriented boxes, polygons. The polygons are the outlines

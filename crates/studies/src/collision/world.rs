@@ -34,7 +34,7 @@ pub struct TestMove {
 }
 
 impl TestMove {
-    /// Length, mm.
+    /// Returns the length of the move, mm.
     pub fn length_mm(&self) -> f64 {
         self.run
             .iter()

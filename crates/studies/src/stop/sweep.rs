@@ -25,7 +25,7 @@ impl Sweep {
     /// Both sweeps, in the order of the report.
     pub const ALL: [Self; 2] = [Self::Cycle, Self::Homing];
 
-    /// Length of the swept interval with a margin, seconds.
+    /// Returns the length of the swept interval with a margin, seconds.
     pub const fn span_s(self) -> f64 {
         match self {
             Self::Cycle => 2.0,
@@ -33,7 +33,7 @@ impl Sweep {
         }
     }
 
-    /// Name in the report.
+    /// Returns the name in the report.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Cycle => "in a cycle",
@@ -41,7 +41,7 @@ impl Sweep {
         }
     }
 
-    /// Number of stops that the script presses per instant; only the last one counts.
+    /// Returns how often the script presses the stop for each instant; only the last press counts.
     pub const fn presses(self) -> usize {
         match self {
             Self::Cycle => 1,
@@ -49,7 +49,8 @@ impl Sweep {
         }
     }
 
-    /// Returns the instants of the stops of a lot, seconds since the begin of the interval; the lots interleave.
+    /// Returns the instants at which a lot is stopped, seconds since the begin of the interval; other lots have those
+    /// between.
     pub fn instants(self, order: &Order, lot: u64) -> Vec<f64> {
         let all = (order.lots * order.parts) as f64;
         let instant = |stop: u64| self.span_s() * (stop * order.lots + lot) as f64 / all;

@@ -52,7 +52,7 @@ struct Storm<'a> {
 /// Runs the seeds of the order and makes the report.
 ///
 /// # Errors
-/// A file that cannot be read or written, or a rig that cannot be built.
+/// Fails when a file cannot be read or written, or when a rig cannot be built.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let began = Instant::now();
     let storm = Storm::new(order)?;

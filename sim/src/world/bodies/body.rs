@@ -90,7 +90,7 @@ pub fn element(scene: &Scene, element: &Element) -> Body {
     Body::new(element.id.clone(), solids, moves)
 }
 
-/// Builds a part in each of its places; a part between the fingers is defined at its grip: z down, axis at the
+/// Builds a part in each of its places. The part between the fingers rests where they grip it: z down, axis at the
 /// nest.
 pub fn parts(scene: &Scene, size: &Size) -> Vec<Body> {
     let places = &scene.guard;

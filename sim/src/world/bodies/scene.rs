@@ -24,7 +24,7 @@ pub struct Body {
     /// Shape.
     #[serde(flatten)]
     pub form: Form,
-    /// Pose relative to the owner; identity by default.
+    /// Pose in the machine, or in the compound that contains the shape; identity by default.
     #[serde(default)]
     pub pose: Placement,
 }

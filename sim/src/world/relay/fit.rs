@@ -9,7 +9,7 @@
 //!
 //! Newton's method on the exact statics fits the thresholds first; they do not depend on mass or eddy currents.
 //! Broyden's method on whole transients then fits the times. All parameters are logarithms, so none becomes
-//! negative. No relay can show about one pair of times in thirty, since a heavy armature does not fall fast; then
+//! negative. Of thirty drawn pairs of times about one is impossible, since a heavy armature does not fall fast; then
 //! the operate time is exact and the release time as near as possible. A slow relay has friction at its hinge, or
 //! iron that holds the flux: bisection fits that one parameter, and the other time follows.
 

@@ -188,7 +188,7 @@ impl Relay {
         above_zero / (REFERENCE_C - self.copper_zero_c)
     }
 
-    /// Heats the coil up to `t_us`; the supply has been constant since the last call.
+    /// Advances the temperature of the coil to `t_us`; the supply has been constant since the last call.
     fn settle(&mut self, t_us: f64) {
         let volts = self.supply.volts();
         let seconds = (t_us - self.since_us) * 1e-6;

@@ -25,7 +25,7 @@ use units::Span;
 /// Everything that the rules need. All times are microseconds of rig time, over all lives.
 #[derive(Debug, Clone)]
 pub struct Case {
-    /// Lives in their order.
+    /// Lives of the controller, in order of time.
     pub lives: Vec<EndedLife>,
     /// Every body that has left the magazine.
     pub bodies: Vec<BodyTruth>,

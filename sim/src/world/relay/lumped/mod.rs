@@ -43,11 +43,11 @@ pub type State = [f64; 5];
 pub const LAMBDA: usize = 0;
 /// Travel of the armature.
 pub const X: usize = 1;
-/// Its speed.
+/// Speed of the armature.
 pub const V: usize = 2;
 /// Travel of the moving contact.
 pub const Y: usize = 3;
-/// Its speed.
+/// Speed of the moving contact.
 pub const W: usize = 4;
 
 /// Result of a transient: its events and the cost of the integration.

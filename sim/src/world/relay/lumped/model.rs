@@ -17,7 +17,7 @@ pub struct Model {
     eddy: f64,
     per_phis: f64,
     per_mass: [f64; 2],
-    /// Positions of its stops.
+    /// Positions of the stops of the relay, m.
     pub stops: StopPositions,
     pub(super) stop: Stop,
     pub(super) contact: Stop,
