@@ -86,7 +86,7 @@ impl Feed {
         }
     }
 
-    /// Prefers a due beat to a view: a busy rig must not suppress it.
+    /// Waits for the next turn. A due beat comes before a view, so that a busy rig cannot suppress beats.
     async fn turn(&mut self) -> Turn {
         let Some((at, sent)) = &mut self.sent else {
             return Turn::View;

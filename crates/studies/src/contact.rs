@@ -28,7 +28,7 @@ const CONTACTS: [(&str, TimedParameter); 2] = [
 ];
 /// Thermal EMF of a part, microvolts (1 sd).
 const EMF: Change = ("lot.thermal_emf_sd_uv", toml::Value::Float(10.0));
-/// Drift of the EMF at which it adds more error to two polarities than noise does, microvolts per second.
+/// Drift of the EMF, microvolts per second: so fast that it adds more error to two polarities than noise does.
 const DRIFT: Change = ("board.emf_drift_uv_per_s", toml::Value::Float(5000.0));
 /// Passes of each body in the comparison of films.
 const PASSES: u64 = 6;

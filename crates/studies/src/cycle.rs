@@ -23,7 +23,7 @@ const LEARNING_PARTS: usize = 6;
 const ANY_TEST_S: f64 = 1.0;
 /// Longest mean test of a recipe that measures adaptively, seconds of rig time.
 const ADAPTIVE_MEAN_S: f64 = 0.60;
-/// Greatest ratio of the mean test to the bound of [`bound`].
+/// Greatest ratio of the mean test to the least time that [`bound`] finds.
 const RATIO: f64 = 1.15;
 /// Longest cycle with overlap, seconds of rig time.
 const CYCLE_S: f64 = 2.5;

@@ -48,7 +48,7 @@ const PLOT: f64 = 760.0;
 const TOP: f64 = 44.0;
 const ROW: f64 = 26.0;
 
-/// Begin and end of an interval, seconds.
+/// Start and end of an interval, seconds.
 type Interval = (f64, f64);
 
 /// Plays a lot and draws one part of it as SVG.

@@ -20,11 +20,11 @@ use std::process::Stdio;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// Parts of the larger exported sheet.
+/// Number of parts of the larger exported sheet.
 const SHEET: u64 = 100_000;
-/// Parts of the smaller exported sheet, whose memory the larger one must not exceed much.
+/// Number of parts of the smaller exported sheet; the larger one must not need much more memory.
 const LESSER: u64 = 10_000;
-/// Parts written in a transaction each.
+/// Number of parts that the study writes in one transaction each.
 const SINGLE: u64 = 500;
 /// Number of filter queries.
 const FILTERS: usize = 300;

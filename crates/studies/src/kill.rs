@@ -25,7 +25,7 @@ use tempfile::TempDir;
 
 /// Longest time until the kill, ms; a lot prints about thirty parts in it.
 const LONGEST_MS: u64 = 1_500;
-/// Every third round counts the time from the start of the process.
+/// One round of this many counts the time to the kill from the start of the process.
 const FROM_START: u64 = 3;
 /// Longest wait for the first part of a lot; then the kill follows all the same.
 const FIRST_PART_TIMEOUT: Duration = Duration::from_secs(30);

@@ -66,7 +66,7 @@ impl Order {
         )
     }
 
-    /// Runs a lot for each seed, `at_once` processes at a time; the lots keep the order of the seeds.
+    /// Runs a lot for each seed, `at_once` processes at a time; returns the lots in the order of the seeds.
     ///
     /// # Errors
     /// Fails with the first lot that does not start, ends with bad input or writes unreadable rows.

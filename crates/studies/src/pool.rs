@@ -3,7 +3,7 @@
 use app::progress::{PIECES, progress};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Lots that run at a time where wall time is no figure of the study.
+/// Number of lots that run at a time in a study whose figures contain no wall time.
 pub const LOTS_AT_ONCE: usize = 2;
 
 /// Returns the number of threads that this machine runs at a time.

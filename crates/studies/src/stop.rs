@@ -33,7 +33,7 @@ const CLASSES: usize = 20;
 /// One press of the emergency stop.
 #[derive(Debug, Clone, Copy)]
 struct Stop {
-    /// Time since the begin of the swept interval, seconds.
+    /// Time from the start of the swept interval to the press, seconds.
     instant_s: f64,
     /// Time from the opening of the contact until the last motion output is off, milliseconds; `None` when none was on.
     reaction_ms: Option<f64>,

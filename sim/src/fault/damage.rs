@@ -87,7 +87,7 @@ impl Family for Damage {
 }
 
 impl Damage {
-    /// Superposes the reply of a second module at the address of `module`.
+    /// When the fault strikes, superposes the reply of a second module at the address of `module`.
     pub(super) fn clash(
         &self,
         module: &str,

@@ -193,7 +193,7 @@ impl LineFaults {
         self.upset.due(now_us)
     }
 
-    /// Superposes the reply of a second module at the same address, when the fault strikes.
+    /// When the fault strikes, superposes the reply of a second module at the address of `module`.
     pub fn clash(&mut self, module: &str, reply: &mut Vec<u8>, now_us: u64) {
         self.damage.clash(module, reply, &mut self.rng, now_us);
     }

@@ -1,5 +1,5 @@
-//! Random bytes from a seed: half near-requests, a quarter damaged requests, a quarter arbitrary bytes. After
-//! each input without an answer, the module must report exactly the same registers as before.
+//! Random bytes from a seed: half of the inputs resemble requests, a quarter are damaged requests, a quarter arbitrary
+//! bytes. After each input without an answer, the module must report exactly the same registers as before.
 
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};

@@ -40,7 +40,7 @@ pub struct Stepping {
     layers: Vec<Layer>,
     columns: usize,
     parts: Vec<Prepared>,
-    /// Number of the last query that tested each element: an element may lie in several layers and cells.
+    /// For each element, the number of the last query that tested it: an element may lie in several layers and cells.
     tested: Vec<u64>,
     /// Number of queries so far; each is one part at one pose.
     queries: u64,

@@ -49,7 +49,7 @@ impl Sweep {
         }
     }
 
-    /// Returns the instants at which a lot is stopped, seconds since the begin of the interval; other lots have those
+    /// Returns the instants at which a lot is stopped, seconds from the start of the interval; other lots have those
     /// between.
     pub fn instants(self, order: &Order, lot: u64) -> Vec<f64> {
         let all = (order.lots * order.parts) as f64;

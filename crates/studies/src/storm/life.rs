@@ -44,7 +44,7 @@ pub enum End {
 pub struct EndedLife {
     /// Name of its lot.
     pub lot: String,
-    /// Rig time at its begin, microseconds.
+    /// Rig time at its start, microseconds.
     pub began_us: u64,
     /// Rig time at its end, microseconds.
     pub ended_us: u64,

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use tokio::sync::{mpsc, oneshot, watch};
 use units::{RigTime, Span};
 
-/// Time until the operator ends the program, and from then until it aborts the program.
+/// Longest time until the operator ends the program; after as long again it aborts the program.
 const PATIENCE: Span = Span::ms(25_000);
 
 /// One order and its answer.

@@ -60,7 +60,7 @@ pub struct Relay {
     pub record: RelayRecord,
 }
 
-/// Longest interval with a constant coil resistance, microseconds.
+/// Longest interval over which the coil resistance counts as constant, microseconds.
 const STILL_US: f64 = 50_000.0;
 /// Time after which the bounce of a closure has ended, microseconds.
 const SETTLING_US: f64 = 8_000.0;

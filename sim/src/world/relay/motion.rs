@@ -23,7 +23,7 @@ const LEAST_PUSH_N: f64 = 0.02;
 const CALM_M_PER_S: f64 = 4e-3;
 /// Distance from equilibrium above which the armature is not at rest, m.
 const CALM_M: f64 = 2e-7;
-/// Interval between two tests for rest of a moving armature, s.
+/// Interval at which the motion checks whether a moving armature has come to rest, s.
 const LOOK_S: f64 = 5e-4;
 /// Longest step of the flux while held, s.
 const FLUX_STEP_S: f64 = 2.5e-4;

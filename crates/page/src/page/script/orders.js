@@ -21,7 +21,7 @@ async function giveOrder(order, show) {
   return why === "";
 }
 
-// Returns the text of a jog that the guard refuses, with the page's names of both bodies; empty for other orders.
+// Returns why the guard refuses a jog, with the page's names of both bodies; empty for any other order.
 function refusedJog({order, motion}) {
   const jog = order === "jog" && view.machine.jogs.find((it) => it.motion === motion);
   return jog && jog.refused && jog.refused.mover ? word("collision") + ": " + refusedText(jog.refused) : "";

@@ -29,7 +29,7 @@ pub struct Case {
     pub lives: Vec<EndedLife>,
     /// Every body that has left the magazine.
     pub bodies: Vec<BodyTruth>,
-    /// Driven motions: instant of the begin, and name of the mechanism.
+    /// Driven motions: instant of the start, and name of the actuator.
     pub driven: Vec<(u64, &'static str)>,
     /// Bodies that touched, as the rig describes them.
     pub touched: Vec<String>,
