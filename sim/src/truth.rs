@@ -90,7 +90,8 @@ pub struct PartTruth {
     pub defect: Option<&'static str>,
     /// Bin in which the body came to rest.
     pub landed_in: Option<String>,
-    /// Rig time on each level of the motion model: held in equilibrium, and all five states integrated.
+    /// Rig time that the motion of the relay has spent on each level: held in equilibrium, or all five states
+    /// integrated.
     pub levels: Levels,
 }
 

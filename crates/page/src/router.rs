@@ -27,7 +27,7 @@ pub(super) struct AppState {
     pub readers: Readers,
 }
 
-/// Extractor of the state.
+/// Extractor by which a route receives the state.
 pub(super) type App = State<AppState>;
 
 /// Returns the router of all routes.
@@ -63,8 +63,8 @@ async fn wrong_method(method: Method, uri: Uri) -> ApiError {
     ApiError::WrongMethod { path, method }
 }
 
-/// Adds the headers by which browsers and proxies must not guess the type of an answer, frame it, or, unless the answer
-/// itself allows it, store it.
+/// Adds headers that forbid browsers and proxies to guess the type of an answer, to frame it and, unless the answer
+/// itself allows it, to store it.
 async fn default_headers(request: Request, next: Next) -> Response {
     const ALWAYS: [(HeaderName, &str); 4] = [
         (header::CACHE_CONTROL, "no-store"),

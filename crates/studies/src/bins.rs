@@ -9,7 +9,7 @@ use super::order::Order;
 use super::output::Report;
 use std::collections::BTreeMap;
 
-/// Good parts per lot of the figure `lots of 100 good parts without a reject`.
+/// Number of good parts in a lot of the figure `lots of 100 good parts without a reject`.
 const GOOD_PARTS_OF_A_LOT: usize = 100;
 
 /// Returns the bin to which a part with this defect belongs; `None` for an unknown defect.

@@ -30,7 +30,7 @@ const CONTACTS: [(&str, TimedParameter); 2] = [
 const EMF: Change = ("lot.thermal_emf_sd_uv", toml::Value::Float(10.0));
 /// Drift of the EMF, microvolts per second: so fast that it adds more error to two polarities than noise does.
 const DRIFT: Change = ("board.emf_drift_uv_per_s", toml::Value::Float(5000.0));
-/// Passes of each body in the comparison of films.
+/// Number of passes of each body in the comparison of films.
 const PASSES: u64 = 6;
 
 /// Polarities: name in the recipe and in the report.

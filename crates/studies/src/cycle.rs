@@ -16,8 +16,9 @@ use quality::spread::median;
 
 /// Longest test of a good part, seconds of rig time.
 const TEST_S: f64 = 0.85;
-/// Parts after which the overshoot model ([`machine::dut::em_relay::overshoot`]) places the fine ramps well. It has six
-/// terms, and the reference parts lie far apart: with fewer parts its uncertainty makes the ramps of a lot long.
+/// Number of parts after which the overshoot model ([`machine::dut::em_relay::overshoot`]) places the fine ramps well.
+/// The model has six terms, and the reference parts lie far apart: after fewer parts its uncertainty makes the ramps
+/// long.
 const LEARNING_PARTS: usize = 6;
 /// Longest test of any part, seconds of rig time: a defect may need another ramp.
 const ANY_TEST_S: f64 = 1.0;

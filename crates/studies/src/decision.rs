@@ -82,9 +82,9 @@ fn readings(parameter: Parameter, lots: &[Lot]) -> Vec<Reading> {
         .collect()
 }
 
-/// Estimates process and measurement from the rows. The process is normal; its variance is that of the values less that
-/// of the measurement. The uncertainty is the median over parts; the median of clearly smaller ones belongs to the
-/// confirmation measurements.
+/// Estimates process and measurement from the rows. The process is normal; its variance is that of the values minus
+/// that of the measurement. The uncertainty of one measurement is the median over parts; that after a confirmation
+/// measurement is the median of the clearly smaller ones.
 fn chance(readings: &[Reading]) -> Option<DecisionRisk> {
     let values = Spread::of(&readings.iter().map(|it| it.value).collect::<Vec<f64>>());
     let stated: Vec<f64> = readings.iter().filter_map(|it| it.uncertainty).collect();

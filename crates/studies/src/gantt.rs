@@ -38,9 +38,9 @@ const ROWS: [(&str, &[&str]); 8] = [
         ],
     ),
 ];
-/// Row of the coil, which a test drives several times.
+/// Index in [`ROWS`] of the coil, which a test drives several times.
 const COIL: usize = 4;
-/// Row of the probes.
+/// Index in [`ROWS`] of the probes.
 const PROBES: usize = 3;
 
 const LABEL: f64 = 150.0;

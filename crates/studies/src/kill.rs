@@ -31,7 +31,7 @@ const FROM_START: u64 = 3;
 const FIRST_PART_TIMEOUT: Duration = Duration::from_secs(30);
 /// Interval at which the study looks for the first part.
 const LOOK: Duration = Duration::from_millis(5);
-/// Parts of a lot: more than it can test before the kill.
+/// Number of parts of a lot: more than it can test before the kill.
 const ENDLESS: u64 = 1_000_000;
 
 /// Counts over all rounds, for the figures of [`report`].

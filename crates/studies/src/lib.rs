@@ -97,7 +97,7 @@ pub enum Study {
 }
 
 impl Study {
-    /// Default number of lots and of parts of a lot; `None` for a study without lots.
+    /// Returns the default number of lots and of parts of a lot; `None` for a study without lots.
     pub const fn usual(self) -> Option<(u64, u64)> {
         Some(match self {
             Self::Accuracy => (10, 500),

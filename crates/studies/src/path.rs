@@ -13,7 +13,7 @@ use rigsim::world::table::MechanismTable;
 
 /// Least parts an hour at the default recipe.
 const PARTS_PER_HOUR: f64 = 1850.0;
-/// Least share that the line must reach of the parts an hour that the critical path permits.
+/// The line must make at least this share of the parts per hour that the critical path permits.
 const SHARE: f64 = 0.95;
 
 /// Returns the strokes of the path with their mean times, ms; of two simultaneous strokes the longer one.

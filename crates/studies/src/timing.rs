@@ -30,9 +30,9 @@ const DIRECTIONS: [(&str, TimedParameter, TimedParameter); 2] = [
         TimedParameter::of(Parameter::ReleaseBounce, RELEASE),
     ),
 ];
-/// Greatest rms of a time in production, ms.
+/// Greatest rms error of a time with the default recipe and all errors, ms.
 const TIME_MS: f64 = 0.02;
-/// Greatest rms of a bounce in production, ms.
+/// Greatest rms error of a bounce with the default recipe and all errors, ms.
 const BOUNCE_MS: f64 = 0.05;
 
 /// Runs the lots and makes the report.

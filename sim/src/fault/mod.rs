@@ -58,7 +58,7 @@ trait Family {
     fn targets(&self) -> Vec<&str>;
 }
 
-/// Names, units and defaults of the faults of this layer.
+/// Returns name, unit, default and effect of every fault of this layer.
 pub fn list() -> Vec<FaultInfo> {
     let info = |known: &FaultEntry| FaultInfo {
         name: known.name.into(),

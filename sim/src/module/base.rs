@@ -28,10 +28,10 @@ const CHECKSUM: u8 = 0x40;
 /// Longest response delay, milliseconds.
 const LONGEST_DELAY_MS: u8 = 30;
 
-/// Baud rates in the order of their codes, from 03.
+/// Baud rates, bits per second, in the order of their codes from 03.
 const BAUDS: [u32; 8] = [1200, 2400, 4800, 9600, 19200, 38400, 57600, 115_200];
 
-/// Baud rate of a module with INIT* grounded, whatever rate it stores.
+/// Baud rate of a module with INIT* grounded, bits per second, whatever rate it stores.
 const INIT_BAUD: u32 = 9_600;
 
 /// Settings of the line that its modules are configured for.
@@ -39,7 +39,7 @@ const INIT_BAUD: u32 = 9_600;
 pub struct Commissioning {
     /// Baud rate of the line.
     pub baud: u32,
-    /// The line uses checksums.
+    /// True when the line uses checksums.
     pub checksum: bool,
     /// Time-out of an enabled host watchdog, milliseconds.
     pub host_watchdog_ms: f64,

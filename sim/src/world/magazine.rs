@@ -22,7 +22,7 @@ pub struct Part {
     pub seq: u64,
     /// Number in the lot from 1, which faults of a part refer to; `None` for reference parts.
     pub number: Option<u64>,
-    /// A second body clings to this one.
+    /// True when a second body clings to this one.
     pub double: bool,
     /// Places with the time of arrival, microseconds.
     pub path: Vec<(u64, Place)>,

@@ -106,7 +106,7 @@ pub struct Arrival {
     pub draw: Draw,
     /// Index of a pin that misses its Kelvin probes.
     pub dirty_pin: Option<usize>,
-    /// The part is misoriented.
+    /// True when the part is misoriented.
     pub misoriented: bool,
 }
 

@@ -42,7 +42,7 @@ impl Random {
     }
 }
 
-/// A bench with one module of the model, alternately with checksum.
+/// Builds a bench with one module of the model, with or without checksum.
 fn module(model: &str, checksum: bool) -> Rig {
     let file = format!("[[module]]\naddress = 1\nmodel = \"{model}\"\nchecksum = {checksum}");
     bench::build_text(&file).expect("a bench")

@@ -122,7 +122,7 @@ fn page(part: &Part, out: &mut Output) -> anyhow::Result<()> {
     part.curves.iter().try_for_each(|it| curve(it, out))
 }
 
-/// Samples on a line, each with its time since the first, milliseconds.
+/// Number of samples on a line of text, each with the milliseconds since the first one.
 const ON_A_LINE: usize = 6;
 
 /// Writes a curve; a dash is a sample without a number.

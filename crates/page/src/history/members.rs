@@ -59,7 +59,7 @@ impl RouteMembers for ReportMembers {
     const MEMBERS: &'static [&'static str] = &["lang", "seq", "ideal_cycle_s"];
 }
 
-/// Members of the audit of orders.
+/// Members of `orders`, the audit of orders.
 #[derive(Debug, Deserialize)]
 pub(super) struct AuditMembers {
     /// Name of the person whose orders to list; all when absent.

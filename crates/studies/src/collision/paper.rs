@@ -11,7 +11,7 @@ use super::outline::Outline;
 use super::world::{TestMove, UNIT_MM};
 use lpm::exact::{Body, Form};
 
-/// Corners of the polygon of a cylinder.
+/// Number of corners of the polygon of a cylinder.
 const CORNERS: usize = 32;
 /// Pitch of the grid of a layer, mm.
 const PITCH_MM: f64 = 64.0;

@@ -10,7 +10,7 @@ use lpm::{Move, Pose};
 
 /// Length of a unit, mm: a power of two, so that every number is exact in `f32` and `f64`.
 pub const UNIT_MM: f64 = 1.0 / 1024.0;
-/// Units per millimetre.
+/// Number of units in a millimetre.
 pub const MM: i64 = 1024;
 
 /// Kinds of moves, in the order of the report.

@@ -3,7 +3,7 @@
 use super::LATE_MS;
 use crate::order::Order;
 
-/// Parts from one stop to the next: two go to retest, then the line runs evenly again.
+/// Number of parts from one stop to the next: two go to retest, then the line runs evenly again.
 const PARTS_BETWEEN: u64 = 5;
 /// Time after nest exit in the middle of a test, seconds: jaws closed, probes up, z down, the next part in the pocket, so
 /// that homing has long strokes.

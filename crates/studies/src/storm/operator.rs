@@ -35,11 +35,11 @@ pub struct Operator {
     pub orders: mpsc::Sender<OrderRequest>,
     /// Clock of the rig time.
     pub pace: Pace,
-    /// Ends the program once the parts inside are finished.
+    /// Set to end the program once the parts inside are finished.
     pub stop: Arc<AtomicBool>,
-    /// Ends the program at once.
+    /// Set to end the program at once.
     pub abort: Arc<AtomicBool>,
-    /// Draws orders and waits.
+    /// Random numbers for orders and waits.
     pub dice: Dice,
     /// Receives every order with its answer.
     pub answers: mpsc::UnboundedSender<Answered>,

@@ -13,9 +13,9 @@ pub(super) struct CrashWatch {
     /// Last check: instant (microseconds) and posture.
     last: Option<(u64, Posture)>,
     touching: BTreeSet<(usize, usize)>,
-    /// The part of the pocket is still in front of the returning pusher, not yet at rest in the pocket.
+    /// True while the part of the pocket is still in front of the returning pusher, not yet at rest in the pocket.
     pub pulled_back: bool,
-    /// A fault makes the rising fingers leave their part in the nest.
+    /// True when a fault makes the rising fingers leave their part in the nest.
     pub slides_off: bool,
 }
 

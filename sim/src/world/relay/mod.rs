@@ -123,7 +123,7 @@ impl Relay {
         &self.drawn
     }
 
-    /// Returns the rig time on each level of the motion.
+    /// Returns the rig time that the motion has spent on each level, held and moving.
     pub fn levels(&self) -> Levels {
         self.motion.levels()
     }

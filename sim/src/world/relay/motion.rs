@@ -33,7 +33,7 @@ const FLUX_STEP_SHARE: f64 = 0.25;
 /// Rate of the flux below which it counts as constant, V: a microvolt of the source.
 const STILL_V: f64 = 1e-6;
 
-/// Rig time on each level, s.
+/// Rig time spent on each level of the motion, s.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Levels {
     /// Armature pressed on a stop.
@@ -73,7 +73,7 @@ impl Motion {
         }
     }
 
-    /// Returns the rig time on each level.
+    /// Returns the rig time spent on each level.
     pub fn levels(&self) -> Levels {
         self.levels
     }

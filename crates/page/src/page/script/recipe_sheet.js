@@ -12,7 +12,7 @@ const mayRevise = () => me !== null && me.role === "engineer" && recipe !== null
 const recipeSection = (path) => (path.startsWith("test.strategy.") ? "strategy" : path.includes(".") ? path.split(".")[0] : "about");
 const rangeText = (it) => (it.low === undefined ? "" : (it.low_allowed ? it.low + " … " : "> " + it.low + " … ") + it.high);
 
-// Returns the text of a value for its input; for a list one text per number.
+// Returns a value as the text of its input field; for a list, one text per number.
 const asTyped = (value) => (Array.isArray(value) ? value.map(String) : value === null ? "" : String(value));
 
 // Converts typed text to the value for the rig. Sends text that is no number as it is; the rig refuses it with the key.
