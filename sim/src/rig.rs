@@ -100,7 +100,7 @@ impl Rig {
         self.exchange_at(line, None, text, t_us)
     }
 
-    /// Delivers a request at the host's own baud rate; `None` matches the line and every module.
+    /// Delivers a request as [`Self::exchange`] does, at the baud rate of the host; `None` suits every module.
     pub fn exchange_at(
         &mut self,
         line: usize,

@@ -18,7 +18,7 @@ use super::output::Report;
 use machine::dut::em_relay::Parameter;
 use units::Unit;
 
-/// Range of the coverage, percent of values.
+/// Bar of the coverage: lowest and highest, percent of values.
 const COVERAGE_PCT: (f64, f64) = (93.0, 98.0);
 /// Left end of the chart of coverage, percent.
 const CHART_FROM_PCT: f64 = 80.0;

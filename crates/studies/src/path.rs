@@ -11,7 +11,7 @@ use super::order::Order;
 use rigsim::config::read_world;
 use rigsim::world::table::MechanismTable;
 
-/// Least parts an hour at the default recipe.
+/// Bar of the parts per hour with the default recipe: at least this many.
 const PARTS_PER_HOUR: f64 = 1850.0;
 /// The line must make at least this share of the parts per hour that the critical path permits.
 const SHARE: f64 = 0.95;

@@ -41,7 +41,7 @@ struct EventCounter {
     /// Count of the counter when the terminal had seen `from_edges` edges.
     start: u64,
     from_edges: u64,
-    /// Edges at the last update, for the latches.
+    /// Number of edges at the last update, by which the latches notice further ones.
     seen_edges: u64,
 }
 

@@ -135,12 +135,12 @@ impl Module {
         &self.line
     }
 
-    /// Returns the common part.
+    /// Returns the common part: address, configuration word, watchdog, EEPROM.
     pub fn base(&self) -> &ModuleBase {
         &self.base
     }
 
-    /// Returns the common part for faults that change it.
+    /// Returns the common part of the module, for faults that change it.
     pub fn base_mut(&mut self) -> &mut ModuleBase {
         &mut self.base
     }

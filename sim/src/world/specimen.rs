@@ -104,7 +104,7 @@ pub struct Arrival {
     pub ambient_c: f64,
     /// Random stream of the part's operations.
     pub draw: Draw,
-    /// Index of a pin that misses its Kelvin probes.
+    /// Index of a pin that misses its Kelvin probes; `None` when no pin does.
     pub dirty_pin: Option<usize>,
     /// True when the part is misoriented.
     pub misoriented: bool,

@@ -12,7 +12,7 @@ pub enum AccessError {
     Foreign {
         /// The file.
         path: PathBuf,
-        /// Application id and schema number in its header.
+        /// Application id and schema number in the header of the file.
         found: String,
     },
     /// SQLite failed.

@@ -26,7 +26,7 @@ pub struct FitTarget {
     pub turns: f64,
     /// Quasi-static pickup and release thresholds, V.
     pub volts: [f64; 2],
-    /// Operate time from nominal voltage and release time into the zener, s.
+    /// Operate time from rest at nominal voltage, and release time from nominal voltage into the zener, s.
     pub seconds: [f64; 2],
     /// Nominal coil voltage, V.
     pub nominal_v: f64,
