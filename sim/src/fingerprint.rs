@@ -30,10 +30,10 @@ use crate::truth::WorldRecord;
 /// Name of the line.
 pub const LINE: &str = "storm";
 
-/// Time step in words of digital inputs, microseconds.
+/// Step of the time that words of digital inputs carry, microseconds.
 pub const WORD_STEP_US: u64 = 512;
 
-/// Time step at analog inputs, microseconds.
+/// Step of the time that values of analog inputs carry, microseconds.
 pub const ANALOG_STEP_US: u64 = 16_000;
 
 /// Highest time code at an analog input, the top of the triangle. The lowest is 1, since a host reads the codes
@@ -123,8 +123,8 @@ impl FingerprintLine {
         })
     }
 
-    /// Checks whether the outputs of a module carried `word` (bits, or 65535ths of 10 V) within the interval,
-    /// ends included.
+    /// Checks whether the outputs of a module carried `word` (bits, or 65535ths of 10 V) at any time from `from_us`
+    /// to `to_us`, ends included.
     pub fn carried(&self, address: u8, word: u16, from_us: u64, to_us: u64) -> bool {
         let all = self
             .outputs

@@ -39,7 +39,7 @@ pub enum Entry {
         t_us: u64,
         /// Identifier of the module.
         module: String,
-        /// Arrival of the last request on any line, microseconds.
+        /// Rig time at which the last request arrived on any line, microseconds.
         last_request_us: u64,
         /// Value of the outputs now: bits, or volts.
         carries: f64,

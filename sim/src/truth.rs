@@ -15,7 +15,7 @@ pub trait WorldRecord {
         Vec::new()
     }
 
-    /// Returns a description of each crash, two bodies that touch although they must not, in order of time.
+    /// Returns a description of each crash (two bodies touch although they must not), in order of time.
     fn crashes(&self) -> Vec<String> {
         Vec::new()
     }
@@ -68,13 +68,13 @@ pub struct PartTruth {
     pub operate_voltage_v: Option<f64>,
     /// Quasi-static release threshold at the reference temperature, V.
     pub release_voltage_v: Option<f64>,
-    /// Time from drive on to first make in the last full-voltage operation, ms.
+    /// Time from drive on to first make of NO in the last full-voltage operation, ms.
     pub operate_time_ms: Option<f64>,
     /// Time from drive off to first make of NC in the last full-voltage release, ms.
     pub release_time_ms: Option<f64>,
-    /// Open time of NO after its first make in that operation, ms.
+    /// Open time of NO after its first make in the last full-voltage operation, ms.
     pub operate_bounce_ms: Option<f64>,
-    /// Open time of NC after its first make in that release, ms.
+    /// Open time of NC after its first make in the last full-voltage release, ms.
     pub release_bounce_ms: Option<f64>,
     /// Mean over the closures of NO that carried the source's current, milliohm.
     pub contact_resistance_no_mohm: Option<f64>,

@@ -63,7 +63,8 @@ pub(super) enum ApiError {
     /// 404 for an unknown recipe or revision, otherwise 500: a file of the configuration is faulty.
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// 400 with the key of a refused value, 404 for an unknown recipe, 409 when another revision came first.
+    /// 400 with the key of a refused value, 404 for an unknown recipe, 409 when the change is not based on the newest
+    /// revision.
     #[error("{refused}")]
     Revision { refused: ConfigError },
     /// 500: the program saved the revision but could not write it to the audit.

@@ -46,7 +46,7 @@ impl Side {
         }
     }
 
-    /// Projects a displacement in space to right and down in the drawing.
+    /// Projects a displacement in space to the drawing; returns how far it goes to the right and down, mm.
     fn shift(self, [x, y, z]: [f64; 3]) -> (f64, f64) {
         match self {
             Self::Front => (x, -z),

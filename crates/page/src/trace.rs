@@ -12,7 +12,7 @@ use serde::Deserialize;
 use std::fmt;
 use std::sync::Arc;
 
-/// Greatest `last`: messages that each line keeps.
+/// Greatest `last`: the number of messages that each line keeps.
 const MOST: usize = 1000;
 
 /// Function that returns the last messages of every line; its argument is the most messages per line.

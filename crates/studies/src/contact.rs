@@ -87,7 +87,7 @@ fn drifting(order: &Order) -> anyhow::Result<Vec<Figure>> {
     Ok(figures)
 }
 
-/// Returns the scatter of one body from pass to pass by number of closures, percent of its resistance.
+/// Returns, for each number of closures, the scatter of one body from pass to pass, percent of its resistance.
 fn films(order: &Order) -> anyhow::Result<Vec<Figure>> {
     let bodies = (order.parts / PASSES).max(2);
     let order = Order {

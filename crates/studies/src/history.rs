@@ -118,7 +118,7 @@ fn measured(parameter: &Parameter) -> history::MeasurementRecord {
     }
 }
 
-/// Queries by lot, verdict and value range: rejects over a wide range, good parts over a narrow one.
+/// Runs the filter queries by lot, verdict and value range: rejects over a wide range, good parts over a narrow one.
 fn filters(archive: &Archive) -> anyhow::Result<Figure> {
     let lots = archive.lots(&Filter::default())?;
     let mut spent = Vec::new();

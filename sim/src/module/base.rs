@@ -34,7 +34,7 @@ const BAUDS: [u32; 8] = [1200, 2400, 4800, 9600, 19200, 38400, 57600, 115_200];
 /// Baud rate of a module with INIT* grounded, bits per second, whatever rate it stores.
 const INIT_BAUD: u32 = 9_600;
 
-/// Settings of the line that its modules are configured for.
+/// Settings of a line with which its modules are configured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Commissioning {
     /// Baud rate of the line.
@@ -74,7 +74,7 @@ pub struct ModuleBase {
 }
 
 impl ModuleBase {
-    /// Reads the common keys of the module's table, for a given type code and the family's bits of FF.
+    /// Creates the common part from the module's table; `family_bits` are the bits of FF that the family sets.
     pub fn new(
         spec: &ModuleSpec,
         line: Commissioning,

@@ -185,7 +185,7 @@ impl Module {
         }
     }
 
-    /// Starts the module as powered for long, in the state of its table.
+    /// Starts the module in the state of its table, as if it had been powered for long.
     pub fn energise(&mut self, plant: &mut dyn Plant, now_us: u64) {
         let mut at = Terminals {
             plant,

@@ -51,7 +51,7 @@ impl Channel {
         self.overflowed || self.position(hz) >= self.span()
     }
 
-    /// Returns the counter to its preset without counts.
+    /// Sets the counter to its preset and forgets all pulses, as a power loss does.
     pub(super) fn power_cycle(&mut self) {
         self.start = 0;
         self.zero_pulses = 0;
@@ -59,7 +59,7 @@ impl Channel {
         self.overflowed = false;
     }
 
-    /// Returns the counter to its preset and clears the overflow.
+    /// Sets the counter to its preset and clears the overflow.
     pub(super) fn reset(&mut self, hz: f64) {
         self.zero_pulses = self.pulses(hz);
         self.start = 0;

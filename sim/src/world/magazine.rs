@@ -110,13 +110,13 @@ impl Magazine {
         })
     }
 
-    /// Continues the counts of the magazine before, so that no lot part comes twice.
+    /// Continues the counts of the magazine `before`, so that no lot part comes twice.
     pub fn continuing(mut self, before: &Self) -> Self {
         (self.out, self.filled_at) = (before.out, before.out);
         self
     }
 
-    /// Returns the reference parts and lot parts that have left since the filling.
+    /// Returns the numbers of reference parts and of lot parts that have left since the magazine was filled.
     fn since_filled(&self) -> (u64, u64) {
         (self.out.0 - self.filled_at.0, self.out.1 - self.filled_at.1)
     }

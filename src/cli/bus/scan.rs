@@ -127,7 +127,7 @@ async fn scan_all(args: &ScanArgs, found: &mut Vec<Found>) -> anyhow::Result<()>
         let mut line = OpenLine::open(args, rate, checksum)?;
         for address in (first..=last).map(Address) {
             bar.inc(1);
-            // A module listens at one rate only; a terminal without a rate would show it at each.
+            // A module listens at one rate only; a pseudo-terminal has no rate and would show the module at every rate.
             if found.iter().all(|module| module.asked != address)
                 && let Some(module) = line.identify(address, rate, checksum).await?
             {

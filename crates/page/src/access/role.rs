@@ -21,7 +21,7 @@ impl Role {
     /// All roles, weakest first.
     pub const ALL: [Self; 3] = [Self::Operator, Self::Maintainer, Self::Engineer];
 
-    /// Returns the name in the file, on the command line and over HTTP.
+    /// Returns the name of the role in the file of people, on the command line and over HTTP.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {

@@ -78,7 +78,7 @@ impl Pieces {
 
     fn send(&self, piece: Piece) -> io::Result<()> {
         let sent = self.runtime.block_on(async {
-            // Inside the async block, because a timer needs the context of the runtime.
+            // The time-out begins inside the async block, because its timer needs the context of the runtime.
             timeout(CLIENT_TIMEOUT, self.sender.send(piece)).await
         });
         match sent {

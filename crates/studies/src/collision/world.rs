@@ -169,7 +169,7 @@ impl World {
     }
 }
 
-/// Returns whether the boxes of both meet during the run.
+/// Returns whether the bounding boxes of element and part meet while the part moves by `run`.
 fn boxes_meet(element: &Body, part: &Body, run: [i64; 3]) -> bool {
     let (a, b) = (reach(element), reach(part));
     // Most of the scene is far away: a comparison per axis spares the exact test of the boxes.

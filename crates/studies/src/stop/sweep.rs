@@ -5,8 +5,8 @@ use crate::order::Order;
 
 /// Number of parts from one stop to the next: two go to retest, then the line runs evenly again.
 const PARTS_BETWEEN: u64 = 5;
-/// Time after nest exit in the middle of a test, seconds: jaws closed, probes up, z down, the next part in the pocket, so
-/// that homing has long strokes.
+/// Time after nest exit, seconds, at which a test is in its middle: jaws closed, probes up, z down, the next part in
+/// the pocket, so that homing has long strokes.
 const MID_TEST_S: f64 = 1.0;
 /// Orders of the operator after a stop: clear and reset; [`START`] follows.
 const CLEAR: &str = "after state Aborted +4 order clear\nafter state Stopped order reset\n";

@@ -12,7 +12,7 @@ const PUSHER: usize = 1;
 const SORT_Z: usize = 5;
 const SORT_AXIS: usize = 7;
 
-/// Places of a part, in the order of the bodies after the elements.
+/// Names of the bodies that stand for a part in each of its places; in the list of bodies they follow the elements.
 pub const PARTS: [&str; 4] = ["part_pocket", "part_pusher", "part_nest", "part_gripper"];
 
 /// One body: its solids at rest and its motion.

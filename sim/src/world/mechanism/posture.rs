@@ -39,7 +39,7 @@ impl Mechanism {
         let Some((from_us, before)) = self.lookout.last.replace((now_us, now)) else {
             return;
         };
-        // The places have not changed since the last check, since every change calls it.
+        // The places have not changed since the last check, because a check precedes every change.
         let from = Posture {
             mm: before.mm,
             ..now

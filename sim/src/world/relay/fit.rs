@@ -215,7 +215,7 @@ impl FitTarget {
     }
 }
 
-/// Returns the first make of a contact, s; [`LONGEST_S`] if it never makes.
+/// Returns the instant of the first make of a contact, s; [`LONGEST_S`] if it never makes.
 fn first_make(model: &Model, start: State, drive: &Drive, contact: Kind) -> f64 {
     let mut solver = Solver::new(model, drive, 0.0, start, RTOL);
     while let Ok(Some(event)) = solver.advance(model, drive, LONGEST_S) {

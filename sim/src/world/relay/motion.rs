@@ -54,8 +54,8 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Starts at `t_s` without current, on the backstop, or on the seat where a weld holds the armature; a
-    /// `stuck` armature never moves.
+    /// Creates the motion at `t_s`, without current, on the backstop, or on the seat where a weld holds the armature;
+    /// a `stuck` armature never moves.
     pub fn new(model: Model, t_s: f64, drive: Drive, stuck: bool, seated: bool) -> Self {
         let mut state = model.at_rest(0.0);
         if seated {

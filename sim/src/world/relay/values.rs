@@ -240,7 +240,7 @@ impl RelayValues {
         }
     }
 
-    /// Returns the results that a relay with these values shows; an open coil counts as wound.
+    /// Returns the results that a relay with these values shows; an open coil counts as intact.
     pub fn fit_target(&self, world: &WorldTable) -> FitTarget {
         let wound = self.nominal_ohm(world);
         FitTarget {

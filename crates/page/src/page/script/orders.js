@@ -14,7 +14,8 @@ async function sendOrder(order) {
   }
 }
 
-// Sends an order of a logged-in person and passes the answer to `show`; returns whether the rig took the order.
+// Sends an order if a person is logged in; passes the answer, or the refusal, to `show`; returns whether the rig took
+// it.
 async function giveOrder(order, show) {
   const why = me === null ? word("stop-login") : await sendOrder(order);
   show(why || word("order-" + order.order) + ": " + word("order-taken"));

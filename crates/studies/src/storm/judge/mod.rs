@@ -31,7 +31,7 @@ pub struct Case {
     pub bodies: Vec<BodyTruth>,
     /// Driven motions: instant of the start, and name of the actuator.
     pub driven: Vec<(u64, &'static str)>,
-    /// Bodies that touched, as the rig describes them.
+    /// Bodies that touched although they must not, as the rig describes them.
     pub touched: Vec<String>,
     /// Coils driven in a supply range above the commanded one.
     pub overdrives: Vec<Overdrive>,
