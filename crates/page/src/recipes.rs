@@ -1,4 +1,4 @@
-//! `/api/recipes/...`: recipes, their revisions and new revisions.
+//! `/api/recipes/...`: recipes with their revisions, and the route that saves a new revision.
 //!
 //! | route | members | answer |
 //! |---|---|---|

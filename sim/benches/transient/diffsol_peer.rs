@@ -1,4 +1,4 @@
-//! The transient by diffsol: Tsitouras 5(4) with root finding, restarted at every root.
+//! The transient as the library diffsol integrates it: Tsitouras 5(4) with root finding, restarted at every root.
 
 use super::{END_S, NoContactTimes, VOLTS};
 use diffsol::{

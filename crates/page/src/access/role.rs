@@ -1,4 +1,4 @@
-//! Roles. Each may do all that the weaker ones may.
+//! Roles of people; a stronger role may do everything that a weaker one may.
 
 use serde::Serialize;
 use std::fmt;

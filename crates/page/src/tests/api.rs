@@ -1,4 +1,4 @@
-//! Every route of the list: documented, open to the right roles, closed to malformed requests.
+//! Tests of every route of the list: documented, open to the right roles, closed to malformed requests.
 
 use super::*;
 use crate::api::{self, Method};

@@ -1,4 +1,4 @@
-//! Calibrations and reference parts over HTTP.
+//! Tests of calibrations and reference parts over HTTP.
 
 use super::*;
 use ::history::{

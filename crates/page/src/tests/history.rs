@@ -1,4 +1,4 @@
-//! The history over HTTP.
+//! Tests of the history over HTTP.
 
 use super::*;
 use ::history::{AlarmRecord, LotRecord, MeasurementRecord, OrderRecord, PartRecord, Row, Store};

@@ -1,4 +1,4 @@
-//! Recipes over HTTP: reading, revising, and the refusals of both.
+//! Tests of recipes over HTTP: reading, revising, and the refusals of both.
 
 use super::*;
 use ::history::{Archive, Filter, OrderEntry};

@@ -1,4 +1,4 @@
-//! Rejudging over HTTP.
+//! Tests of rejudging over HTTP.
 
 use super::*;
 use ::history::{Archive, Filter, LotRecord, MeasurementRecord, PartRecord, Row, Store};

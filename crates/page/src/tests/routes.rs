@@ -1,4 +1,4 @@
-//! The page and its scripts, the view, the figures, and the answers to wrong paths.
+//! Tests of the page and its scripts, the view, the figures, and the answers to wrong paths.
 
 use super::*;
 

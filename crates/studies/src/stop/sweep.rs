@@ -1,4 +1,4 @@
-//! Instants of the stops of a lot, and the script that presses them.
+//! Instants at which the emergency stop is pressed in a lot, and the script that presses it.
 
 use super::LATE_MS;
 use crate::order::Order;

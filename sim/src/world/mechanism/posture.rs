@@ -1,4 +1,4 @@
-//! Postures of the mechanism for the detection of crashes, and the review of the motion since the last one.
+//! Postures of the mechanism for the detection of crashes, and the check of the motion between two of them.
 
 use std::collections::BTreeSet;
 
