@@ -98,7 +98,7 @@ pub enum Command {
     Alarm(alarm::AlarmArgs),
     /// State of a lot; hold, release or close it
     Lot(lot::LotArgs),
-    /// Uses of probes and jaws since their last replacement
+    /// Use counts of probes and jaws since their last replacement
     Wear(wear::WearArgs),
     /// People who may log in at the screen
     User(user::UserArgs),
@@ -154,7 +154,7 @@ fn person(name: &str) -> anyhow::Result<By> {
     })
 }
 
-/// Takes a closed pipe for a normal end.
+/// Treats a closed pipe as a normal end.
 fn unless_pipe_closed(done: anyhow::Result<Exit>) -> anyhow::Result<Exit> {
     let left = |cause: &(dyn std::error::Error + 'static)| {
         cause

@@ -209,7 +209,7 @@ impl Plant for Signals {
 
     fn analog_out(&mut self, _module: &str, _volts: f64) {}
 
-    /// A terminal that the file omits is open and reads 1.
+    /// Returns the levels that the bench file gives; a terminal that it omits is open and reads 1.
     fn digital_in(&mut self, module: &str) -> u16 {
         (0..16u8).fold(0, |levels, channel| {
             let open = self.input(module, channel).unwrap_or(1.0) != 0.0;

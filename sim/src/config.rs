@@ -35,7 +35,7 @@ pub enum ConfigError {
         /// Found and expected content.
         message: String,
     },
-    /// A value has the right type but is not possible.
+    /// A value has the right type but is impossible.
     #[error("{path}: {key}: {message}")]
     Value {
         /// The file.
@@ -54,7 +54,7 @@ pub struct LineSpec {
     pub name: String,
     /// Bits per second.
     pub baud: u32,
-    /// Modules of the line use a checksum.
+    /// True when the modules of the line use a checksum.
     pub checksum: bool,
 }
 
@@ -65,7 +65,7 @@ pub struct Terminal {
     pub module: String,
     /// Channel on the module.
     pub channel: u8,
-    /// The terminal reads 0 while the signal is present.
+    /// True when the terminal reads 0 while the signal is present.
     pub active_low: bool,
     /// Volts at the terminal per unit of the quantity (inputs), or units per volt (outputs).
     pub gain: f64,

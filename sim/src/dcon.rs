@@ -6,7 +6,7 @@
 //! the host watchdog has tripped). It does not answer an unknown request or a wrong checksum. All letters are
 //! upper case; CR ends a frame, never LF.
 
-/// Ends every frame in both directions.
+/// Carriage return, which ends every frame in both directions.
 pub const CR: u8 = b'\r';
 
 /// Longest request or reply that is kept, characters without CR; longer text is line noise.

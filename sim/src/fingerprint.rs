@@ -6,7 +6,7 @@
 //! | 03 | I-7033, hex | the same with module 2 |
 //! | 04, 05 | I-7080 | module (4 bits), channel (1 bit), time in steps of 64 us (27 bits) |
 //! | 06, 07 | I-7051 | module (4 bits), time in steps of 512 us (12 bits) |
-//! | 08, 09 | I-7043 | module (4 bits), the rest is the host's; so at power-on and when safe |
+//! | 08, 09 | I-7043 | module (4 bits), a number of the host (12 bits); number 0 at power-on and when safe |
 //! | 0A, 0B | I-7021P, hex | the same |
 //!
 //! The module number is the address less one, except at analog inputs. Time at an analog input rises and falls as
@@ -30,10 +30,10 @@ use crate::truth::WorldRecord;
 /// Name of the line.
 pub const LINE: &str = "storm";
 
-/// Time step in words of digital inputs, microseconds.
+/// Step of the time that words of digital inputs carry, microseconds.
 pub const WORD_STEP_US: u64 = 512;
 
-/// Time step at analog inputs, microseconds.
+/// Step of the time that values of analog inputs carry, microseconds.
 pub const ANALOG_STEP_US: u64 = 16_000;
 
 /// Highest time code at an analog input, the top of the triangle. The lowest is 1, since a host reads the codes
@@ -123,8 +123,8 @@ impl FingerprintLine {
         })
     }
 
-    /// Checks whether the outputs of a module carried `word` (bits, or 65535ths of 10 V) within the interval,
-    /// ends included.
+    /// Checks whether the outputs of a module carried `word` (bits, or 65535ths of 10 V) at any time from `from_us`
+    /// to `to_us`, ends included.
     pub fn carried(&self, address: u8, word: u16, from_us: u64, to_us: u64) -> bool {
         let all = self
             .outputs

@@ -33,15 +33,15 @@ pub enum Entry {
         /// Text of the fault as requested.
         fault: String,
     },
-    /// A host watchdog has expired; the outputs keep the values that the module has set.
+    /// A host watchdog has expired, and the module has set its safe outputs.
     Expired {
         /// Rig time, microseconds.
         t_us: u64,
         /// Identifier of the module.
         module: String,
-        /// Arrival of the last request on any line, microseconds.
+        /// Rig time at which the last request arrived on any line, microseconds.
         last_request_us: u64,
-        /// Present value of the output: bits, or volts.
+        /// Value of the outputs now: bits, or volts.
         carries: f64,
     },
     /// A coil is driven in a supply range above the commanded one.
@@ -78,7 +78,7 @@ impl JournaledWorld {
         receiver
     }
 
-    /// Returns the facts of the world, and control of its faults.
+    /// Returns the record of the world, which also controls the faults of the world.
     pub(crate) fn record(&mut self) -> &mut dyn WorldRecord {
         &mut *self.scene
     }

@@ -35,10 +35,10 @@ pub struct Ptys {
 /// Effect of the baud rate that a client sets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rates {
-    /// None: the line's own rate applies.
+    /// The rate has no effect: the line's own rate applies.
     Ignored,
-    /// A module receives only requests at its own rate, as on a wire; 9600 with INIT* grounded. A client that
-    /// sets no rate has the line's rate.
+    /// A module receives only requests at its own rate (9600 with INIT* grounded), as on a wire. A client that sets
+    /// no rate has the line's rate.
     Enforced,
 }
 

@@ -39,7 +39,7 @@ pub struct Reply {
 pub struct Rig {
     scene: JournaledWorld,
     modules: Vec<Module>,
-    /// Next event of each module.
+    /// Instant of the next event of each module, microseconds.
     due_us: Vec<u64>,
     /// Interval in which each module is busy with a late reply, microseconds.
     serving_us: Vec<(u64, u64)>,
@@ -100,7 +100,7 @@ impl Rig {
         self.exchange_at(line, None, text, t_us)
     }
 
-    /// Delivers a request at the host's own baud rate; `None` matches the line and every module.
+    /// Delivers a request as [`Self::exchange`] does, at the baud rate of the host; `None` suits every module.
     pub fn exchange_at(
         &mut self,
         line: usize,
@@ -220,7 +220,8 @@ impl Rig {
         self.record().inject(name, number)
     }
 
-    /// Returns the facts of the world, and control of its faults; those of lines and modules end with their windows.
+    /// Returns the record of the world, which also controls the faults of the world. Faults of lines and modules are
+    /// not in it: they end with their windows.
     pub fn record(&mut self) -> &mut dyn WorldRecord {
         self.scene.record()
     }

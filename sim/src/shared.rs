@@ -28,7 +28,7 @@ pub struct Options {
     pub recipe: String,
     /// Number of lot parts in the magazine; `None` never runs out.
     pub parts: Option<u64>,
-    /// Reference parts precede the lot.
+    /// True when reference parts precede the lot.
     pub reference_parts: bool,
     /// Faults as `NAME` or `NAME=VALUE`.
     pub faults: Vec<String>,

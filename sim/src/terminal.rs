@@ -26,25 +26,25 @@ pub trait Plant {
     /// Brings the world to `t_us`; all other methods refer to that instant.
     fn advance(&mut self, t_us: u64);
 
-    /// Volts at the terminals of an analog input (RTD input: degrees Celsius with the errors of the sensor). NaN
-    /// means that nothing is connected.
+    /// Returns the volts at the terminals of an analog input (RTD input: degrees Celsius with the errors of the
+    /// sensor); NaN when nothing is connected.
     fn analog_in(&mut self, module: &str, channel: u8) -> f64;
 
     /// Sets the output stage of an analog output to `volts`, at every refresh of a slew.
     fn analog_out(&mut self, module: &str, volts: f64);
 
-    /// Electrical levels of all digital inputs, bit n = channel n; 1 is open (no signal).
+    /// Returns the electrical levels of all digital inputs, bit n = channel n; 1 is open (no signal).
     fn digital_in(&mut self, module: &str) -> u16;
 
     /// Sets all digital outputs of a module, bit n = channel n; 1 is on.
     fn digital_out(&mut self, module: &str, bits: u16);
 
-    /// Number of falling edges so far at a digital input; only low levels of at least 5 ms count.
+    /// Returns the number of falling edges so far at a digital input; only low levels of at least 5 ms count.
     fn edges(&mut self, module: &str, channel: u8) -> u64;
 
-    /// Total open time of a counter's gate so far, microseconds, gate delay included.
+    /// Returns the total open time of a counter's gate so far, microseconds, gate delay included.
     fn gate_open_us(&mut self, module: &str, channel: u8) -> f64;
 
-    /// True frequency of the reference clock at both counter inputs, hertz.
+    /// Returns the true frequency of the reference clock at both counter inputs, hertz.
     fn reference_clock_hz(&self) -> f64;
 }

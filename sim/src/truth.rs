@@ -15,7 +15,7 @@ pub trait WorldRecord {
         Vec::new()
     }
 
-    /// Returns a description of each crash, two bodies that touch although they must not, in order of time.
+    /// Returns a description of each crash (two bodies touch although they must not), in order of time.
     fn crashes(&self) -> Vec<String> {
         Vec::new()
     }
@@ -68,13 +68,13 @@ pub struct PartTruth {
     pub operate_voltage_v: Option<f64>,
     /// Quasi-static release threshold at the reference temperature, V.
     pub release_voltage_v: Option<f64>,
-    /// Time from drive on to first make in the last full-voltage operation, ms.
+    /// Time from drive on to first make of NO in the last full-voltage operation, ms.
     pub operate_time_ms: Option<f64>,
     /// Time from drive off to first make of NC in the last full-voltage release, ms.
     pub release_time_ms: Option<f64>,
-    /// Open time of NO after its first make in that operation, ms.
+    /// Open time of NO after its first make in the last full-voltage operation, ms.
     pub operate_bounce_ms: Option<f64>,
-    /// Open time of NC after its first make in that release, ms.
+    /// Open time of NC after its first make in the last full-voltage release, ms.
     pub release_bounce_ms: Option<f64>,
     /// Mean over the closures of NO that carried the source's current, milliohm.
     pub contact_resistance_no_mohm: Option<f64>,
@@ -90,7 +90,8 @@ pub struct PartTruth {
     pub defect: Option<&'static str>,
     /// Bin in which the body came to rest.
     pub landed_in: Option<String>,
-    /// Rig time on each level of the motion model: held in equilibrium, and all five states integrated.
+    /// Rig time that the motion of the relay has spent on each level: held in equilibrium, or all five states
+    /// integrated.
     pub levels: Levels,
 }
 
@@ -101,7 +102,7 @@ pub struct Overdrive {
     pub t_us: u64,
     /// Code of the commanded range.
     pub commanded: u8,
-    /// Code of the range of the supply.
+    /// Code of the range that the supply really has.
     pub range: u8,
     /// Voltage of the supply without load, V.
     pub supply_v: f64,
@@ -140,9 +141,9 @@ pub enum Place {
 /// One body, with its path; reference parts included.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyTruth {
-    /// Marks a reference part.
+    /// True for a reference part.
     pub is_reference: bool,
-    /// Marks a body that clung to the body before it, followed the same path, and was never tested.
+    /// True for a body that clung to the body before it: it followed the same path and was never tested.
     pub clung: bool,
     /// Places with the time of arrival, rig time in microseconds, in order of time.
     pub path: Vec<(u64, Place)>,

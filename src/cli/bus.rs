@@ -73,7 +73,7 @@ pub fn run(args: &BusArgs) -> anyhow::Result<Exit> {
     super::unless_pipe_closed(done)
 }
 
-/// Writes whole lines and flushes.
+/// Writes `text`, which consists of whole lines, to stdout and flushes.
 fn print(text: &str) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
     out.write_all(text.as_bytes())

@@ -21,7 +21,7 @@ pub struct CardArgs {
 /// Runs the command.
 ///
 /// # Errors
-/// Bad configuration, or a file that cannot be written.
+/// Fails when the configuration is faulty or the file cannot be written.
 pub fn run(config: &Path, args: &CardArgs) -> anyhow::Result<Exit> {
     let recipe = load_recipe(config, &args.recipe)?;
     let plant = load_card(config)?;

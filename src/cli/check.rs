@@ -1,4 +1,4 @@
-//! `relayrig check`: collision answers for a scene, no rig.
+//! `relayrig check`: tells whether moves in a scene collide; needs no rig.
 //!
 //! Exit status: 0 every move is clear, 1 a move is blocked, 2 bad input (one message, nothing on stdout).
 

@@ -27,7 +27,7 @@ pub enum Args {
 /// Runs the command on the configuration in `dir`.
 ///
 /// # Errors
-/// Every fault of the configuration: exit status 2.
+/// Fails with every fault of the configuration: exit status 2.
 pub fn run(dir: &Path, args: &Args) -> anyhow::Result<Exit> {
     let text = match args {
         Args::Check => overview(dir)?,

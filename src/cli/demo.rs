@@ -5,7 +5,7 @@ use super::serve::{self, ServeArgs};
 use app::exit::Exit;
 use app::order::{Files, LotOrder};
 
-/// The main job with nothing to prepare.
+/// Simulated rig with its page and a running lot, without preparation.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   relayrig demo

@@ -110,7 +110,7 @@ pub fn run(config: &Path, db: &Path, args: HistoryArgs) -> anyhow::Result<Exit> 
     super::unless_pipe_closed(dispatch(config, db, *args.command).map_err(by_option))
 }
 
-/// Names the option instead of the member of the filter.
+/// Names the command line option in an error that names a member of the filter.
 fn by_option(error: anyhow::Error) -> anyhow::Error {
     match error.downcast_ref::<InquiryError>() {
         Some(InquiryError::Member { field, reason }) => anyhow::anyhow!("--{field}: {reason}"),

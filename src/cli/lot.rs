@@ -1,6 +1,6 @@
 //! `relayrig lot`: shows the state of a lot; holds, releases or closes it.
 //!
-//! A decision is an order like those of a screen: the audit of orders records it with the name.
+//! A decision is an order like those of a screen: the audit of orders records it with the name of the person.
 
 use super::person;
 use anyhow::{Context, ensure};

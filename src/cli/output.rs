@@ -40,18 +40,19 @@ impl FormatArgs {
     }
 }
 
-/// Heading and cell of a column of rows `T`.
+/// A column of a list of `T`: heading, and the function that returns a cell.
 pub(super) type Column<'a, T> = (&'a str, fn(&T) -> String);
 
-/// Heading, width and cell of a column that keeps its width; a negative width sets the cells to the left.
+/// A column of fixed width: heading, width in characters (negative: aligned to the left), and the function that returns
+/// a cell.
 pub(super) type Fixed<T> = (&'static str, isize, fn(&T) -> String);
 
-/// Returns the headings.
+/// Returns the headings as one line of text.
 pub(super) fn headings<T>(columns: &[Fixed<T>]) -> String {
     padded(columns.iter().map(|it| (it.1, it.0.to_owned())))
 }
 
-/// Returns the cells of a row.
+/// Returns the cells of a row as one line of text.
 pub(super) fn cells<T>(row: &T, columns: &[Fixed<T>]) -> String {
     padded(columns.iter().map(|it| (it.1, (it.2)(row))))
 }
@@ -72,7 +73,7 @@ pub(super) fn input(file: &Path) -> io::Result<Box<dyn Read>> {
     })
 }
 
-/// A buffered sink that ends lines itself.
+/// Buffered output that adds the line ends itself.
 pub(super) struct Output(BufWriter<Box<dyn Write>>);
 
 impl Output {
@@ -157,7 +158,7 @@ pub(super) struct Table {
     page: Vec<Vec<String>>,
 }
 
-/// Rows that share their column widths.
+/// Number of rows that share their column widths.
 const PAGE: usize = 500;
 
 impl Table {
@@ -177,7 +178,7 @@ impl Table {
         }
     }
 
-    /// Writes the rest.
+    /// Writes the rows that have not filled a page.
     pub fn finish(&mut self, out: &mut impl Write) -> io::Result<()> {
         for row in &self.page {
             for (widest, cell) in self.widths.iter_mut().zip(row) {
@@ -196,7 +197,7 @@ impl Table {
     }
 }
 
-/// Returns every bin with its count.
+/// Returns every bin with its count, as text.
 pub(super) fn bins(counts: &BTreeMap<impl Display, u64>) -> String {
     let bins = counts.iter().map(|(bin, n)| format!("{bin} {n}"));
     bins.collect::<Vec<_>>().join(", ")

@@ -45,7 +45,7 @@ impl RigArgs {
     /// Returns the rig of these arguments; a simulated one writes its true values to `truth`.
     ///
     /// # Errors
-    /// Options that exclude each other, a line without its port, or a build without the simulated rig.
+    /// Fails when options exclude each other, when a line has no port, or when the build lacks the simulated rig.
     pub fn source(&self, truth: Option<PathBuf>) -> anyhow::Result<RigSource> {
         if self.speed.is_some() && !(self.sim && self.pace == PaceArg::Virtual) {
             bail!("--speed: found with --pace real, expected --pace virtual");

@@ -48,7 +48,7 @@ pub struct StoryArgs {
 /// Runs the command.
 ///
 /// # Errors
-/// Bad input.
+/// Fails on bad input, such as a script with an unknown word.
 pub fn run(files: &Files, args: &StoryArgs) -> anyhow::Result<Exit> {
     let named = || args.script.display().to_string();
     let text = std::fs::read_to_string(&args.script).with_context(named)?;

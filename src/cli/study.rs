@@ -66,7 +66,7 @@ pub struct StudyArgs {
 /// Runs the command.
 ///
 /// # Errors
-/// Bad input, a lot that ended with bad input, or an output that cannot be written.
+/// Fails on bad input, when a lot ends with bad input, or when an output cannot be written.
 pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<Exit> {
     let Some(wanted) = args.name else {
         print(&listed(args.json))?;
@@ -197,7 +197,7 @@ fn written(path: &Path, text: &str) -> anyhow::Result<()> {
     std::fs::write(path, text).with_context(|| format!("writing {}", path.display()))
 }
 
-/// Prints; a closed pipe is no error.
+/// Prints `text` on stdout; a closed pipe is no error.
 fn print(text: &str) -> anyhow::Result<()> {
     match std::io::stdout().lock().write_all(text.as_bytes()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {

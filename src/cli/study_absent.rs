@@ -15,7 +15,7 @@ pub struct StudyArgs {
 /// Refuses the command.
 ///
 /// # Errors
-/// Always.
+/// Always fails; the error names the feature to build with.
 pub fn run(_config: &Path, _args: &StudyArgs) -> anyhow::Result<Exit> {
     bail!(
         "study: this program was built without the studies; build it with `cargo build --release --features study`"

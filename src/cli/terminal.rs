@@ -22,7 +22,7 @@ pub enum Rows {
     Json,
 }
 
-/// Prints run after run.
+/// Prints the events of runs, one run after another.
 pub struct Terminal {
     rows: Rows,
     bar: ProgressBar,
@@ -32,7 +32,7 @@ pub struct Terminal {
 }
 
 impl Terminal {
-    /// Logs alarms, shows progress on a terminal and prints `rows`.
+    /// Creates a subscriber that logs alarms, shows progress on a terminal and prints `rows`.
     pub fn new(rows: Rows) -> Self {
         Self {
             rows,
@@ -42,7 +42,7 @@ impl Terminal {
         }
     }
 
-    /// Prints the cause of a trouble that ended the run without a summary, in JSON only.
+    /// Prints the cause when trouble ended the run before its summary; only in JSON.
     pub fn ended(&self, exit: &Exit) {
         if let (Rows::Json, false, Some(cause)) = (self.rows, self.summed_up, exit.cause()) {
             let it = serde_json::json!({"type": "trouble", "cause": cause});
@@ -50,7 +50,7 @@ impl Terminal {
         }
     }
 
-    /// Prints nothing on stdout.
+    /// Creates a subscriber that prints nothing on stdout.
     pub fn quiet() -> Self {
         Self::new(Rows::None)
     }
@@ -72,7 +72,7 @@ impl Terminal {
         }
     }
 
-    /// Prints beside the bar; a closed pipe does not stop the line.
+    /// Prints above the progress bar; a closed pipe does not stop production.
     fn print(&self, text: &str) {
         self.bar
             .suspend(|| std::io::stdout().write_all(text.as_bytes()).ok());

@@ -87,7 +87,7 @@ fn password(from_stdin: bool) -> anyhow::Result<String> {
     Ok(line.trim_end_matches(['\r', '\n']).to_owned())
 }
 
-/// Prints a random password; a chosen one is known.
+/// Prints name and random password; prints nothing when the password was chosen, because the person knows it.
 fn print_login(name: &str, password: &str, chosen: bool) {
     if !chosen {
         println!("{name} logs in with {password}");

@@ -1,4 +1,4 @@
-//! `relayrig wear`: uses of probes and jaws since their last replacement.
+//! `relayrig wear`: use counts of probes and jaws since their last replacement.
 
 use super::output::Output;
 use super::person;

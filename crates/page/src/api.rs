@@ -16,7 +16,7 @@ use std::sync::LazyLock;
 const JSON: &str = "application/json";
 const HTML: &str = "text/html";
 
-/// The one method of a route.
+/// HTTP method of a route.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Method {
     Get,
@@ -176,7 +176,7 @@ pub(super) fn routes() -> Vec<Route> {
     routes
 }
 
-/// Body of an order.
+/// Members of the body of an order.
 const ORDER: [Member; 11] = [
     must(
         "order",

@@ -63,7 +63,8 @@ pub(super) enum ApiError {
     /// 404 for an unknown recipe or revision, otherwise 500: a file of the configuration is faulty.
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// 400 with the key of a refused value, 404 for an unknown recipe, 409 when another revision came first.
+    /// 400 with the key of a refused value, 404 for an unknown recipe, 409 when the change is not based on the newest
+    /// revision.
     #[error("{refused}")]
     Revision { refused: ConfigError },
     /// 500: the program saved the revision but could not write it to the audit.
@@ -74,7 +75,7 @@ pub(super) enum ApiError {
     ReaderLost,
 }
 
-/// JSON, or the reason why not.
+/// JSON answer, or the refusal of the request.
 pub(super) type JsonResult<T> = Result<Json<T>, ApiError>;
 
 /// Members of a query string, or the reason why they are malformed.
@@ -93,7 +94,7 @@ where
 }
 
 impl ApiError {
-    /// Returns `value`, or `default` without one. Fails out of 1 to `most`.
+    /// Returns `value`, or `default` when the client gives none. Fails when the result is not from 1 to `most`.
     pub fn ranged<N: PartialOrd + From<u8> + Display>(
         member: &str,
         value: Option<N>,
@@ -132,7 +133,7 @@ impl ApiError {
         }
     }
 
-    /// Returns the further members of the answer.
+    /// Returns the members of the answer besides `error` and `reason`.
     fn more(&self) -> serde_json::Value {
         match self {
             Self::Revision {
@@ -193,7 +194,7 @@ fn of_history(history: &HistoryError) -> Option<&'static str> {
     }
 }
 
-/// Returns the status of a configuration error; `wrong` is that of a refused text.
+/// Returns the status of a configuration error; `wrong` is the status for a text that the configuration refuses.
 fn of_config(found: &ConfigError, wrong: StatusCode) -> StatusCode {
     match found {
         ConfigError::UnknownRecipe { .. } | ConfigError::UnknownRevision { .. } => {

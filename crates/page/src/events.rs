@@ -25,7 +25,7 @@ use tokio::time::{Instant, sleep_until};
 
 /// Least time between two views on one stream.
 const PACE: Duration = Duration::from_millis(50);
-/// Time between two beats, and between two views that show the same.
+/// Time between two beats, and between two views when nothing has changed.
 const BEAT: Duration = Duration::from_secs(1);
 /// Time that a browser waits before it connects again.
 const RETRY: Duration = Duration::from_secs(1);
@@ -43,13 +43,13 @@ pub(super) async fn events(State(app): App) -> Sse<impl Stream<Item = Result<Eve
 struct Feed {
     view: watch::Receiver<View>,
     over: Pin<Box<dyn Future<Output = ()> + Send>>,
-    /// The last view sent, none before the first.
+    /// Last view sent, with the instant of sending; `None` before the first.
     sent: Option<(Instant, View)>,
     next_beat: Instant,
     _counted: Counted,
 }
 
-/// The next event.
+/// What the stream does next.
 enum Turn {
     View,
     Beat,
@@ -86,7 +86,7 @@ impl Feed {
         }
     }
 
-    /// Prefers a due beat to a view: a busy rig must not suppress it.
+    /// Waits for the next turn. A due beat comes before a view, so that a busy rig cannot suppress beats.
     async fn turn(&mut self) -> Turn {
         let Some((at, sent)) = &mut self.sent else {
             return Turn::View;
@@ -100,8 +100,8 @@ impl Feed {
     }
 }
 
-/// Resolves at a view that differs from `sent`, no sooner than [`PACE`] after `at`, and at any new view [`BEAT`] after it;
-/// never without a sender of views.
+/// Resolves when a view is due after the one that was sent at `at`: from [`PACE`] after `at` a view that differs from
+/// `sent`, from [`BEAT`] after `at` any new view. Never resolves after the sender of views has gone.
 async fn changed(views: &mut watch::Receiver<View>, at: Instant, sent: &mut View) {
     sleep_until(at + PACE).await;
     while views.changed().await.is_ok() {
@@ -112,14 +112,15 @@ async fn changed(views: &mut watch::Receiver<View>, at: Instant, sent: &mut View
     std::future::pending().await
 }
 
-/// Compares all but the wall-clock times, which each turn of the cycle changes; `sent` takes those of `view`.
+/// Returns true when the views differ at most in wall-clock times, which each turn of the cycle changes; copies those
+/// times from `view` to `sent`.
 fn same_content(view: &View, sent: &mut View) -> bool {
     sent.at_us = view.at_us;
     sent.machine.phases_s.clone_from(&view.machine.phases_s);
     view == sent
 }
 
-/// Counts a stream as long as it lives.
+/// Keeps one open stream in the count of streams until it is dropped.
 struct Counted(Arc<AtomicUsize>);
 
 impl Counted {

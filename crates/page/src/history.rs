@@ -12,7 +12,7 @@
 //! | `count` | all but the page | | `{"parts": n}`: parts that `query` would return |
 //! | `yield` | `since`, `until` | | counts of the verdicts of all parts of lots in the span |
 //! | `stats` | `param` and all but `min`, `max` | | one object, as `history stats --json` |
-//! | `histogram` | the same | | `{"from", "width", "counts", "low", "high"}`, limits only where those of all runs agree |
+//! | `histogram` | the same | | `{"from", "width", "counts", "low", "high"}`; `low` and `high` only where all runs have the same |
 //! | `spc` | the same; without `param` charts of the share of every bin | `subgroup`, `rules`, `last` | array of control charts |
 //! | `alarms` | `lot`, `run`, `recipe`, `since`, `until`, page | | array of alarms in order of time |
 //! | `rejudge` | `lot`, `run`, `recipe` | `changed` | array of parts with the verdict of that recipe, then a summary, streamed |
@@ -101,7 +101,7 @@ pub(super) async fn yields(State(app): App, filter: Members<Filter>) -> JsonResu
     app.readers.read(read).await.map(Json)
 }
 
-/// Members of `show`: the part.
+/// Members of `show`, which select one part.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PartQuery {

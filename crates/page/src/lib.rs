@@ -62,13 +62,13 @@ pub const GRACE: Duration = Duration::from_secs(1);
 /// Links between the server and the rest of the program.
 #[derive(Debug, Clone)]
 pub struct Shared {
-    /// The latest view; without its sender the beat says that the controller has ended.
+    /// The latest view; after its sender is dropped, beats say that the controller has ended.
     pub view: watch::Receiver<machine::view::View>,
     /// The history file, which may not exist yet.
     pub db: PathBuf,
     /// Folder of the configuration with the recipes.
     pub config: PathBuf,
-    /// The machine to scale.
+    /// Shapes of the machine, from which `GET /mimic.svg` draws it to scale.
     pub mimic: Arc<Mimic>,
     /// Sessions and people.
     pub sessions: Sessions,

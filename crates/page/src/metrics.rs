@@ -113,7 +113,7 @@ fn parts(out: &mut Figures<'_>, view: &View) -> fmt::Result {
     out.each("relayrig_cycle_seconds", help, phases)
 }
 
-/// Name without the prefix, help, and the figure of a module.
+/// A figure of each module: name without the prefix, help text, and the function that returns the value.
 type Figure<V> = (&'static str, &'static str, fn(&ModuleView) -> V);
 
 const COUNTS: [Figure<u64>; 6] = [
@@ -143,7 +143,7 @@ const LATENCIES: [Figure<Option<f64>>; 2] = [
     }),
 ];
 
-/// Writes the health of the modules, one row each.
+/// Writes the health of the modules: every figure with one row per module.
 fn modules(out: &mut Figures<'_>, view: &View) -> fmt::Result {
     let labelled = || {
         view.lines.iter().flat_map(|line| {
@@ -173,7 +173,7 @@ fn alarms(view: &View) -> BTreeMap<String, u64> {
 /// A label and its value.
 type Label<'a> = (&'static str, &'a str);
 
-/// Writes one row for each entry of a table.
+/// Returns one row for each entry of a table, with the key as value of `label`.
 fn by<'a, V: Copy>(
     label: &'static str,
     table: &'a BTreeMap<String, V>,

@@ -46,7 +46,7 @@ impl Side {
         }
     }
 
-    /// Projects a displacement in space to right and down in the drawing.
+    /// Projects a displacement in space to the drawing; returns how far it goes to the right and down, mm.
     fn shift(self, [x, y, z]: [f64; 3]) -> (f64, f64) {
         match self {
             Self::Front => (x, -z),
@@ -54,7 +54,7 @@ impl Side {
         }
     }
 
-    /// Returns the key of the drawing order: nearer bodies have greater ones.
+    /// Returns how near a body is to the viewer; a nearer body has a greater value and is drawn later.
     fn nearness(self, body: &MimicBody) -> f64 {
         match self {
             // From the front (-y) the smallest y is nearest.
@@ -88,7 +88,7 @@ pub(super) fn drawing(mimic: &Mimic) -> Markup {
     let width = front.high[0] - front.low[0] + 2.0 * BORDER_MM;
     let height = |it: Extent| it.high[1] - it.low[1] + 2.0 * BORDER_MM;
     let top = -front.high[1] - BORDER_MM;
-    // Offset of the view from above, below the front view.
+    // The view from above lies this far down, below the front view.
     let down = top + height(front) + above.high[1] + BORDER_MM;
     let whole = height(front) + height(above);
     html! {

@@ -18,7 +18,7 @@ use serde::Serialize;
 use texts::Message;
 use tokio::sync::oneshot;
 
-/// Capacity of the queue of orders between two turns of the cycle.
+/// Most orders that wait for the next turn of the cycle; a further one is refused.
 pub const WAITING: usize = 16;
 
 /// Body of the answer to an accepted order.

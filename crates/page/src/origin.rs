@@ -16,7 +16,7 @@ use std::net::{IpAddr, SocketAddr};
 
 const SEC_FETCH_SITE: HeaderName = HeaderName::from_static("sec-fetch-site");
 
-/// Address of the client; absent in tests, which use no socket.
+/// Address of the client; an error in tests, which use no socket.
 pub(super) type Peer = Result<ConnectInfo<SocketAddr>, ExtensionRejection>;
 
 /// Returns the IP address of the client for the audit; empty when absent.

@@ -1,4 +1,4 @@
-//! `/api/recipes/...`: recipes, their revisions and new revisions.
+//! `/api/recipes/...`: recipes with their revisions, and the route that saves a new revision.
 //!
 //! | route | members | answer |
 //! |---|---|---|
@@ -38,7 +38,7 @@ pub(super) struct ListedRecipe {
     number: Option<u32>,
     hash: Option<String>,
     saved_at_us: Option<i64>,
-    /// Error that keeps it from loading; absent for a good recipe.
+    /// Error that keeps the recipe from loading; absent for a good recipe.
     trouble: Option<String>,
 }
 

@@ -20,14 +20,14 @@ pub(super) const BODY_LIMIT: usize = 16 * 1024;
 #[derive(Debug, Clone)]
 pub(super) struct AppState {
     pub shared: Shared,
-    /// True when the program ends.
+    /// Turns true when the program ends.
     pub ended: watch::Receiver<bool>,
     /// Number of open event streams.
     pub streams: Arc<AtomicUsize>,
     pub readers: Readers,
 }
 
-/// Extractor of the state.
+/// Extractor by which a route receives the state.
 pub(super) type App = State<AppState>;
 
 /// Returns the router of all routes.
@@ -63,7 +63,8 @@ async fn wrong_method(method: Method, uri: Uri) -> ApiError {
     ApiError::WrongMethod { path, method }
 }
 
-/// Forbids browsers and proxies to keep an answer that does not allow it itself, to guess its type, and to frame it.
+/// Adds headers that forbid browsers and proxies to guess the type of an answer, to frame it and, unless the answer
+/// itself allows it, to store it.
 async fn default_headers(request: Request, next: Next) -> Response {
     const ALWAYS: [(HeaderName, &str); 4] = [
         (header::CACHE_CONTROL, "no-store"),

@@ -82,7 +82,7 @@ impl Sessions {
             .await
     }
 
-    /// Returns the person behind a change. Fails without a valid session, and for a request of another site.
+    /// Returns the person who sends a change. Fails without a valid session, and for a request of another site.
     pub(super) async fn author(&self, headers: &HeaderMap) -> Result<Person, ApiError> {
         origin::check(headers)?;
         self.who(headers).await?.ok_or(ApiError::NotLoggedIn)

@@ -12,10 +12,10 @@ use serde::Deserialize;
 use std::fmt;
 use std::sync::Arc;
 
-/// Greatest `last`: messages that each line keeps.
+/// Greatest `last`: the number of messages that each line keeps.
 const MOST: usize = 1000;
 
-/// Returns the last messages of every line; the argument is their greatest number per line.
+/// Function that returns the last messages of every line; its argument is the most messages per line.
 type ReadTraffic = dyn Fn(usize) -> Vec<LineTraffic> + Send + Sync;
 
 /// Access to the traffic of the lines; clones read the same lines.

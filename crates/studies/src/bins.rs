@@ -9,10 +9,10 @@ use super::order::Order;
 use super::output::Report;
 use std::collections::BTreeMap;
 
-/// Good parts per lot of the figure `lots of 100 good parts without a reject`.
+/// Number of good parts in a lot of the figure `lots of 100 good parts without a reject`.
 const GOOD_PARTS_OF_A_LOT: usize = 100;
 
-/// Returns the bin of the cause of a defect; `None` for a defect that the rig does not know.
+/// Returns the bin to which a part with this defect belongs; `None` for an unknown defect.
 pub fn bin_of(defect: &str) -> Option<&'static str> {
     Some(match defect {
         "open_coil" | "shorted_turns" | "wrong_coil" => "coil",
@@ -24,10 +24,10 @@ pub fn bin_of(defect: &str) -> Option<&'static str> {
     })
 }
 
-/// Counts good parts rejected and defects by bin over many lots.
+/// Runs many lots; counts the good parts that were rejected, and for each defect the parts that went to its bin.
 ///
 /// # Errors
-/// A lot that did not run.
+/// Fails when a lot cannot be run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let (lots, about) = (order.run_all()?, order.about());
     let defects = defects(&lots);

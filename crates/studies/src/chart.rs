@@ -27,7 +27,7 @@ const TOP: f64 = 44.0;
 const ROW: f64 = 24.0;
 
 impl Chart {
-    /// A chart of labels and values from 0 on.
+    /// Creates a chart of labels and values; its axis starts at 0.
     pub fn new(
         title: impl Into<String>,
         unit: &'static str,
@@ -43,7 +43,7 @@ impl Chart {
         }
     }
 
-    /// A chart with a bar for each figure.
+    /// Creates a chart with a bar for each figure.
     pub fn of<'a>(
         title: impl Into<String>,
         unit: &'static str,

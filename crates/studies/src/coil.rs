@@ -1,9 +1,9 @@
-//! Seconds against error of the coil resistance: settling time of the current, number of averaged scans, self-heating of
-//! the coil, and the errors of temperature and converter.
+//! Study `coil`: test time against error of the coil resistance, for several settling times of the current and numbers
+//! of averaged scans; then the errors that self-heating, temperature and converter cause.
 //!
 //! The converter runs freely, and a conversion counts only when it begins after the settling. Two channels share the
-//! converter: the first scan takes three conversion periods, each further scan two. The bias of many scans is the
-//! self-heating at the pre-bias.
+//! converter: the first scan takes three conversion periods, each further scan two. Many scans give a biased mean,
+//! because the coil heats itself at the pre-bias meanwhile.
 
 use super::figure::{Bar, Figure};
 use super::method::{self, BAUDS, TimedParameter};
@@ -13,7 +13,7 @@ use super::variant::{Change, Variant};
 use machine::dut::em_relay::Parameter;
 
 const COIL: TimedParameter = TimedParameter::of(Parameter::CoilResistance, &["coil"]);
-/// Milliseconds of settling and number of scans; the third pair is the default of a recipe.
+/// Methods: milliseconds of settling, and number of scans. The third pair is the default of a recipe.
 const METHODS: [(i64, i64); 7] = [
     (1, 1),
     (4, 1),
@@ -23,10 +23,10 @@ const METHODS: [(i64, i64); 7] = [
     (13, 16),
     (13, 64),
 ];
-/// Greatest rms of production with all errors, percent.
+/// Greatest rms error of the default method in the world with all errors, percent.
 const TOTAL_PCT: f64 = 0.12;
 
-/// Returns worlds with one error each; production's method runs in them.
+/// Returns worlds with one error each, in which the default method runs.
 fn worlds() -> [(&'static str, Vec<Change>); 3] {
     [
         (
@@ -50,7 +50,7 @@ fn worlds() -> [(&'static str, Vec<Change>); 3] {
 /// Runs the lots and makes the report.
 ///
 /// # Errors
-/// A lot that did not run.
+/// Fails when a lot cannot be run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let mut methods = Vec::new();
     for baud in BAUDS {
@@ -68,7 +68,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     Ok(method::report("coil", order, groups, 2, vec![TOTAL_PCT]))
 }
 
-/// Runs production's method in worlds with one error each, and with all of them.
+/// Runs the default method in worlds with one error each, and in the world with all of them.
 fn errors(order: &Order) -> anyhow::Result<Vec<Figure>> {
     let mut rows = Vec::new();
     for (name, world) in worlds() {

@@ -1,4 +1,5 @@
-//! Seconds against error of contact resistance: polarities, a drifting EMF, closures, early stop.
+//! Study `contact`: test time against error of contact resistance, for polarities, a drifting EMF, numbers of closures
+//! and early stop.
 //!
 //! - Error is the difference from the resistance of the closures that were read. Every world here has an EMF of 10 uV.
 //! - Repeatability is the scatter of the same bodies fed again and again. Films on the contact cause nearly all of it, and
@@ -27,9 +28,9 @@ const CONTACTS: [(&str, TimedParameter); 2] = [
 ];
 /// Thermal EMF of a part, microvolts (1 sd).
 const EMF: Change = ("lot.thermal_emf_sd_uv", toml::Value::Float(10.0));
-/// Drift of the EMF at which it adds more error to two polarities than noise does, microvolts per second.
+/// Drift of the EMF, microvolts per second: so fast that it adds more error to two polarities than noise does.
 const DRIFT: Change = ("board.emf_drift_uv_per_s", toml::Value::Float(5000.0));
-/// Passes of each body in the comparison of films.
+/// Number of passes of each body in the comparison of films.
 const PASSES: u64 = 6;
 
 /// Polarities: name in the recipe and in the report.
@@ -46,7 +47,7 @@ fn recipe(polarities: &str, closures: i64, stops_early: bool) -> Vec<Change> {
 /// Runs the lots and makes the report.
 ///
 /// # Errors
-/// A lot that did not run.
+/// Fails when a lot cannot be run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let groups = vec![
         polarities(order)?,
@@ -86,7 +87,7 @@ fn drifting(order: &Order) -> anyhow::Result<Vec<Figure>> {
     Ok(figures)
 }
 
-/// Returns the scatter of one body from pass to pass by number of closures, percent of its resistance.
+/// Returns, for each number of closures, the scatter of one body from pass to pass, percent of its resistance.
 fn films(order: &Order) -> anyhow::Result<Vec<Figure>> {
     let bodies = (order.parts / PASSES).max(2);
     let order = Order {
@@ -108,8 +109,8 @@ fn films(order: &Order) -> anyhow::Result<Vec<Figure>> {
     Ok(by_root(figures))
 }
 
-/// Adds to each row the value of the first row of its contact, scaled with the root of the number of closures; NC has one
-/// more closure, at rest.
+/// Adds the column `by_root` to each row: the value of the first row of the same contact, if scatter falls with the
+/// root of the number of closures. NC has one closure more than NO, at rest.
 fn by_root(figures: Vec<Figure>) -> Vec<Figure> {
     let first: Vec<Option<f64>> = figures.iter().take(2).map(|row| row.value).collect();
     let root = |place: usize| {

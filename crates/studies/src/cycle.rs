@@ -1,4 +1,4 @@
-//! Rig time of a test and of a cycle, and its pieces.
+//! Rig time of a test and of a cycle, and the pieces of both.
 //!
 //! A cycle runs from nest exit to nest exit. The cycle without the test is mechanics; the part of the test that the rows
 //! do not name is `rest`. Shares are means over parts that have both times, so that the pieces add up to the mean cycle.
@@ -14,18 +14,19 @@ use super::path;
 use quality::Spread;
 use quality::spread::median;
 
-/// Longest test of a good part, seconds of rig time.
+/// Bar of the longest test of a good part, seconds of rig time.
 const TEST_S: f64 = 0.85;
-/// Parts after which the overshoot model ([`machine::dut::em_relay::overshoot`]) places the fine ramps well. It has six
-/// terms, and the reference parts lie far apart: with fewer parts its uncertainty makes the ramps of a lot long.
+/// Number of parts after which the overshoot model ([`machine::dut::em_relay::overshoot`]) places the fine ramps well.
+/// The model has six terms, and the reference parts lie far apart: after fewer parts its uncertainty makes the ramps
+/// long.
 const LEARNING_PARTS: usize = 6;
-/// Longest test of any part, seconds of rig time: a defect may need another ramp.
+/// Bar of the longest test of any part, seconds of rig time: a defect may need another ramp.
 const ANY_TEST_S: f64 = 1.0;
-/// Longest mean test of a recipe that measures adaptively, seconds of rig time.
+/// Bar of the mean test under a recipe that measures adaptively, seconds of rig time.
 const ADAPTIVE_MEAN_S: f64 = 0.60;
-/// Greatest ratio of the mean test to the bound of [`bound`].
+/// Greatest ratio of the mean test to the least time that [`bound`] finds.
 const RATIO: f64 = 1.15;
-/// Longest cycle with overlap, seconds of rig time.
+/// Bar of the cycle with overlap, seconds of rig time.
 const CYCLE_S: f64 = 2.5;
 /// Pieces of a test: key in the rows and name in the report.
 const PIECES: [(&str, &str); 4] = [
@@ -38,7 +39,7 @@ const PIECES: [(&str, &str); 4] = [
 /// Runs the lots and makes the report.
 ///
 /// # Errors
-/// A lot that did not run.
+/// Fails when a lot cannot be run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let lots = order.run_all()?;
     let adaptive = order.recipe.name.ends_with("-adaptive");

@@ -26,14 +26,14 @@ use std::ops::RangeInclusive;
 const PPM: f64 = 1e6;
 /// Rated voltage of the part that `[lot]` of a world describes, V.
 const LOT_V: f64 = 12.0;
-/// A value has a confirmation measurement when its uncertainty is below this share of the usual one; noise alone changes
-/// it by less.
+/// Share of the usual uncertainty: a value with less has had a confirmation measurement, since noise alone changes an
+/// uncertainty by less.
 const AGAIN: f64 = 0.98;
 
 /// Runs the lots and makes the report.
 ///
 /// # Errors
-/// A lot that did not run.
+/// Fails when a lot cannot be run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let lots = order.run_all()?;
     let (rows, risks): (Vec<Figure>, Vec<Option<(f64, f64)>>) = order
@@ -82,9 +82,9 @@ fn readings(parameter: Parameter, lots: &[Lot]) -> Vec<Reading> {
         .collect()
 }
 
-/// Estimates process and measurement from the rows. The process is normal; its variance is that of the values less that
-/// of the measurement. The uncertainty is the median over parts; the median of clearly smaller ones belongs to the
-/// confirmation measurements.
+/// Estimates process and measurement from the rows. The process is normal; its variance is that of the values minus
+/// that of the measurement. The uncertainty of one measurement is the median over parts; that after a confirmation
+/// measurement is the median of the clearly smaller ones.
 fn chance(readings: &[Reading]) -> Option<DecisionRisk> {
     let values = Spread::of(&readings.iter().map(|it| it.value).collect::<Vec<f64>>());
     let stated: Vec<f64> = readings.iter().filter_map(|it| it.uncertainty).collect();

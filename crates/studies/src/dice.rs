@@ -28,7 +28,7 @@ impl Dice {
         self.below(n) == 0
     }
 
-    /// Returns a number from `from` to below `to`, `from` < `to`.
+    /// Returns a number that is at least `from` and below `to`; `from` must be below `to`.
     pub fn between(&mut self, from: u64, to: u64) -> u64 {
         from + self.below(to - from)
     }

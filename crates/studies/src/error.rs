@@ -55,12 +55,12 @@ impl Errors {
         }
     }
 
-    /// Number of values.
+    /// Returns the number of values.
     pub fn n(&self) -> u64 {
         self.spread.n()
     }
 
-    /// Mean error.
+    /// Returns the mean error.
     pub fn bias(&self) -> Option<f64> {
         self.spread.mean()
     }
@@ -73,7 +73,7 @@ impl Errors {
         Some((mean * mean + sd * sd * (n - 1.0) / n).sqrt())
     }
 
-    /// Greatest absolute error.
+    /// Returns the greatest absolute error.
     pub fn worst(&self) -> Option<f64> {
         Some(self.spread.min()?.abs().max(self.spread.max()?.abs()))
     }
@@ -101,40 +101,40 @@ impl Pooled {
         Self(lots.iter().map(of).collect())
     }
 
-    /// Number of values in all lots.
+    /// Returns the number of values in all lots.
     pub fn n(&self) -> u64 {
         self.0.iter().map(Errors::n).sum()
     }
 
-    /// Median over lots of the rms error; `None` when a lot has no value.
+    /// Returns the median over lots of the rms error; `None` when a lot has no value.
     pub fn median_rms(&self) -> Option<f64> {
         let each: Option<Vec<f64>> = self.0.iter().map(Errors::rms).collect();
         median(&each?)
     }
 
-    /// Greatest rms error of a lot.
+    /// Returns the rms error of the worst lot.
     pub fn worst_rms(&self) -> Option<f64> {
         self.0.iter().filter_map(Errors::rms).reduce(f64::max)
     }
 
-    /// Median over lots of the mean error.
+    /// Returns the median over lots of the mean error.
     pub fn median_bias(&self) -> Option<f64> {
         let each: Vec<f64> = self.0.iter().filter_map(Errors::bias).collect();
         median(&each)
     }
 
-    /// Greatest error of any part.
+    /// Returns the greatest absolute error of any part.
     pub fn worst(&self) -> Option<f64> {
         self.0.iter().filter_map(Errors::worst).reduce(f64::max)
     }
 
-    /// Share of all values whose stated uncertainty covers the truth, percent.
+    /// Returns the share of all values whose stated uncertainty covers the truth, percent.
     pub fn coverage_pct(&self) -> Option<f64> {
         let covered: u64 = self.0.iter().map(|errors| errors.covered).sum();
         percent(covered, self.n())
     }
 
-    /// Least coverage of a lot, percent.
+    /// Returns the coverage of the lot in which it is least, percent.
     pub fn worst_coverage_pct(&self) -> Option<f64> {
         let each = self.0.iter();
         let covered = each.filter_map(|errors| percent(errors.covered, errors.n()));

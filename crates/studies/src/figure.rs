@@ -56,7 +56,7 @@ pub struct Figure {
 }
 
 impl Figure {
-    /// A figure without a bar; a value that is not finite becomes `None`.
+    /// Creates a figure without a bar; a value that is not finite becomes `None`.
     pub fn new(name: impl Into<String>, n: u64, value: Option<f64>, unit: &'static str) -> Self {
         let value = value.filter(|it| it.is_finite());
         Self {
@@ -69,17 +69,17 @@ impl Figure {
         }
     }
 
-    /// A count out of `n`, without a bar.
+    /// Creates the figure of a count out of `n`, without a bar.
     pub fn count(name: impl Into<String>, n: u64, count: Option<u64>) -> Self {
         Self::new(name, n, count.map(|it| it as f64), "")
     }
 
-    /// A count of events that must not happen, with a bar of zero.
+    /// Creates the figure of a count of events that must not happen; its bar is zero.
     pub fn none(name: impl Into<String>, n: u64, count: u64) -> Self {
         Self::count(name, n, Some(count)).bar(Bar::AtMost(0.0))
     }
 
-    /// The same figure with a bar.
+    /// Returns the same figure with a bar.
     pub fn bar(self, bar: Bar) -> Self {
         Self {
             bar: Some(bar),
@@ -87,7 +87,7 @@ impl Figure {
         }
     }
 
-    /// The same figure with one more column.
+    /// Returns the same figure with one more column.
     pub fn with(mut self, key: &'static str, value: Option<f64>) -> Self {
         self.more.push((key, value.filter(|it| it.is_finite())));
         self

@@ -38,9 +38,9 @@ const ROWS: [(&str, &[&str]); 8] = [
         ],
     ),
 ];
-/// Row of the coil, which a test drives several times.
+/// Index in [`ROWS`] of the coil, which a test drives several times.
 const COIL: usize = 4;
-/// Row of the probes.
+/// Index in [`ROWS`] of the probes.
 const PROBES: usize = 3;
 
 const LABEL: f64 = 150.0;
@@ -48,13 +48,13 @@ const PLOT: f64 = 760.0;
 const TOP: f64 = 44.0;
 const ROW: f64 = 26.0;
 
-/// Begin and end of an interval, seconds.
+/// Start and end of an interval, seconds.
 type Interval = (f64, f64);
 
 /// Plays a lot and draws one part of it as SVG.
 ///
 /// # Errors
-/// A lot that did not run, or without a part that went through all stations.
+/// Fails when a lot cannot be run, or when no part of it goes through all stations.
 pub fn svg(order: &Order) -> anyhow::Result<String> {
     let plant = Plant::load(&order.config)?;
     let folder = TempDir::new()?;

@@ -20,11 +20,11 @@ use std::process::Stdio;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// Parts of the larger exported sheet.
+/// Number of parts of the larger exported sheet.
 const SHEET: u64 = 100_000;
-/// Parts of the smaller exported sheet, whose memory the larger one must not exceed much.
+/// Number of parts of the smaller exported sheet; the larger one must not need much more memory.
 const LESSER: u64 = 10_000;
-/// Parts written in a transaction each.
+/// Number of parts that the study writes in one transaction each.
 const SINGLE: u64 = 500;
 /// Number of filter queries.
 const FILTERS: usize = 300;
@@ -34,7 +34,7 @@ const LOOK: Duration = Duration::from_millis(5);
 /// Writes the file, runs every query and makes the report.
 ///
 /// # Errors
-/// A file that cannot be written or read.
+/// Fails when a file cannot be written or read.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let folder = TempDir::new()?;
     let db = folder.path().join("history.db");
@@ -118,7 +118,7 @@ fn measured(parameter: &Parameter) -> history::MeasurementRecord {
     }
 }
 
-/// Queries by lot, verdict and value range: rejects over a wide range, good parts over a narrow one.
+/// Runs the filter queries by lot, verdict and value range: rejects over a wide range, good parts over a narrow one.
 fn filters(archive: &Archive) -> anyhow::Result<Figure> {
     let lots = archive.lots(&Filter::default())?;
     let mut spent = Vec::new();

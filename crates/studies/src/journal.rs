@@ -43,7 +43,7 @@ pub struct Played {
 /// Plays a script with `relayrig story`; its files go to `folder`.
 ///
 /// # Errors
-/// A story that this program refuses, or a journal that it cannot read.
+/// Fails when this program refuses the story, or when the journal cannot be read.
 pub fn play(order: &Order, folder: &Path, script: &str, seed: u64) -> anyhow::Result<Played> {
     let (file, journal) = (folder.join("story.txt"), folder.join("journal.jsonl"));
     std::fs::write(&file, script)?;

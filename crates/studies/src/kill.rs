@@ -25,13 +25,13 @@ use tempfile::TempDir;
 
 /// Longest time until the kill, ms; a lot prints about thirty parts in it.
 const LONGEST_MS: u64 = 1_500;
-/// Every third round counts the time from the start of the process.
+/// One round of this many counts the time to the kill from the start of the process.
 const FROM_START: u64 = 3;
 /// Longest wait for the first part of a lot; then the kill follows all the same.
 const FIRST_PART_TIMEOUT: Duration = Duration::from_secs(30);
 /// Interval at which the study looks for the first part.
 const LOOK: Duration = Duration::from_millis(5);
-/// Parts of a lot: more than it can test before the kill.
+/// Number of parts of a lot: more than it can test before the kill.
 const ENDLESS: u64 = 1_000_000;
 
 /// Counts over all rounds, for the figures of [`report`].
@@ -52,7 +52,7 @@ struct Counts {
 /// Kills the lots of the order and makes the report.
 ///
 /// # Errors
-/// A process that does not start, or a history that cannot be read.
+/// Fails when a process does not start, or when the history cannot be read.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let folder = TempDir::new()?;
     let db = folder.path().join("history.db");

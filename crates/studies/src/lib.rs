@@ -97,7 +97,7 @@ pub enum Study {
 }
 
 impl Study {
-    /// Default number of lots and of parts of a lot; `None` for a study without lots.
+    /// Returns the default number of lots and of parts of a lot; `None` for a study without lots.
     pub const fn usual(self) -> Option<(u64, u64)> {
         Some(match self {
             Self::Accuracy => (10, 500),
@@ -119,7 +119,7 @@ impl Study {
     /// Runs the study and makes its report.
     ///
     /// # Errors
-    /// A study without lots, a file that cannot be read or written, or a lot that did not start.
+    /// Fails for a study without lots, when a file cannot be read or written, or when a lot cannot be run.
     pub fn report(self, order: &Order) -> anyhow::Result<Report> {
         match self {
             Self::Accuracy => parameters::accuracy(order),

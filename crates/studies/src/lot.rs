@@ -26,9 +26,9 @@ pub struct Part {
     values: BTreeMap<String, Option<f64>>,
     #[serde(default)]
     uncertainty: BTreeMap<String, Option<f64>>,
-    /// Rig time from probes up to verdict.
+    /// Rig time from probes up to verdict, seconds.
     pub test_s: Option<f64>,
-    /// Rig time between successive nest exits.
+    /// Rig time from the nest exit of the part before to that of this part, seconds.
     pub cycle_s: Option<f64>,
     /// Pieces of the test time: name of the piece to seconds of rig time.
     #[serde(default)]
@@ -54,7 +54,7 @@ pub struct Truth {
     values: BTreeMap<String, Value>,
 }
 
-/// Range that the recipe admits, by parameter, in the unit of the parameter.
+/// Each parameter with the range that the recipe admits, in the unit of the parameter.
 pub type Admitted = Vec<(Parameter, RangeInclusive<f64>)>;
 
 impl Truth {
@@ -131,7 +131,7 @@ pub struct Summary {
     pub alarms: u64,
     /// Writes to any EEPROM during the lot; `None` when the run did not count them.
     pub eeprom_writes: Option<u64>,
-    /// Fingerprint of the bytes of each line.
+    /// Hash of all bytes on each line, by name of the line.
     #[serde(default)]
     pub bytes: BTreeMap<String, String>,
     /// Wall time by activity, seconds.
@@ -167,7 +167,7 @@ impl Lot {
     /// Reads a lot from the rows of `run --json` and the text of the truth file.
     ///
     /// # Errors
-    /// A line that does not parse, or rows without a summary.
+    /// Fails when a line does not parse, or when the rows have no summary.
     pub fn read(seed: u64, rows: &str, truth: &str) -> anyhow::Result<Self> {
         let mut known = BTreeMap::new();
         for it in lines::<Truth>("truth", truth) {

@@ -23,12 +23,12 @@ pub struct TimedParameter {
     pub parameter: Parameter,
     /// Stages whose time counts for the parameter.
     pub stages: &'static [&'static str],
-    /// Time besides that no stage of the test contains, seconds.
+    /// Further time that the parameter costs and that no stage contains, seconds.
     pub more_s: f64,
 }
 
 impl TimedParameter {
-    /// A parameter whose time is that of `stages` alone.
+    /// Creates a parameter whose time is that of `stages` alone.
     pub const fn of(parameter: Parameter, stages: &'static [&'static str]) -> Self {
         Self {
             parameter,
@@ -54,7 +54,7 @@ impl TimedParameter {
         self.row_of(name, lots, &errors)
     }
 
-    /// Returns the same row for errors other than those of the parameter's own value.
+    /// Returns a row as [`Self::row`] does, but from these errors instead of those of the parameter's own value.
     pub fn row_of(&self, name: impl Into<String>, lots: &[Lot], errors: &Pooled) -> Figure {
         Figure::new(name, errors.n(), errors.median_rms(), unit(self.parameter))
             .with("bias", errors.median_bias())
@@ -74,7 +74,7 @@ impl TimedParameter {
 /// Runs the lots of a variant.
 ///
 /// # Errors
-/// A configuration that cannot be changed, or a lot that did not run.
+/// Fails when the configuration cannot be changed, or when a lot cannot be run.
 pub fn lots(variant: &Variant, order: &Order) -> anyhow::Result<Vec<Lot>> {
     variant.of(order)?.order.run_all()
 }

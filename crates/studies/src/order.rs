@@ -21,7 +21,8 @@ pub struct Order {
     pub program: PathBuf,
     /// Directory of the configuration.
     pub config: PathBuf,
-    /// Recipe of every lot; it sets the limits of the truth even where a [`super::variant`] changes its file.
+    /// Recipe of every lot. Its limits apply to true values even where a [`super::variant`] changes the file of the
+    /// recipe.
     pub recipe: Arc<Recipe>,
     /// World of the simulated rig; `None` uses the one of the configuration.
     pub world: Option<PathBuf>,
@@ -29,9 +30,9 @@ pub struct Order {
     pub faults: Vec<String>,
     /// Number of lots.
     pub lots: u64,
-    /// First seed; only the storm reads it.
+    /// First seed; only the study `storm` reads it.
     pub from: u64,
-    /// The only seed to run; only the storm reads it.
+    /// The only seed to run; only the study `storm` reads it.
     pub seed: Option<u64>,
     /// Parts of each lot.
     pub parts: u64,
@@ -65,10 +66,10 @@ impl Order {
         )
     }
 
-    /// Runs a lot for each seed, `at_once` processes at a time; the lots keep the order of the seeds.
+    /// Runs a lot for each seed, `at_once` processes at a time; returns the lots in the order of the seeds.
     ///
     /// # Errors
-    /// The first lot that did not start, ended with bad input or wrote unreadable rows.
+    /// Fails with the first lot that does not start, ends with bad input or writes unreadable rows.
     pub fn run(&self, seeds: &[u64], at_once: usize) -> anyhow::Result<Vec<Lot>> {
         let named = |seed: &u64| format!("the lot with seed {seed}");
         pool::map(seeds, at_once, |seed| {
@@ -79,7 +80,7 @@ impl Order {
     /// Runs the lots with seeds 1 to `lots`.
     ///
     /// # Errors
-    /// As [`Order::run`].
+    /// Fails as [`Order::run`] does.
     pub fn run_all(&self) -> anyhow::Result<Vec<Lot>> {
         let seeds: Vec<u64> = (1..=self.lots).collect();
         self.run(&seeds, LOTS_AT_ONCE)
@@ -139,7 +140,8 @@ impl Order {
 /// Runs a command to its end and returns its output.
 ///
 /// # Errors
-/// The command does not start, or ends with a status that is not in `accepted`; the error carries its stderr.
+/// Fails when the command does not start, or ends with a status that is not in `accepted`; the error contains its
+/// stderr.
 pub fn finished(command: &mut Command, accepted: &[i32]) -> anyhow::Result<Output> {
     let output = command.output()?;
     let status = output.status;

@@ -22,7 +22,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// A report without notes.
+    /// Creates a report without notes.
     pub fn new(
         study: &'static str,
         about: impl Into<String>,
@@ -38,7 +38,7 @@ impl Report {
         }
     }
 
-    /// The same report with these notes.
+    /// Returns the same report with these notes.
     pub fn noted(self, notes: Vec<String>) -> Self {
         Self { notes, ..self }
     }

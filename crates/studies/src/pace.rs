@@ -21,7 +21,7 @@ const SEED: u64 = 1;
 /// Runs the lot several times and makes the report.
 ///
 /// # Errors
-/// A lot that did not run.
+/// Fails when a lot cannot be run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let order = &Order {
         lots: order.lots.max(2),
@@ -62,8 +62,8 @@ fn rate(rates: &[f64]) -> Figure {
     .bar(Bar::AtLeast(PARTS_PER_SECOND))
 }
 
-/// Counts runs whose bytes differ from those of the run before; without a value when a run reports no bytes, or when
-/// there is only one run.
+/// Counts runs whose bytes differ from those of the run before; the figure has no value when a run reports no bytes, or
+/// when there is only one run.
 pub fn same_bytes(lots: &[Lot]) -> Figure {
     let have_bytes = lots.iter().all(|lot| !lot.summary.bytes.is_empty());
     let differ = lots

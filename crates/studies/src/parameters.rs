@@ -18,7 +18,7 @@ use super::output::Report;
 use machine::dut::em_relay::Parameter;
 use units::Unit;
 
-/// Range of the coverage, percent of values.
+/// Bar of the coverage: lowest and highest, percent of values.
 const COVERAGE_PCT: (f64, f64) = (93.0, 98.0);
 /// Left end of the chart of coverage, percent.
 const CHART_FROM_PCT: f64 = 80.0;
@@ -26,7 +26,7 @@ const CHART_FROM_PCT: f64 = 80.0;
 /// Compares the error of every parameter with the error that it may have.
 ///
 /// # Errors
-/// A lot that did not run.
+/// Fails when a lot cannot be run.
 pub fn accuracy(order: &Order) -> anyhow::Result<Report> {
     let nominal_v = order.nominal_v();
     let row = |parameter: Parameter, errors: &Pooled| {
@@ -56,7 +56,7 @@ fn allowed(parameter: Parameter, nominal_v: f64) -> f64 {
 /// Counts how often the stated uncertainty of every parameter covers the truth.
 ///
 /// # Errors
-/// A lot that did not run.
+/// Fails when a lot cannot be run.
 pub fn coverage(order: &Order) -> anyhow::Result<Report> {
     let (low, high) = COVERAGE_PCT;
     let row = |parameter: Parameter, errors: &Pooled| {

@@ -11,9 +11,9 @@ use super::order::Order;
 use rigsim::config::read_world;
 use rigsim::world::table::MechanismTable;
 
-/// Least parts an hour at the default recipe.
+/// Bar of the parts per hour with the default recipe: at least this many.
 const PARTS_PER_HOUR: f64 = 1850.0;
-/// Least share of the bound, as parts an hour.
+/// The line must make at least this share of the parts per hour that the critical path permits.
 const SHARE: f64 = 0.95;
 
 /// Returns the strokes of the path with their mean times, ms; of two simultaneous strokes the longer one.
@@ -37,7 +37,7 @@ fn strokes(mechanism: &MechanismTable) -> [(&'static str, f64); 6] {
 /// Returns the path stroke by stroke, its sum, and parts an hour.
 ///
 /// # Errors
-/// A world that cannot be read.
+/// Fails when the world file cannot be read.
 pub fn path(order: &Order, lots: &[Lot]) -> anyhow::Result<Vec<Figure>> {
     let strokes = strokes(&read_world(&order.config, order.world.as_deref())?.mechanism);
     let parts: Vec<&Part> = lots.iter().flat_map(|lot| &lot.parts).collect();

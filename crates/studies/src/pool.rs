@@ -3,7 +3,7 @@
 use app::progress::{PIECES, progress};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Lots that run at a time where wall time is no figure of the study.
+/// Number of lots that run at a time in a study whose figures contain no wall time.
 pub const LOTS_AT_ONCE: usize = 2;
 
 /// Returns the number of threads that this machine runs at a time.
@@ -14,7 +14,7 @@ pub fn cores() -> usize {
 /// Calls `work` for every item on at most `threads` threads. After a failure no further item is begun.
 ///
 /// # Errors
-/// The first failure in the order of the items.
+/// Fails when `work` fails for an item, with the first failure in the order of the items.
 pub fn map<I: Sync, T: Send>(
     items: &[I],
     threads: usize,

@@ -8,12 +8,12 @@
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::ops::RangeInclusive;
 
-/// Steps of the integral over +-8 standard deviations of the process.
+/// Number of steps of the integral over +-8 standard deviations of the process.
 const STEPS: u32 = 40_000;
-/// Steps of the integral over +-6 standard deviations of the mean with the confirmation measurement.
+/// Number of steps of the integral over +-6 standard deviations of the mean after the confirmation measurement.
 const AGAIN_STEPS: u32 = 240;
 
-/// A process and a measurement, in the unit of the parameter.
+/// Distributions of a process and of its measurement, in the unit of the parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DecisionRisk {
     /// Mean of the true values.

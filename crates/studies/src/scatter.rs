@@ -116,7 +116,7 @@ impl Scatter {
                 line -= LINE;
             }
             taken.push((x, line));
-            // Towards the middle, so that no label leaves the plot.
+            // The labels point towards the middle, so that none leaves the plot.
             let (anchor, aside) = if x > LEFT + 0.7 * WIDE {
                 ("end", -6.0)
             } else {

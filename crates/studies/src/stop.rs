@@ -33,7 +33,7 @@ const CLASSES: usize = 20;
 /// One press of the emergency stop.
 #[derive(Debug, Clone, Copy)]
 struct Stop {
-    /// Time since the begin of the swept interval, seconds.
+    /// Time from the start of the swept interval to the press, seconds.
     instant_s: f64,
     /// Time from the opening of the contact until the last motion output is off, milliseconds; `None` when none was on.
     reaction_ms: Option<f64>,
@@ -72,7 +72,7 @@ impl SweepResult {
 /// Plays the lots and makes the report.
 ///
 /// # Errors
-/// A configuration that does not load, or a story that does not run.
+/// Fails when the configuration does not load, or when a story does not run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let plant = Plant::load(&order.config)?;
     let bound_ms = plant.wiring.longest_reaction().as_seconds() * 1e3;

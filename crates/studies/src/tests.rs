@@ -1,4 +1,4 @@
-//! The arithmetic of the studies, on hand-written rows.
+//! Tests of the arithmetic of the studies, on hand-written rows.
 #![allow(clippy::unwrap_used)]
 
 mod errors;

@@ -1,5 +1,5 @@
-//! Seconds against error of the thresholds, for every strategy and baud rate, with the acts and transactions of the whole
-//! line.
+//! Study `threshold`: test time against error of the thresholds, for every strategy and baud rate, with the acts and
+//! transactions of the whole line.
 //!
 //! The world has no errors of instruments, certificates, temperature and operations, which leaves the error of the
 //! strategy. Operate includes 25 ms of settling at the pre-bias, because a recipe without coil resistance spends them
@@ -34,7 +34,7 @@ fn bars(parameter: Parameter, strategy: Strategy) -> Option<(f64, f64)> {
 /// Runs the lots and makes the report.
 ///
 /// # Errors
-/// A lot that did not run.
+/// Fails when a lot cannot be run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let mut groups = vec![Vec::new(), Vec::new(), Vec::new()];
     for baud in BAUDS {

@@ -1,9 +1,10 @@
 //! Error of times and bounce: the gain by the latch, and the errors of clock, gate delay and bus.
 //!
 //! Gate 0 ends at the first make; gate 1 counts while the contact is open, and alone would measure the time with its
-//! bounce. The row of the raw gate is therefore the sum of two values of the same test. A count is the floor of a length
-//! with a random phase: 8.2 us rms at 50 kHz for any baud rate. A bounce is the difference of two counts. The truth of a
-//! time is that of the last operation, so the study measures one operation and no mean over several.
+//! bounce. The row of the raw gate is therefore the sum of two values of the same test. A count is the number of whole
+//! clock periods, whose phase is random: its error is 8.2 us rms at 50 kHz for any baud rate. A bounce is the
+//! difference of two counts. The truth of a time is that of the last operation, so the study measures one operation and
+//! no mean over several.
 
 use super::error::Pooled;
 use super::figure::{Bar, Figure};
@@ -29,15 +30,15 @@ const DIRECTIONS: [(&str, TimedParameter, TimedParameter); 2] = [
         TimedParameter::of(Parameter::ReleaseBounce, RELEASE),
     ),
 ];
-/// Greatest rms of a time in production, ms.
+/// Greatest rms error of a time with the default recipe and all errors, ms.
 const TIME_MS: f64 = 0.02;
-/// Greatest rms of a bounce in production, ms.
+/// Greatest rms error of a bounce with the default recipe and all errors, ms.
 const BOUNCE_MS: f64 = 0.05;
 
 /// Runs the lots and makes the report.
 ///
 /// # Errors
-/// A lot that did not run.
+/// Fails when a lot cannot be run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let mut gates = Vec::new();
     for baud in BAUDS {
@@ -68,7 +69,7 @@ fn raw(part: &Part, time: Parameter, bounce: Parameter) -> Option<f64> {
     Some(time.value + bounce.value - time.truth)
 }
 
-/// Measures in worlds with one error each, and with all of them.
+/// Measures in worlds with one error each, and in the world with all of them.
 fn errors(order: &Order) -> anyhow::Result<Vec<Figure>> {
     let worlds: [(&str, Vec<Change>); 2] = [
         (

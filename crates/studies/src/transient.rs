@@ -34,7 +34,7 @@ struct Answer {
 /// Integrates the cases of a file (`-` for standard input) and returns the text to print: a JSON line or a table per case.
 ///
 /// # Errors
-/// A file that cannot be read, a wrong field, or a case whose state diverges.
+/// Fails when the file cannot be read, when a field is wrong, or when the state of a case diverges.
 pub fn study(file: &Path, rtol: f64, as_json: bool) -> anyhow::Result<String> {
     let text = match file == Path::new("-") {
         true => std::io::read_to_string(std::io::stdin()).context("reading standard input")?,

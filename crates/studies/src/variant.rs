@@ -32,10 +32,11 @@ const EXACT: [(&str, f64); 13] = [
 ];
 /// Standard uncertainty of every certificate in a world without errors: the format demands one above zero.
 const CERTIFIED_U: f64 = 1e-6;
-/// Asking every module at the start takes a slower line than this longer than the usual watchdog waits, baud.
+/// Baud rate below which the host watchdog gets a longer time-out: asking every module at the start takes longer there
+/// than the usual time-out.
 const SLOW_BAUD: u32 = 19_200;
 
-/// What is different.
+/// Differences of a variant from the configuration that it copies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Variant {
     /// Changed keys of the recipe.
@@ -58,7 +59,7 @@ pub struct ChangedConfig {
 }
 
 impl Variant {
-    /// A variant without errors of the instruments, at a baud rate of the measuring line in bits per second.
+    /// Creates a variant without errors of the instruments; `baud` is that of the measuring line, bits per second.
     pub fn exact(baud: u32, recipe: Vec<Change>) -> Self {
         Self {
             recipe,
@@ -69,7 +70,7 @@ impl Variant {
         }
     }
 
-    /// The same variant with the errors of the instruments.
+    /// Creates a variant as [`Self::exact`] does, but with the errors of the instruments.
     pub fn erring(baud: u32, recipe: Vec<Change>) -> Self {
         Self {
             exact: false,
@@ -77,7 +78,7 @@ impl Variant {
         }
     }
 
-    /// The same variant with these keys of the world.
+    /// Returns the same variant with these keys of the world.
     pub fn in_world(self, world: Vec<Change>) -> Self {
         Self { world, ..self }
     }
@@ -85,7 +86,7 @@ impl Variant {
     /// Copies the configuration of `order` and makes the changes in the copy.
     ///
     /// # Errors
-    /// A file that cannot be read or written, or that is not TOML.
+    /// Fails when a file cannot be read or written, or is not TOML.
     pub fn of(&self, order: &Order) -> anyhow::Result<ChangedConfig> {
         let folder = TempDir::new()?;
         let to = folder.path().join("config");

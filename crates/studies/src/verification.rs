@@ -20,13 +20,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// One verification: name of every factor and its deviation in standard uncertainties.
+/// Result of one verification: the deviation of each factor, in standard uncertainties, by name.
 type Day = BTreeMap<String, f64>;
 
 /// Calibrates one rig per lot of the order, verifies it once per part of a lot, and makes the report.
 ///
 /// # Errors
-/// A process that does not start, or whose answer does not parse.
+/// Fails when a process does not start, or when its answer does not parse.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let folder = TempDir::new()?;
     let rigs: Vec<u64> = (1..=order.lots).collect();

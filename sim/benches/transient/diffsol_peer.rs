@@ -1,4 +1,4 @@
-//! The transient by diffsol: Tsitouras 5(4) with root finding, restarted at every root.
+//! The transient as the library diffsol integrates it: Tsitouras 5(4) with root finding, restarted at every root.
 
 use super::{END_S, NoContactTimes, VOLTS};
 use diffsol::{
@@ -17,7 +17,7 @@ fn state(slice: &[f64]) -> State {
 /// Integrates with root finding for all four stops.
 ///
 /// # Errors
-/// Returns the error of diffsol.
+/// Fails when diffsol fails, with its error.
 pub fn tsit45(model: &Model, rtol: f64) -> Result<NoContactTimes, DiffsolError> {
     let drive = Drive::still(VOLTS);
     let evaluations = Cell::new(0u64);

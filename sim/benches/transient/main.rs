@@ -1,8 +1,9 @@
 //! Accuracy of a relay transient against its cost: `cargo bench -p rigsim --bench transient`.
 //!
 //! The case is a 12 V operation of the default relay, 8 ms from rest. Each scheme reports the first make and the
-//! last change of NO; errors are relative to this project's method at a tolerance of 1e-14. Wall time is the
-//! median (and the 99th percentile) of many runs in this process; the ratio is relative to this method at 1e-6.
+//! last change of NO; its error is the difference from this project's method at a tolerance of 1e-14. Wall time is
+//! the median (and the 99th percentile) of many runs in this process; its ratio is to the wall time of this
+//! project's method at a tolerance of 1e-6.
 
 mod diffsol_peer;
 mod fixed_steps;

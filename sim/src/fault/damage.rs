@@ -87,7 +87,7 @@ impl Family for Damage {
 }
 
 impl Damage {
-    /// Superposes the reply of a second module at the address of `module`.
+    /// When the fault strikes, superposes the reply of a second module at the address of `module`.
     pub(super) fn clash(
         &self,
         module: &str,
@@ -128,8 +128,8 @@ impl Damage {
     }
 }
 
-/// Returns the reply of another module of the same kind and address: other digits, a valid checksum if there is
-/// one.
+/// Returns the reply of another module of the same kind and address: other digits, and a valid checksum if `reply`
+/// has one.
 fn twin(reply: &[u8], rng: &mut ChaCha8Rng) -> Vec<u8> {
     let text = reply.strip_suffix(&[dcon::CR]).unwrap_or(reply);
     let bare = dcon::without_checksum(text);

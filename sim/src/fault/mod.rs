@@ -47,7 +47,7 @@ struct FaultEntry {
     what: &'static str,
 }
 
-/// Faults of one kind, with the requests that are active.
+/// A family of faults, with those that the command line or a script has requested.
 trait Family {
     fn list(&self) -> &'static [FaultEntry];
 
@@ -58,7 +58,7 @@ trait Family {
     fn targets(&self) -> Vec<&str>;
 }
 
-/// Names, units and defaults of the faults of this layer.
+/// Returns name, unit, default and effect of every fault of this layer.
 pub fn list() -> Vec<FaultInfo> {
     let info = |known: &FaultEntry| FaultInfo {
         name: known.name.into(),
@@ -193,7 +193,7 @@ impl LineFaults {
         self.upset.due(now_us)
     }
 
-    /// Superposes the reply of a second module at the same address, when the fault strikes.
+    /// When the fault strikes, superposes the reply of a second module at the address of `module`.
     pub fn clash(&mut self, module: &str, reply: &mut Vec<u8>, now_us: u64) {
         self.damage.clash(module, reply, &mut self.rng, now_us);
     }

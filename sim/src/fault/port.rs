@@ -37,7 +37,7 @@ const AWAY_US: u64 = 2_000_000;
 pub(super) struct Port {
     dead: Targets,
     lost: Targets,
-    /// Time without the port (microseconds), and the chance of losing it per request.
+    /// Random losses: time without the port, microseconds, and the chance that one request causes the loss.
     losses: Vec<(u64, Chances)>,
 }
 

@@ -36,18 +36,22 @@ impl Family for Timing {
     }
 
     fn add(&mut self, request: &FaultRequest<'_>) -> Result<(), SimError> {
-        if request.name == "delay" {
-            self.delays
-                .push((request.ms(request.value)?, request.window));
-            return Ok(());
+        match request.name {
+            "delay" => {
+                let us = request.ms(request.value)?;
+                self.delays.push((us, request.window));
+            }
+            "late" => {
+                let (probability, late_us) = match request.value.split_once('/') {
+                    Some((probability, ms)) => (probability, request.ms(ms)?),
+                    None => (request.value, LATE_US),
+                };
+                let probability = request.probability_in(probability)?;
+                self.late
+                    .push((late_us, Chances::one(probability, request.window)));
+            }
+            name => unreachable!("fault `{name}` is listed without a branch here"),
         }
-        let (probability, late_us) = match request.value.split_once('/') {
-            Some((probability, ms)) => (probability, request.ms(ms)?),
-            None => (request.value, LATE_US),
-        };
-        let probability = request.probability_in(probability)?;
-        self.late
-            .push((late_us, Chances::one(probability, request.window)));
         Ok(())
     }
 

@@ -46,7 +46,7 @@ struct AnalogIn {
     converter: Converter,
     /// Last reading of each channel, fraction of full scale.
     readings: [f64; 8],
-    /// Type code of the configuration word at the last comparison.
+    /// Type code that the configuration word had last; a change applies to every channel.
     type_code: u8,
     /// Present type code of each channel.
     ranges: [u8; 8],

@@ -28,18 +28,18 @@ const CHECKSUM: u8 = 0x40;
 /// Longest response delay, milliseconds.
 const LONGEST_DELAY_MS: u8 = 30;
 
-/// Baud rates in the order of their codes, from 03.
+/// Baud rates, bits per second, in the order of their codes from 03.
 const BAUDS: [u32; 8] = [1200, 2400, 4800, 9600, 19200, 38400, 57600, 115_200];
 
-/// Baud rate of a module with INIT* grounded, whatever rate it stores.
+/// Baud rate of a module with INIT* grounded, bits per second, whatever rate it stores.
 const INIT_BAUD: u32 = 9_600;
 
-/// Settings of the line that its modules are configured for.
+/// Settings of a line with which its modules are configured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Commissioning {
     /// Baud rate of the line.
     pub baud: u32,
-    /// The line uses checksums.
+    /// True when the line uses checksums.
     pub checksum: bool,
     /// Time-out of an enabled host watchdog, milliseconds.
     pub host_watchdog_ms: f64,
@@ -74,7 +74,7 @@ pub struct ModuleBase {
 }
 
 impl ModuleBase {
-    /// Reads the common keys of the module's table, for a given type code and the family's bits of FF.
+    /// Creates the common part from the module's table; `family_bits` are the bits of FF that the family sets.
     pub fn new(
         spec: &ModuleSpec,
         line: Commissioning,

@@ -23,7 +23,7 @@ use crate::terminal::ModuleSpec;
 
 struct Digital {
     shape: Shape,
-    /// A refused output command gets the module's address in the answer.
+    /// True when the answer to a refused output command contains the module's address.
     names_refusals: bool,
     outputs: u16,
     power_on: u16,
@@ -38,10 +38,10 @@ struct Digital {
 
 #[derive(Debug, Clone, Copy, Default)]
 struct EventCounter {
-    /// Count at `from_edges` edges of the terminal.
+    /// Count of the counter when the terminal had seen `from_edges` edges.
     start: u64,
     from_edges: u64,
-    /// Edges at the last update, for the latches.
+    /// Number of edges at the last update, by which the latches notice further ones.
     seen_edges: u64,
 }
 

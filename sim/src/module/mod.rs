@@ -135,12 +135,12 @@ impl Module {
         &self.line
     }
 
-    /// Returns the common part.
+    /// Returns the common part: address, configuration word, watchdog, EEPROM.
     pub fn base(&self) -> &ModuleBase {
         &self.base
     }
 
-    /// Returns the common part for faults that change it.
+    /// Returns the common part of the module, for faults that change it.
     pub fn base_mut(&mut self) -> &mut ModuleBase {
         &mut self.base
     }
@@ -185,7 +185,7 @@ impl Module {
         }
     }
 
-    /// Starts the module as powered for long, in the state of its table.
+    /// Starts the module in the state of its table, as if it had been powered for long.
     pub fn energise(&mut self, plant: &mut dyn Plant, now_us: u64) {
         let mut at = Terminals {
             plant,

@@ -8,15 +8,15 @@ use crate::dcon;
 pub(super) struct Model {
     pub(super) channels: u8,
     pub(super) bits: i32,
-    /// Data contain a sign (7024).
+    /// True when data must contain a sign (7024).
     pub(super) signed: bool,
-    /// Data may contain a sign.
+    /// True when data may contain a sign.
     pub(super) takes_sign: bool,
-    /// Commands contain a channel digit.
+    /// True when commands contain a channel digit.
     pub(super) numbered: bool,
-    /// Type and slew belong to the channel (7022).
+    /// True when each channel has a type and a slew rate of its own (7022).
     pub(super) own_slew: bool,
-    /// `$AA8` measures the terminals.
+    /// True when `$AA8` measures at the terminals.
     pub(super) true_readback: bool,
 }
 

@@ -11,11 +11,11 @@ pub(super) struct Channel {
     pub(super) maximum: u32,
     pub(super) running: bool,
     pub(super) overflowed: bool,
-    /// Open time of the gate that the counter has accounted for, microseconds.
+    /// Open time of the gate while the counter was running, microseconds.
     pub(super) counted_us: f64,
     /// Open time of the gate at the last update, microseconds.
     pub(super) seen_us: f64,
-    /// Pulses that had passed when the counter was at `start` above its preset.
+    /// Number of pulses that had passed the gate when the counter stood at its preset plus `start`.
     zero_pulses: u64,
     start: u64,
     /// Frequency at a bench input, hertz; `None` on a rig, where the plant's reference clock applies.
@@ -51,7 +51,7 @@ impl Channel {
         self.overflowed || self.position(hz) >= self.span()
     }
 
-    /// Returns the counter to its preset without counts.
+    /// Sets the counter to its preset and forgets all pulses, as a power loss does.
     pub(super) fn power_cycle(&mut self) {
         self.start = 0;
         self.zero_pulses = 0;
@@ -59,7 +59,7 @@ impl Channel {
         self.overflowed = false;
     }
 
-    /// Returns the counter to its preset and clears the overflow.
+    /// Sets the counter to its preset and clears the overflow.
     pub(super) fn reset(&mut self, hz: f64) {
         self.zero_pulses = self.pulses(hz);
         self.start = 0;

@@ -17,7 +17,7 @@ pub struct Range {
     pub decimals: usize,
     /// Factor from the terminal value (V, mA, C) to the engineering value: 1000 for mV ranges.
     pub per_terminal: f64,
-    /// The range shows over-range text instead of saturating.
+    /// True when the range shows over-range text instead of saturating.
     pub shows_over: bool,
 }
 

@@ -1,7 +1,7 @@
 //! Individual errors, conversion rates and latency of one module, beyond its data sheet.
 //!
-//! The seed draws the errors once per module, uniformly within the maker's limits. The stream carries the name of
-//! the module, so that adding or removing a module changes nothing for the others.
+//! The seed draws the errors once per module, uniformly within the maker's limits. Each module has a random stream of
+//! its own, chosen by its name, so that adding or removing a module changes nothing for the others.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -2,8 +2,8 @@
 //!
 //! Only `~**` feeds the watchdog. When it expires, the outputs take their safe values, status 04 goes to the
 //! EEPROM, the watchdog disables itself, and every output command gets bare `!` until `~AA1` clears the status. A
-//! watchdog that is enabled at power-on starts with the first `~**` (undocumented; a rig can so wait for its
-//! controller); one that `~AA3` enables starts at once.
+//! watchdog that is enabled at power-on starts with the first `~**` (undocumented; the outputs of a rig can thus wait
+//! for its controller); one that `~AA3` enables starts at once.
 
 /// Status of a tripped watchdog in the reply to `~AA0`.
 const TRIPPED: u8 = 0x04;

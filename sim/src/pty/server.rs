@@ -177,7 +177,7 @@ impl Server {
         }
     }
 
-    /// Returns rig time; within [`EARLY`] of a deadline waits for it and returns the deadline.
+    /// Returns rig time; when a deadline is at most [`EARLY`] away, waits until then first.
     fn close_to_deadline(&self) -> u64 {
         let next_us = self.next_us();
         loop {

@@ -48,7 +48,7 @@ pub struct Board {
     clamp_diode: bool,
     chain: bool,
     touching: bool,
-    /// Film on both coil probes together, and its growth per touch.
+    /// Film on both coil probes together, ohm; below: its growth per touch.
     film_ohm: f64,
     film_per_touch_ohm: f64,
     source_live: bool,
@@ -164,7 +164,7 @@ impl Board {
         self.film_per_touch_ohm = per_touch_ohm;
     }
 
-    /// Shifts the coil voltage divider, parts per thousand.
+    /// Shifts the ratio of the coil voltage divider by `per_mille` parts per thousand.
     pub fn drift(&mut self, per_mille: f64) {
         self.divider = 1.0 + per_mille * 1e-3;
     }
@@ -230,7 +230,7 @@ impl Board {
         self.commands.is_on(Out::ReferenceContact) || self.senses(self.selected(), part)
     }
 
-    /// Returns the instant of the board's next own event.
+    /// Returns the instant of the next event that the board causes by itself, microseconds; `None` without one.
     fn next_us(&self) -> Option<f64> {
         let times = [
             self.switch_at_us,
@@ -325,7 +325,7 @@ impl Board {
         }
     }
 
-    /// Passes the start edge or the opposite edge of the drive to the window.
+    /// Passes the start edge or the opposite edge of the drive to the window flip-flop.
     fn edges_of_drive(&mut self) {
         let driving = self.switches.drive && self.chain;
         if driving == std::mem::replace(&mut self.driving, driving) {

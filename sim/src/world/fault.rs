@@ -64,7 +64,7 @@ faults! {
 pub struct WorldFaults(Vec<(Fault, f64)>);
 
 impl WorldFaults {
-    /// Resolves names; NaN selects the default of the table.
+    /// Resolves the names of faults; the value NaN selects the default of the table.
     ///
     /// # Errors
     /// Fails when no fault has that name.

@@ -100,13 +100,13 @@ impl Gates {
         }
     }
 
-    /// Returns the instant of the next event by time.
+    /// Returns the instant at which the window or the reference pulse times out next; `None` when neither runs.
     pub fn next_us(&self) -> Option<f64> {
         let ends = [self.window_ends_us, self.pulse_ends_us];
         ends.into_iter().flatten().min_by(f64::total_cmp)
     }
 
-    /// Ends the pulse or the window that is due.
+    /// Ends the reference pulse or the window that is due.
     pub fn expire(&mut self, t_us: f64) {
         if self.window_ends_us.is_some_and(|end| end <= t_us) {
             self.window = false;

@@ -22,7 +22,7 @@ pub struct Part {
     pub seq: u64,
     /// Number in the lot from 1, which faults of a part refer to; `None` for reference parts.
     pub number: Option<u64>,
-    /// A second body clings to this one.
+    /// True when a second body clings to this one.
     pub double: bool,
     /// Places with the time of arrival, microseconds.
     pub path: Vec<(u64, Place)>,
@@ -75,7 +75,7 @@ pub struct Magazine {
     parts: Option<u64>,
     /// Number of lot parts between two reference parts, once the lot has begun.
     reference_every: Option<u64>,
-    /// Reference parts and lot parts that have left.
+    /// Number of reference parts and number of lot parts that have left.
     out: (u64, u64),
     /// Values of `out` when the magazine was filled.
     filled_at: (u64, u64),
@@ -110,13 +110,13 @@ impl Magazine {
         })
     }
 
-    /// Continues the counts of the magazine before, so that no lot part comes twice.
+    /// Continues the counts of the magazine `before`, so that no lot part comes twice.
     pub fn continuing(mut self, before: &Self) -> Self {
         (self.out, self.filled_at) = (before.out, before.out);
         self
     }
 
-    /// Returns the reference parts and lot parts that have left since the filling.
+    /// Returns the numbers of reference parts and of lot parts that have left since the magazine was filled.
     fn since_filled(&self) -> (u64, u64) {
         (self.out.0 - self.filled_at.0, self.out.1 - self.filled_at.1)
     }

@@ -66,7 +66,7 @@ pub struct WorldOptions {
     pub recipe: String,
     /// Number of lot parts in the magazine; `None` never runs out.
     pub parts: Option<u64>,
-    /// Reference parts precede the lot.
+    /// True when reference parts precede the lot.
     pub reference_parts: bool,
     /// Faults of the world by name and value; NaN selects the default of the table.
     pub faults: Vec<(String, f64)>,

@@ -12,7 +12,7 @@ pub struct Places {
     pub pushed: Option<Box<Part>>,
     /// Part in the nest.
     pub nest: Option<Box<Part>>,
-    /// The fingers hold the part in the nest.
+    /// True while the fingers hold the part in the nest.
     pub gripped: bool,
     /// Part in the gripper, clear of the nest.
     pub carried: Option<Box<Part>>,

@@ -17,14 +17,14 @@ pub const ACTUATORS: [&str; 8] = [
 pub struct Posture {
     /// Travel of each actuator from rest, mm.
     pub mm: [f64; 8],
-    /// A part is in the pocket.
+    /// True when a part is in the pocket.
     pub pocket: bool,
-    /// A part is in front of the pusher, on its way to the nest or back.
+    /// True when a part is in front of the pusher, on its way to the nest or back.
     pub pushed: bool,
-    /// A part is in the nest and not lifted.
+    /// True when a part is in the nest and not lifted.
     pub nest: bool,
-    /// The fingers hold a part.
+    /// True when the fingers hold a part.
     pub held: bool,
-    /// A grip yields without damage: only springs move, or the fingers slide off.
+    /// True when a grip yields without damage: only springs move, or the fingers slide off.
     pub slack: bool,
 }

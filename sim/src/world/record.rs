@@ -1,4 +1,4 @@
-//! Facts of the world for the record, and its faults at run time.
+//! Implements the record of the world: facts that no module reports, and faults that begin at run time.
 
 use super::World;
 use super::fault::{Fault, Kind};

@@ -68,7 +68,7 @@ vocabulary! {
 }
 
 vocabulary! {
-    /// Quantities on analog inputs.
+    /// Quantities that analog inputs measure.
     Quantity {
         CoilVoltage = "coil_voltage", CoilCurrent = "coil_current",
         ContactCurrent = "contact_current", SupplyVoltage = "supply_voltage",

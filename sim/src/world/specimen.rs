@@ -64,7 +64,7 @@ pub enum LotKind {
     Resistor,
 }
 
-/// A specimen outside the magazine.
+/// A part that has left the magazine, of any kind.
 #[derive(Debug, Clone)]
 pub enum Specimen {
     /// An electromagnetic relay.
@@ -104,9 +104,9 @@ pub struct Arrival {
     pub ambient_c: f64,
     /// Random stream of the part's operations.
     pub draw: Draw,
-    /// Index of a pin that misses its Kelvin probes.
+    /// Index of a pin that misses its Kelvin probes; `None` when no pin does.
     pub dirty_pin: Option<usize>,
-    /// The part is misoriented.
+    /// True when the part is misoriented.
     pub misoriented: bool,
 }
 

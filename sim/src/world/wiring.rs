@@ -10,9 +10,9 @@ use crate::config::{RigFile, Terminal};
 pub struct Wire<S> {
     /// Signal of this terminal.
     pub signal: S,
-    /// The terminal reads 0 while the signal is present.
+    /// True when the terminal reads 0 while the signal is present.
     pub active_low: bool,
-    /// Volts at the terminal per unit of the quantity.
+    /// Volts at the terminal per unit of the quantity (inputs), or units per volt (outputs).
     pub gain: f64,
 }
 

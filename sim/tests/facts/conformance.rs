@@ -5,7 +5,7 @@ use rigsim::rig::Rig;
 
 const CONVERSATIONS: &str = include_str!("../conformance.txt");
 
-/// Time between two requests, microseconds: longer than any reply.
+/// Rig time between two requests, microseconds.
 const TURN_US: u64 = 1;
 
 fn ask(rig: &mut Rig, request: &str, at_us: u64) -> String {

@@ -1,4 +1,4 @@
-//! Random bytes on a line: no module panics, and unanswered input changes nothing.
+//! Tests with random bytes on a line: no module panics, and unanswered input changes nothing.
 
 #[path = "../fuzz/garbage.rs"]
 mod garbage;

@@ -81,7 +81,7 @@ async fn a_lost_port_ends_the_stream_and_returns() {
     let begin = Instant::now();
     assert_eq!(reply(&mut port).await, b"", "the stream ends");
     assert!(plug.open().is_none());
-    // One second of the rig is a thousand here, since a microsecond is a millisecond.
+    // One second of rig time is a thousand seconds of tokio's clock.
     let mut port = loop {
         tokio::time::advance(Duration::from_secs(10)).await;
         match plug.open() {

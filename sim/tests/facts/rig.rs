@@ -80,7 +80,7 @@ fn the_reference_voltage_reads_within_the_stated_tolerances() {
         };
         let code = i16::from_str_radix(&reply[1..], 16).expect("a code");
         let volts = f64::from(code) / 32_768.0 * 10.0;
-        // Gain 0.1 %, offset 0.05 % of 10 V, reference 0.02 %, four steps of 12 bit for noise.
+        // Tolerance: gain 0.1 %, offset 0.05 % of 10 V, reference 0.02 %, four steps of 12 bit for noise.
         assert!(
             (volts - 5.0).abs() < 0.005 + 0.005 + 0.001 + 0.02,
             "seed {seed}: {volts}"

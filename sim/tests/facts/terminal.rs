@@ -111,7 +111,7 @@ fn a_module_ignores_requests_at_another_rate() {
     let rig = SharedRig::new(rigsim::bench::build_text(bench).expect("a bench"));
     let ptys = pty::serve(&rig, Rates::Enforced).expect("a pseudo-terminal");
     let mut port = client(&ptys.paths().remove(0).1);
-    // A client without a rate has the line's rate. The first module to answer is asked last.
+    // A client without a rate has the line's rate: only module 02 runs at it, and it is asked last.
     assert_eq!(ask(&mut port, b"$01M\r$00M\r$02M\r"), b"!027021\r");
     set_baud(&port, 9_600);
     assert_eq!(ask(&mut port, b"$02M\r$01M\r"), b"!017017\r");

@@ -1,5 +1,5 @@
-//! Random bytes from a seed: half near-requests, a quarter damaged requests, a quarter arbitrary bytes. After
-//! each input without an answer, the module must report exactly the same registers as before.
+//! Random bytes from a seed: half of the inputs resemble requests, a quarter are damaged requests, a quarter arbitrary
+//! bytes. After each input without an answer, the module must report exactly the same registers as before.
 
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
@@ -42,7 +42,7 @@ impl Random {
     }
 }
 
-/// A bench with one module of the model, alternately with checksum.
+/// Builds a bench with one module of the model, with or without checksum.
 fn module(model: &str, checksum: bool) -> Rig {
     let file = format!("[[module]]\naddress = 1\nmodel = \"{model}\"\nchecksum = {checksum}");
     bench::build_text(&file).expect("a bench")

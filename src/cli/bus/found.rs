@@ -23,14 +23,14 @@ impl Found {
         health.module(self.asked).cloned().unwrap_or_default()
     }
 
-    /// Transactions without a good reply.
+    /// Returns the number of transactions without a good reply.
     fn bad(&self) -> u64 {
         let counts = self.counts();
         counts.time_outs + counts.checksum_errors + counts.other_errors
     }
 }
 
-/// Returns a row or an object per module.
+/// Returns the modules as text: a table row each, or a JSON object each.
 pub(super) fn listing(found: &[Found], as_json: bool) -> String {
     let rows = found.iter().map(|module| match as_json {
         true => object(module),
@@ -87,7 +87,7 @@ fn ms(counts: &ModuleHealth, share: f64) -> Option<f64> {
     Some(span.as_seconds() * 1e3)
 }
 
-/// Names the settings that differ between the scan and the memory of the module.
+/// Returns remarks: each setting with which the module answered although it stores another one, and risky settings.
 fn remarks(module: &Found) -> Vec<String> {
     let mut remarks = Vec::new();
     if module.stored != module.asked {

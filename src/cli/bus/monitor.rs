@@ -107,7 +107,7 @@ fn row(news: &Update, level: Level) -> String {
     format!("{seconds:>14.6} {line} {} {shown}", message.way)
 }
 
-/// Returns a message of escaped `text` in the detail of `level`.
+/// Returns a message in the detail of `level`; `text` is the message with escapes.
 fn detail(level: Level, text: &str, meaning: &str) -> String {
     let bytes = || unescaped(text).unwrap_or_default().into_iter();
     let shown = match level {

@@ -85,10 +85,10 @@ fn addresses(text: &str) -> Result<(u8, u8), ScanArgError> {
     }
 }
 
-/// Most likely rates first.
+/// Rates of the protocol, bits per second, the most likely first.
 const RATES: [u32; 8] = [115_200, 9_600, 19_200, 38_400, 57_600, 4_800, 2_400, 1_200];
 
-/// Repeated transactions with each found module, for the spread of its latency.
+/// Number of further transactions with each found module, which show the spread of its latency.
 const REPETITIONS: usize = 16;
 
 pub(super) async fn run(args: &ScanArgs) -> anyhow::Result<Exit> {
@@ -127,7 +127,7 @@ async fn scan_all(args: &ScanArgs, found: &mut Vec<Found>) -> anyhow::Result<()>
         let mut line = OpenLine::open(args, rate, checksum)?;
         for address in (first..=last).map(Address) {
             bar.inc(1);
-            // A module listens at one rate only; a terminal without a rate would show it at each.
+            // A module listens at one rate only; a pseudo-terminal has no rate and would show the module at every rate.
             if found.iter().all(|module| module.asked != address)
                 && let Some(module) = line.identify(address, rate, checksum).await?
             {
@@ -221,7 +221,8 @@ impl OpenLine {
         }))
     }
 
-    /// Returns the text of a reply under the stored address; a module in INIT* mode sends no checksum.
+    /// Returns the text in the reply to `command`, which names the stored address; a module in INIT* mode sends no
+    /// checksum.
     async fn text(&mut self, command: Command, stored: Address) -> anyhow::Result<String> {
         let is_init = command.address() != Some(stored);
         let answer = self.ask(command, if is_init { 1 } else { 3 }).await?;

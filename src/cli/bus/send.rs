@@ -109,7 +109,7 @@ fn transcript(request: &[u8], reply: &RawReply, words: &[String], broadcast: boo
     rows.join("\n") + "\n"
 }
 
-/// Returns the command of an unambiguous text.
+/// Returns the only command that `text` can mean; `None` when it can mean several, or none.
 fn unambiguous(text: &[u8], family: Option<Family>) -> Option<Command> {
     let mut commands = dcon::decode_request(text);
     commands.retain(|command| family.is_none_or(|family| family.has_command(command)));

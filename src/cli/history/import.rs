@@ -24,7 +24,7 @@ pub(super) struct ImportArgs {
     sheet: Option<String>,
 }
 
-/// The text is no column with its key.
+/// The text is not `COLUMN=KEY`.
 #[derive(Debug, thiserror::Error)]
 #[error("expected COLUMN=KEY")]
 struct PairError;

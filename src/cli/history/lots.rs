@@ -1,4 +1,4 @@
-//! `history list`.
+//! `history list`: runs of lots with their counts.
 
 use super::filter::RunArgs;
 use crate::cli::output::{Column, FormatArgs, Output, text};

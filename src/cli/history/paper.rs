@@ -38,7 +38,7 @@ impl LangArg {
 }
 
 impl PaperArgs {
-    /// Returns paper of this language, made now.
+    /// Returns the settings of a printed page: its language, and now as the time of printing.
     pub fn paper(&self) -> Paper {
         inquiry::paper::paper(self.lang.language())
     }

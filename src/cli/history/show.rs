@@ -79,7 +79,7 @@ fn one_part(archive: &Archive, args: &ShowArgs, seq: u64, out: &mut Output) -> a
         })
 }
 
-/// Writes a part as text; CSV has no form for a part with its replies, so it gets this text too.
+/// Writes a part as text, for `--format csv` too: CSV has no form for a part with its replies.
 fn page(part: &Part, out: &mut Output) -> anyhow::Result<()> {
     let Part {
         lot,
@@ -122,7 +122,7 @@ fn page(part: &Part, out: &mut Output) -> anyhow::Result<()> {
     part.curves.iter().try_for_each(|it| curve(it, out))
 }
 
-/// Samples on a line, each with its time since the first, milliseconds.
+/// Number of samples on a line of text, each with the milliseconds since the first one.
 const ON_A_LINE: usize = 6;
 
 /// Writes a curve; a dash is a sample without a number.

@@ -1,4 +1,4 @@
-//! `history stats`.
+//! `history stats`: statistics and capability of one parameter.
 
 use super::filter::PartArgs;
 use crate::cli::output::{Column, Output, figure};

@@ -1,4 +1,4 @@
-//! Errors of the file of people.
+//! Errors of the file that holds people and sessions.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ pub enum AccessError {
     Foreign {
         /// The file.
         path: PathBuf,
-        /// Application id and schema number in its header.
+        /// Application id and schema number in the header of the file.
         found: String,
     },
     /// SQLite failed.
@@ -67,10 +67,10 @@ pub enum AccessError {
     },
 }
 
-/// Result of this module.
+/// Result whose error is an [`AccessError`].
 pub(super) type Result<T> = std::result::Result<T, AccessError>;
 
-/// Adds the step that failed to an error of SQLite.
+/// Turns an error of SQLite into an [`AccessError`] that names the failed step.
 pub(super) trait Doing<T> {
     fn doing(self, doing: &'static str) -> Result<T>;
 }

@@ -1,7 +1,8 @@
-//! Limits the tries of wrong passwords.
+//! Limits how often a wrong password may be tried.
 //!
-//! Allows five failures per name and thirty in all within five minutes. The next try must wait until the oldest of them is
-//! five minutes old. A right password clears the failures of its name. Memory is bounded by thirty failures.
+//! A name may fail five times within five minutes, all names together thirty times. Then the next try must wait until
+//! the oldest of these failures is five minutes old. A right password clears the failures of its name. Thirty failures
+//! bound the memory.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};

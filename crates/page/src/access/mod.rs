@@ -21,5 +21,5 @@ pub(crate) use limiter::Limiter;
 pub use register::{Person, Register, access_path};
 pub use role::Role;
 
-/// Life of a session, seconds: a shift with its overlaps.
+/// Time after which a session ends, seconds: a shift with its overlaps.
 pub const SESSION_S: i64 = 12 * 3600;

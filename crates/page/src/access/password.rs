@@ -1,7 +1,7 @@
 //! Hashes of passwords, and random tokens.
 //!
-//! Uses Argon2id with the default parameters of the library (19 MiB, 2 passes, 1 lane), which OWASP recommends. A hash
-//! includes its parameters, so that later versions may raise them.
+//! The hash is Argon2id with the default parameters of the library (19 MiB, 2 passes, 1 lane), which OWASP recommends.
+//! Each hash includes its parameters, so that later versions may raise them.
 
 use super::error::{AccessError, Result};
 use argon2::Argon2;
@@ -9,9 +9,9 @@ use argon2::password_hash::phc::PasswordHash;
 use argon2::password_hash::{PasswordHasher, PasswordVerifier};
 use data_encoding::HEXLOWER;
 
-/// Least length, characters (NIST SP 800-63B).
+/// Least length of a password, characters (NIST SP 800-63B).
 const LEAST: usize = 8;
-/// Greatest length, characters: bounds the time of hashing.
+/// Greatest length of a password, characters: it bounds the time of hashing.
 const MOST: usize = 200;
 
 /// Returns the Argon2id string of `password`; takes about 20 ms. Fails when the length is out of range.

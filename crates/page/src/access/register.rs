@@ -13,7 +13,7 @@ use std::fs::OpenOptions;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// `RRac`: application id in the header of the file.
+/// Application id in the header of the file: `RRac` in ASCII.
 const APPLICATION_ID: i64 = 0x5252_6163;
 const SCHEMA: i64 = 1;
 /// Name of the engineer whom the first start adds.
@@ -27,11 +27,11 @@ const NOBODY: &str = "$argon2id$v=19$m=19456,t=2,p=1$c29tZSBzYWx0IGhlcmU$\
 pub struct Person {
     /// Name for the login, 1 to 40 characters.
     pub name: String,
-    /// Role, which bounds the orders of the person.
+    /// Role, which decides what the person may order and change.
     pub role: Role,
 }
 
-/// The open file. Every call blocks; a login computes for about 20 ms.
+/// The open file of people and sessions. Every call blocks; a login computes for about 20 ms.
 #[derive(Debug)]
 pub struct Register {
     connection: Connection,
@@ -48,7 +48,7 @@ impl Register {
     /// Opens the file, or creates it.
     ///
     /// # Errors
-    /// Refuses a file of another program or of a later version, and does not change it.
+    /// Fails for a file of another program or of a later version, which stays unchanged, and when SQLite fails.
     pub fn open(path: &Path) -> Result<Self> {
         const DOING: &str = "opening the list of people";
         own(path);
@@ -210,8 +210,8 @@ impl Register {
     }
 }
 
-/// Makes a missing file that only this user can read and write: it holds hashes of passwords. When it cannot be made,
-/// opening it names the reason.
+/// Creates the file, if it is missing, so that only this user can read and write it: it holds hashes of passwords.
+/// Ignores a failure, because opening the file afterwards reports it.
 fn own(path: &Path) {
     let mut options = OpenOptions::new();
     options.write(true).create_new(true);

@@ -1,4 +1,4 @@
-//! Roles. Each may do all that the weaker ones may.
+//! Roles of people; a stronger role may do everything that a weaker one may.
 
 use serde::Serialize;
 use std::fmt;
@@ -21,7 +21,7 @@ impl Role {
     /// All roles, weakest first.
     pub const ALL: [Self; 3] = [Self::Operator, Self::Maintainer, Self::Engineer];
 
-    /// Returns the name in the file, on the command line and over HTTP.
+    /// Returns the name of the role in the file of people, on the command line and over HTTP.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -38,7 +38,7 @@ impl fmt::Display for Role {
     }
 }
 
-/// The word found, which names no role.
+/// Error of a word that names no role.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{0:?}: expected operator, maintainer or engineer")]
 pub struct NoRole(String);

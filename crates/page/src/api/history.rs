@@ -1,4 +1,4 @@
-//! The routes of the history; `history.rs` explains their members.
+//! The routes of the history; `../history.rs` explains their members.
 
 use super::{HTML, JSON, Member, Route, may, must};
 use crate::history::{self, export, paper, rejudge};

@@ -1,7 +1,7 @@
 //! `/api/history/export.csv` and `.xlsx`: `history export` over HTTP. CSV is streamed without a limit; a spreadsheet is
 //! complete in memory before it is sent, so [`SHEET_PARTS`] limits it.
 //!
-//! Retention does not count such an export, because the server cannot know whether it arrived.
+//! `history prune` does not count such an export as a copy, because the server cannot know whether it arrived.
 
 use super::super::error::{ApiError, blocking};
 use super::super::router::App;

@@ -1,8 +1,8 @@
-//! Streams answers from the file to the client, one part at a time: memory does not grow with the answer.
+//! Streams answers from the history file to the client, one part at a time: memory does not grow with the answer.
 //!
-//! The reader sends pieces of about 32 kB. It drops a client that takes none for [`CLIENT_TIMEOUT`], so that no reader keeps
-//! the file open for ever. After an error in the middle the final chunk is missing, so that the client sees the answer as
-//! incomplete.
+//! The reader sends pieces of about 32 kB. It drops a client that takes no piece for [`CLIENT_TIMEOUT`], so that no
+//! reader keeps the file open for ever. After an error in the middle the final chunk is missing, so that the client
+//! sees the answer as incomplete.
 
 use axum::body::{Body, Bytes};
 use futures_util::stream;
@@ -16,7 +16,7 @@ use tokio::time::timeout;
 
 /// Longest time for which a client may take no piece.
 const CLIENT_TIMEOUT: Duration = Duration::from_secs(10);
-/// Size from which a piece is sent, bytes.
+/// Number of collected bytes from which they are sent as a piece.
 const PIECE: usize = 32 * 1024;
 
 type Piece = io::Result<Bytes>;
@@ -54,7 +54,7 @@ pub(super) fn parts(archive: &Archive, filter: &Filter, out: &mut Pieces) -> io:
     out.write_all(if lead == b"[\n" { b"[]\n" } else { b"\n]\n" })
 }
 
-/// Sending end of a stream; collects bytes to pieces.
+/// Sending end of a stream; collects bytes into pieces.
 pub(super) struct Pieces {
     text: Vec<u8>,
     runtime: Handle,
@@ -78,7 +78,7 @@ impl Pieces {
 
     fn send(&self, piece: Piece) -> io::Result<()> {
         let sent = self.runtime.block_on(async {
-            // Inside the async block, because a timer needs the context of the runtime.
+            // The time-out begins inside the async block, because its timer needs the context of the runtime.
             timeout(CLIENT_TIMEOUT, self.sender.send(piece)).await
         });
         match sent {

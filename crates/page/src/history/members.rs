@@ -9,7 +9,7 @@ use quality::rules::Rules;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
-/// Default of `last`, points of a control chart.
+/// Default of `last`, the number of points of a control chart.
 const SHOWN: usize = 200;
 /// Greatest `last`.
 const MOST_SHOWN: usize = 10_000;
@@ -38,7 +38,7 @@ impl RouteMembers for ChartMembers {
 }
 
 impl ChartMembers {
-    /// Returns the number of points to send. Fails out of 1 to [`MOST_SHOWN`].
+    /// Returns the number of points to send. Fails when it is not from 1 to [`MOST_SHOWN`].
     pub fn last(&self) -> Result<usize, ApiError> {
         ApiError::ranged("last", self.last, SHOWN, MOST_SHOWN)
     }
@@ -49,9 +49,9 @@ impl ChartMembers {
 pub(super) struct ReportMembers {
     /// `zh` (when absent) or `en`.
     pub lang: Option<Lang>,
-    /// Number of the part of a certificate.
+    /// Number of the part that the certificate is for; only `report/certificate` takes it.
     pub seq: Option<u64>,
-    /// Shortest possible cycle of the line for a lot report, s.
+    /// Shortest possible cycle of the line, s, for the OEE; only `report/lot` takes it.
     pub ideal_cycle_s: Option<f64>,
 }
 
@@ -59,7 +59,7 @@ impl RouteMembers for ReportMembers {
     const MEMBERS: &'static [&'static str] = &["lang", "seq", "ideal_cycle_s"];
 }
 
-/// Members of the audit of orders.
+/// Members of `orders`, the audit of orders.
 #[derive(Debug, Deserialize)]
 pub(super) struct AuditMembers {
     /// Name of the person whose orders to list; all when absent.

@@ -10,11 +10,11 @@ use axum::response::Html;
 use history::inquiry::{InquiryError, charts, checks, paper};
 use history::{Archive, Filter};
 
-/// Policy of a printed page: inline style only, no script, no other source.
+/// Content security policy of a printed page: inline style only, no script, no other source.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; \
     form-action 'none'; frame-ancestors 'none'";
 
-/// A page for A4.
+/// Answer with a page for A4 and the policy in its header.
 pub(crate) type Page = ([(HeaderName, &'static str); 1], Html<String>);
 
 /// Adds the policy to `page`.

@@ -1,4 +1,5 @@
-//! `/api/history/rejudge`: judges the stored values of a lot by a recipe, as `history rejudge --json`; writes nothing.
+//! `/api/history/rejudge`: judges the stored values of a lot by a recipe, as `history rejudge --json` does; writes
+//! nothing.
 
 use super::super::error::{ApiError, Members, blocking};
 use super::super::router::App;
@@ -12,7 +13,7 @@ use history::inquiry::rejudge::{RejudgedPart, Rejudging};
 use serde::Deserialize;
 use std::io::{self, Write};
 
-/// Members: the lot and the recipe.
+/// Members of the route, which select lot and recipe.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RejudgeQuery {
@@ -20,7 +21,7 @@ pub(crate) struct RejudgeQuery {
     recipe: String,
     /// Number of the run; all runs when absent.
     run: Option<u32>,
-    /// True for parts with a changed verdict only.
+    /// True to return only parts whose verdict changes.
     #[serde(default)]
     changed: bool,
 }

@@ -1,10 +1,11 @@
-//! Data of the first answer, as JSON: the texts of the pages, and every characteristic with its unit and names.
+//! Data of the first answer, as JSON: texts of the pages, and every characteristic of a device with its unit and names.
 
 use machine::dut::Characteristic;
 use serde_json::{Value, json};
 use texts::Lang;
 
-/// Families of texts that the first answer omits: they reach the page inside alarms, reasons and refusals, or only the paper.
+/// Families of texts that the first answer omits: they reach the page inside alarms, reasons and refusals, or appear in
+/// print only.
 const ELSEWHERE: [&str; 12] = [
     "alarm",
     "card",

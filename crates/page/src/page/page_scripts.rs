@@ -38,7 +38,7 @@ pub(super) static SCRIPTS: LazyLock<BTreeMap<String, CompressedBody>> = LazyLock
     SOURCES.map(script).into_iter().map(compressed).collect()
 });
 
-/// Returns `{page: path}`.
+/// Returns the path of the script of each page, `{page: path}`.
 pub(super) fn json() -> String {
     let paths = SOURCES.iter().flat_map(|source| {
         let (path, _) = script(*source);
@@ -53,7 +53,7 @@ fn pages(markup: &str) -> impl Iterator<Item = &str> {
     pieces.filter_map(|it| it.split('"').next())
 }
 
-/// Returns path and text of a script.
+/// Returns the path of a script, and its text as the browser gets it.
 fn script([name, markup, code]: [&str; 3]) -> (String, String) {
     let hash = HEXLOWER.encode(&Sha256::digest([markup, code].concat())[..8]);
     let path = format!("/page/{name}-{hash}.js");

@@ -1,4 +1,4 @@
-//! The answers of the page as text: complete, small, and with every text that they use.
+//! Tests of the answers of the page as text: complete, small, and with every text that they use.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,9 +1,9 @@
-//! Every route of the list: documented, open to the right roles, closed to malformed requests.
+//! Tests of every route of the list: documented, open to the right roles, closed to malformed requests.
 
 use super::*;
 use crate::api::{self, Method};
 
-/// No token, then a token of each role, weakest first.
+/// Returns no token, then a token of each role, weakest first.
 fn askers(fixture: &Fixture) -> [Option<String>; 4] {
     let now_us = jiff::Timestamp::now().as_microsecond();
     let mut register = Register::open(&fixture.db.with_file_name("people.db")).unwrap();

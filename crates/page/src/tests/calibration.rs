@@ -1,4 +1,4 @@
-//! Calibrations and reference parts over HTTP.
+//! Tests of calibrations and reference parts over HTTP.
 
 use super::*;
 use ::history::{
@@ -12,7 +12,7 @@ use serde_json::json;
 
 const HOUR_US: i64 = 3_600_000_000;
 
-/// A calibration made at `at_us` and due a day later.
+/// Returns a calibration that was made at `at_us` and is due a day later.
 fn made(at_us: i64, simulated: bool, nominal_v: f64) -> CalibrationRecord {
     let known = Factor::new(1.0, 0.001);
     let body = serde_json::to_string(&Calibration {

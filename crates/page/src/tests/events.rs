@@ -1,4 +1,4 @@
-//! The event stream under tokio's paused clock.
+//! Tests of the event stream under tokio's paused clock.
 
 use super::*;
 use axum::body::BodyDataStream;

@@ -1,11 +1,11 @@
-//! The history over HTTP.
+//! Tests of the history over HTTP.
 
 use super::*;
 use ::history::{AlarmRecord, LotRecord, MeasurementRecord, OrderRecord, PartRecord, Row, Store};
 
 const KEY: &str = "operate_voltage_v";
 
-/// A lot `A` of `parts` parts with 7.00 V, 7.01 V and so on; each fifth one fails.
+/// Creates a server whose history has a lot `A` of `parts` parts with 7.00 V, 7.01 V and so on; each fifth part fails.
 fn with_parts(parts: u64) -> Fixture {
     let fixture = Fixture::new();
     let mut store = Store::open(&fixture.db).unwrap();

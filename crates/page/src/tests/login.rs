@@ -1,4 +1,4 @@
-//! Login, logout and sessions.
+//! Tests of login, logout and sessions.
 
 use super::*;
 use axum::http::header::{COOKIE, RETRY_AFTER, SET_COOKIE};

@@ -1,4 +1,4 @@
-//! The list of lots and the wear counters over HTTP.
+//! Tests of the list of lots and the wear counters over HTTP.
 
 use super::*;
 use ::history::{Decision, LotRecord, LotState, LotStateRecord, Row, Store, WearRecord};

@@ -1,4 +1,4 @@
-//! The picture of the machine.
+//! Tests of the picture of the machine.
 
 use super::*;
 

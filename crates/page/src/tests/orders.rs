@@ -1,4 +1,4 @@
-//! Orders: accepted, refused, and refused without effect.
+//! Tests of orders: accepted, refused, and refused without effect.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! Recipes over HTTP: reading, revising, and the refusals of both.
+//! Tests of recipes over HTTP: reading, revising, and the refusals of both.
 
 use super::*;
 use ::history::{Archive, Filter, OrderEntry};
@@ -9,7 +9,7 @@ impl Fixture {
     fn session(&self, role: Role) -> String {
         let mut register = Register::open(&self.db.with_file_name("people.db")).unwrap();
         let now_us = jiff::Timestamp::now().as_microsecond();
-        // Fails when an earlier call added the person.
+        // Fails without harm when an earlier call has added the person.
         let _ = register.add(role.word(), role, PASSWORD, 0);
         let session = register.log_in(role.word(), PASSWORD, now_us).unwrap();
         session.unwrap().1

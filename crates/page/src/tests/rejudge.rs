@@ -1,4 +1,4 @@
-//! Rejudging over HTTP.
+//! Tests of rejudging over HTTP.
 
 use super::*;
 use ::history::{Archive, Filter, LotRecord, MeasurementRecord, PartRecord, Row, Store};
@@ -37,7 +37,7 @@ fn part(seq: u64, operate_v: f64) -> PartRecord {
     }
 }
 
-/// Four parts that passed, one of them above 9 V.
+/// Creates a server whose history has four parts that passed, one of them above 9 V.
 fn fixture() -> Fixture {
     let fixture = Fixture::new();
     let recipe = std::fs::read_to_string("../../config/recipes/jzc-22f-012.toml").unwrap();

@@ -1,4 +1,4 @@
-//! The page and its scripts, the view, the figures, and the answers to wrong paths.
+//! Tests of the page and its scripts, the view, the figures, and the answers to wrong paths.
 
 use super::*;
 
@@ -14,7 +14,7 @@ async fn the_policy_allows_scripts_of_the_rig_only() {
     assert_eq!(answer.headers["x-frame-options"], "DENY");
 }
 
-/// Body of `path` for a client with this header, unpacked.
+/// Returns the answer for `path` and its unpacked body; `accepts` is the header `Accept-Encoding` of the client.
 async fn unpacked(fixture: &Fixture, path: &str, accepts: &str) -> (Answer, String) {
     let request = Request::get(path).header("accept-encoding", accepts);
     let answer = fixture.ask(request.body(Body::empty()).unwrap()).await;

@@ -1,4 +1,4 @@
-//! The end of the program over a real loopback connection.
+//! Tests of the end of the program, over a real loopback connection.
 
 use super::*;
 use crate::serve;

@@ -2,15 +2,16 @@
 //!
 //! The study asks every method about moves of five kinds in a scene of 1,000 bodies (`scene`), with the exact truth about
 //! each move (`world`):
-//! - the method of the paper, rebuilt (`paper`), at steps of 10, 1, 0.1 and 0.01 mm;
+//! - the method of the paper (layer-based projection model of Peng and others, 2010), rebuilt (`paper`), at steps of 10,
+//!   1, 0.1 and 0.01 mm;
 //! - swept boxes: the swept query of the collision core over bounding boxes in place of the shapes, so that the shapes are
 //!   the only difference;
 //! - swept exact: the collision core as the guard uses it;
 //! - parry3d in f32 and f64 (`peer`).
 //!
 //! The study times every move alone, subtracts the time of reading the clock and takes the fastest of three passes;
-//! ratios compare times of the same run. Stepping answers with its last clear pose. Finally the study checks every move of
-//! a small world (`small_world`).
+//! ratios compare times of the same run. The paper's method answers with its last clear pose. Finally the study checks
+//! every move of a small world (`small_world`).
 
 mod outline;
 mod paper;
@@ -44,13 +45,13 @@ const SEED: u64 = 1;
 const SMALL_WORLD: i64 = 3;
 /// Name of the method to which bars and ratios refer.
 const OURS: &str = "swept exact";
-/// Error of rounding in the truth, mm: a stop is late only when it is later than this.
+/// Error of rounding in the truth, mm: an answer is late only when it is late by more than this.
 const ROUNDING_MM: f64 = 1e-12;
 
 /// Compares ways to check a move with the exact truth; returns the report, and the plot of speed against error as SVG.
 ///
 /// # Errors
-/// A body that the collision core refuses.
+/// Fails when the collision core refuses a body.
 pub fn study() -> anyhow::Result<(Report, String)> {
     let world = World::random(SEED, EACH);
     let scored = scored(&world)?;

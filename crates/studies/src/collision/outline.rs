@@ -9,7 +9,7 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// A polygon of corners in counter-clockwise order, mm.
+    /// Creates a polygon from its corners in counter-clockwise order, mm.
     pub fn of(corners: Vec<[f64; 2]>) -> Outline {
         let next = corners.iter().cycle().skip(1);
         let edges = corners.iter().zip(next).map(|(a, b)| {
@@ -22,7 +22,7 @@ impl Outline {
         }
     }
 
-    /// A rectangle with half extents (mm) about `centre`, turned by `turn` (rad).
+    /// Creates a rectangle with half extents (mm) about `centre`, turned by `turn` (rad).
     pub fn rectangle(centre: [f64; 2], half: [f64; 2], turn: f64) -> Outline {
         let (sin, cos) = turn.sin_cos();
         let corner =
@@ -36,7 +36,7 @@ impl Outline {
         ])
     }
 
-    /// A regular polygon with its corners on a circle of `radius` (mm), the first one at `first` (rad).
+    /// Creates a regular polygon with its corners on a circle of `radius` (mm), the first one at `first` (rad).
     pub fn regular(centre: [f64; 2], radius: f64, corners: usize, first: f64) -> Outline {
         let corner = |number: usize| {
             let angle = first + std::f64::consts::TAU * number as f64 / corners as f64;

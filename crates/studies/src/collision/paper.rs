@@ -1,4 +1,5 @@
-//! The method of the paper, rebuilt from the published part: it checks poses one after the other, and nothing between them.
+//! The method of the paper (layer-based projection model of Peng and others, 2010), rebuilt from its published part: it
+//! checks poses one after the other, and nothing between them.
 //!
 //! Each layer between neighbouring bottoms and tops of the elements holds a square grid of element numbers. A pose passes
 //! the tests in the paper's order: layers, silhouettes on x and y, oriented boxes, polygons. The polygons are the outlines
@@ -10,7 +11,7 @@ use super::outline::Outline;
 use super::world::{TestMove, UNIT_MM};
 use lpm::exact::{Body, Form};
 
-/// Corners of the polygon of a cylinder.
+/// Number of corners of the polygon of a cylinder.
 const CORNERS: usize = 32;
 /// Pitch of the grid of a layer, mm.
 const PITCH_MM: f64 = 64.0;
@@ -39,7 +40,7 @@ pub struct Stepping {
     layers: Vec<Layer>,
     columns: usize,
     parts: Vec<Prepared>,
-    /// Number of the last query that tested each element: an element may lie in several layers and cells.
+    /// For each element, the number of the last query that tested it: an element may lie in several layers and cells.
     tested: Vec<u64>,
     /// Number of queries so far; each is one part at one pose.
     queries: u64,
@@ -95,7 +96,8 @@ impl Stepping {
         found
     }
 
-    /// Returns the elements of the layers and cells that the box reaches, some more than once.
+    /// Returns the numbers of the elements in the layers and cells that the box reaches; some numbers come more than
+    /// once.
     fn numbers(&self, low: [f64; 3], high: [f64; 3]) -> impl Iterator<Item = usize> + '_ {
         let cell = |place: f64| ((place / PITCH_MM).max(0.0) as usize).min(self.columns - 1);
         let (xs, ys) = (cell(low[0])..=cell(high[0]), cell(low[1])..=cell(high[1]));

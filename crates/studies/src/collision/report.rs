@@ -112,7 +112,7 @@ pub(super) fn missed_by_kind(scored: &[Scored]) -> Vec<Figure> {
     scored.iter().map(row).collect()
 }
 
-/// Returns the number of bodies near a move by kind: only these need an exact test.
+/// Returns, by kind of move, the number of bodies near a move: only these bodies need an exact test.
 pub(super) fn bodies_near(moves: &[TestMove]) -> Vec<Figure> {
     let row = |kind: usize| {
         let of_kind = moves.iter().filter(|it| it.kind == kind);

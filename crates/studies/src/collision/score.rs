@@ -4,12 +4,12 @@ use super::world::TestMove;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Passes over the moves; the fastest one of each move counts, without disturbance by other processes.
+/// Number of passes over the moves. The fastest one counts for each move: other processes disturbed it least.
 const PASSES: usize = 3;
 /// A move that takes longer than this runs in the first pass only, seconds.
 const SLOW_S: f64 = 1e-4;
 
-/// Returns the first contact of a move as a fraction of it; `None` for a clear move.
+/// Function that returns the first contact of a move as a fraction of it; `None` for a clear move.
 pub type Query = Box<dyn FnMut(&TestMove) -> Option<f64>>;
 
 /// One way to check a move.

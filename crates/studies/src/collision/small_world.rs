@@ -6,7 +6,7 @@ use crate::pool;
 use lpm::exact::{Body, first_contact};
 use lpm::{Answer, Model, Move, Mover, Pose};
 
-/// Fraction of the move by which a contact may be earlier than the truth; a later contact is always wrong.
+/// Fraction of the move by which an answer may be earlier than the true contact; a later answer is always wrong.
 const EARLY: f64 = 1e-9;
 
 /// Counts of moves and of wrong answers.
@@ -14,11 +14,11 @@ const EARLY: f64 = 1e-9;
 pub struct SmallWorldCounts {
     /// All moves.
     pub moves: u64,
-    /// Contacts called clear.
+    /// Moves with a contact that the core calls clear.
     pub missed: u64,
-    /// Clear moves called contacts.
+    /// Clear moves for which the core answers a contact.
     pub false_blocks: u64,
-    /// Contacts later than the truth, or earlier by more than 1e-9 of the move.
+    /// Answers later than the true contact, or earlier by more than 1e-9 of the move.
     pub wrong_times: u64,
 }
 
@@ -36,7 +36,7 @@ impl SmallWorldCounts {
 /// Checks every move of the world with corners from 0 to `most`, on all cores.
 ///
 /// # Errors
-/// A block that the core refuses.
+/// Fails when the collision core refuses a block.
 pub fn check_all(most: i64) -> anyhow::Result<SmallWorldCounts> {
     let blocks = every_block(most);
     let counts = pool::map(&blocks, pool::cores(), |it| {

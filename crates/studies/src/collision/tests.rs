@@ -1,4 +1,4 @@
-//! The paper's method, the polygons and the small world, on examples that a reader can check by hand.
+//! Tests of the paper's method, the polygons and the small world, on examples that a reader can check by hand.
 #![allow(clippy::unwrap_used)]
 use super::outline::Outline;
 use super::paper::Stepping;

@@ -10,7 +10,7 @@ use lpm::{Move, Pose};
 
 /// Length of a unit, mm: a power of two, so that every number is exact in `f32` and `f64`.
 pub const UNIT_MM: f64 = 1.0 / 1024.0;
-/// Units per millimetre.
+/// Number of units in a millimetre.
 pub const MM: i64 = 1024;
 
 /// Kinds of moves, in the order of the report.
@@ -34,7 +34,7 @@ pub struct TestMove {
 }
 
 impl TestMove {
-    /// Length, mm.
+    /// Returns the length of the move, mm.
     pub fn length_mm(&self) -> f64 {
         self.run
             .iter()
@@ -169,7 +169,7 @@ impl World {
     }
 }
 
-/// Returns whether the boxes of both meet during the run.
+/// Returns whether the bounding boxes of element and part meet while the part moves by `run`.
 fn boxes_meet(element: &Body, part: &Body, run: [i64; 3]) -> bool {
     let (a, b) = (reach(element), reach(part));
     // Most of the scene is far away: a comparison per axis spares the exact test of the boxes.

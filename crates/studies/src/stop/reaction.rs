@@ -3,7 +3,8 @@
 use crate::journal::Entry;
 use std::collections::BTreeMap;
 
-/// Interval after a stop in which the script gives no order, microseconds; an output still on counts as this long.
+/// Interval after a stop in which the script gives no order, microseconds; the longest reaction that the study can
+/// find.
 const QUIET_US: u64 = 2_000_000;
 
 /// Returns for every stop the time until the last motion output is off, milliseconds; `None` when none was on.

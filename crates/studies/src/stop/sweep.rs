@@ -1,12 +1,12 @@
-//! Instants of the stops of a lot, and the script that presses them.
+//! Instants at which the emergency stop is pressed in a lot, and the script that presses it.
 
 use super::LATE_MS;
 use crate::order::Order;
 
-/// Parts from one stop to the next: two go to retest, then the line runs evenly again.
+/// Number of parts from one stop to the next: two go to retest, then the line runs evenly again.
 const PARTS_BETWEEN: u64 = 5;
-/// Time after nest exit in the middle of a test, seconds: jaws closed, probes up, z down, the next part in the pocket, so
-/// that homing has long strokes.
+/// Time after nest exit, seconds, at which a test is in its middle: jaws closed, probes up, z down, the next part in
+/// the pocket, so that homing has long strokes.
 const MID_TEST_S: f64 = 1.0;
 /// Orders of the operator after a stop: clear and reset; [`START`] follows.
 const CLEAR: &str = "after state Aborted +4 order clear\nafter state Stopped order reset\n";
@@ -25,7 +25,7 @@ impl Sweep {
     /// Both sweeps, in the order of the report.
     pub const ALL: [Self; 2] = [Self::Cycle, Self::Homing];
 
-    /// Length of the swept interval with a margin, seconds.
+    /// Returns the length of the swept interval with a margin, seconds.
     pub const fn span_s(self) -> f64 {
         match self {
             Self::Cycle => 2.0,
@@ -33,7 +33,7 @@ impl Sweep {
         }
     }
 
-    /// Name in the report.
+    /// Returns the name in the report.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Cycle => "in a cycle",
@@ -41,7 +41,7 @@ impl Sweep {
         }
     }
 
-    /// Number of stops that the script presses per instant; only the last one counts.
+    /// Returns how often the script presses the stop for each instant; only the last press counts.
     pub const fn presses(self) -> usize {
         match self {
             Self::Cycle => 1,
@@ -49,7 +49,8 @@ impl Sweep {
         }
     }
 
-    /// Returns the instants of the stops of a lot, seconds since the begin of the interval; the lots interleave.
+    /// Returns the instants at which a lot is stopped, seconds from the start of the interval; other lots have those
+    /// between.
     pub fn instants(self, order: &Order, lot: u64) -> Vec<f64> {
         let all = (order.lots * order.parts) as f64;
         let instant = |stop: u64| self.span_s() * (stop * order.lots + lot) as f64 / all;

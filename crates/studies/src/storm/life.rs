@@ -39,12 +39,12 @@ pub enum End {
     Hung,
 }
 
-/// Record of a life that has ended.
+/// Record of a life of the controller that has ended.
 #[derive(Debug, Clone)]
 pub struct EndedLife {
     /// Name of its lot.
     pub lot: String,
-    /// Rig time at its begin, microseconds.
+    /// Rig time at its start, microseconds.
     pub began_us: u64,
     /// Rig time at its end, microseconds.
     pub ended_us: u64,
@@ -79,7 +79,7 @@ impl Runner<'_> {
     /// Calibrates the rig with references and reference parts.
     ///
     /// # Errors
-    /// A rig without faults whose calibration fails.
+    /// Fails when the calibration fails although the rig has no faults.
     pub fn calibrated(&self) -> anyhow::Result<Calibration> {
         let life = Life::calm(0, 0);
         let mut found = OnceLock::new();
@@ -93,7 +93,7 @@ impl Runner<'_> {
     /// Runs one life; `operator_dice` draws the orders of an attended one.
     ///
     /// # Errors
-    /// A runtime that cannot be built.
+    /// Fails when the runtime cannot be built.
     pub fn run_life(
         &self,
         lot: &str,

@@ -36,9 +36,9 @@ use tempfile::TempDir;
 use tracing::subscriber::{NoSubscriber, with_default};
 use units::Span;
 
-/// Starts after the faults, of which one must complete its lot; the first may have to discharge parts.
+/// Most lives after the faults; one of them must complete its lot. The first may have to discharge parts.
 const CALM: u64 = 3;
-/// Parts of a lot without faults.
+/// Number of parts of a lot without faults.
 const CALM_PARTS: u64 = 2;
 
 /// Inputs of all seeds.
@@ -52,7 +52,7 @@ struct Storm<'a> {
 /// Runs the seeds of the order and makes the report.
 ///
 /// # Errors
-/// A file that cannot be read or written, or a rig that cannot be built.
+/// Fails when a file cannot be read or written, or when a rig cannot be built.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let began = Instant::now();
     let storm = Storm::new(order)?;
@@ -195,7 +195,7 @@ impl<'a> Storm<'a> {
         })?)
     }
 
-    /// Returns the calibration of a rig without faults, from the first seed that needed it.
+    /// Returns the calibration of a rig without faults; the first seed that needs it makes it for all later ones.
     fn calibration(&self, rig: u64, db: &Path) -> anyhow::Result<Calibration> {
         let place = usize::try_from(rig % RIGS)?;
         if let Some(known) = self.calibrations[place].get() {

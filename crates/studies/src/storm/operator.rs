@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use tokio::sync::{mpsc, oneshot, watch};
 use units::{RigTime, Span};
 
-/// Time until the operator ends the program, and from then until it aborts the program.
+/// Longest time until the operator ends the program; after as long again it aborts the program.
 const PATIENCE: Span = Span::ms(25_000);
 
 /// One order and its answer.
@@ -35,11 +35,11 @@ pub struct Operator {
     pub orders: mpsc::Sender<OrderRequest>,
     /// Clock of the rig time.
     pub pace: Pace,
-    /// Ends the program once the parts inside are finished.
+    /// Set to end the program once the parts inside are finished.
     pub stop: Arc<AtomicBool>,
-    /// Ends the program at once.
+    /// Set to end the program at once.
     pub abort: Arc<AtomicBool>,
-    /// Draws orders and waits.
+    /// Random numbers for orders and waits.
     pub dice: Dice,
     /// Receives every order with its answer.
     pub answers: mpsc::UnboundedSender<Answered>,

@@ -22,7 +22,7 @@ pub struct Outcome {
     pub(super) digest: u64,
 }
 
-/// Size of a case.
+/// Numbers of lives, kills, bodies, rows, alarms, orders and motions of a case, and its rig time.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Counts {
     lives: u64,

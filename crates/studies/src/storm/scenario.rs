@@ -35,7 +35,7 @@ const OF_A_REPLY: [&str; 8] = [
     "drop", "deaf", "truncate", "late", "flip", "noise", "garble", "delay",
 ];
 
-/// Plan of one life of the controller.
+/// Plan of one life of the controller, that is, of its program from start to end.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Life {
     /// Parts of its lot.

@@ -2,7 +2,7 @@
 
 use super::judge::{Case, rig_us, seconds};
 
-/// Last lines of a trace that a report shows.
+/// Number of last lines of a trace that a report shows.
 const LAST: usize = 40;
 
 /// Returns all lines of a trace.

@@ -1,4 +1,4 @@
-//! Errors against the truth.
+//! Tests of errors against the truth.
 
 use super::super::error::{Errors, Pooled};
 use super::super::figure::{Bar, Figure};

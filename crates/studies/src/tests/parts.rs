@@ -1,4 +1,4 @@
-//! Outcome of the parts: bins, verdicts and exceptions.
+//! Tests of the outcome of the parts: bins, verdicts and exceptions.
 
 use super::super::bins::{bin_of, defects, lots_without_reject, machine, outcome};
 use super::super::exception;

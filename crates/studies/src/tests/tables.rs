@@ -1,4 +1,4 @@
-//! Bars, tables and charts.
+//! Tests of bars, tables and charts.
 
 use super::super::chart::Chart;
 use super::super::figure::{Bar, Figure, shown};

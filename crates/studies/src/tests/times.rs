@@ -1,4 +1,4 @@
-//! Rig time and wall time.
+//! Tests of figures of rig time and wall time.
 
 use super::super::cycle::{pieces, times};
 use super::super::pace::{profile, same_bytes};

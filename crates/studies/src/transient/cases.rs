@@ -55,7 +55,8 @@ const KEYS: &[&str] = &[
 /// Reads every case.
 ///
 /// # Errors
-/// Text that is not JSON, or a field that is missing, unknown or outside its range; the error names the field.
+/// Fails when the text is not JSON, or when a field is missing, unknown or outside its range; the error names the
+/// field.
 pub fn read(text: &str) -> anyhow::Result<Vec<Case>> {
     let file: Value = serde_json::from_str(text).context("expected JSON")?;
     let root = Field::root(&file);

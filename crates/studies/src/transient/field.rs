@@ -47,7 +47,7 @@ impl<'a> Field<'a> {
     /// Returns a member; `None` when it is absent or null.
     ///
     /// # Errors
-    /// The field is not an object.
+    /// Fails when the field is not an object.
     pub fn member(&self, key: &str) -> anyhow::Result<Option<Field<'a>>> {
         let value = self.object()?.get(key).filter(|value| !value.is_null());
         let path = self.below(key);
@@ -57,7 +57,7 @@ impl<'a> Field<'a> {
     /// Returns a required member.
     ///
     /// # Errors
-    /// The member is absent or null, or the field is not an object.
+    /// Fails when the member is absent or null, or when the field is not an object.
     pub fn must(&self, key: &str, expected: &str) -> anyhow::Result<Field<'a>> {
         let missing = || anyhow!("{}: missing, expected {expected}", self.below(key));
         self.member(key)?.ok_or_else(missing)
@@ -66,7 +66,7 @@ impl<'a> Field<'a> {
     /// Returns all members.
     ///
     /// # Errors
-    /// A member whose name is not in `known`, or a field that is not an object.
+    /// Fails when a member has a name that is not in `known`, or when the field is not an object.
     pub fn members(&self, known: &[&str]) -> anyhow::Result<Vec<(&'a str, Field<'a>)>> {
         let mut all = Vec::new();
         for (key, value) in self.object()? {
@@ -88,7 +88,7 @@ impl<'a> Field<'a> {
     /// Returns the elements of a list.
     ///
     /// # Errors
-    /// The field is not a list.
+    /// Fails when the field is not a list.
     pub fn list(&self, expected: &str) -> anyhow::Result<Vec<Field<'a>>> {
         let list = self.value.as_array().ok_or_else(|| self.wrong(expected))?;
         let one = |(at, value)| Field {
@@ -101,7 +101,7 @@ impl<'a> Field<'a> {
     /// Returns `N` finite numbers.
     ///
     /// # Errors
-    /// The field is not a list of `N` finite numbers.
+    /// Fails when the field is not a list of `N` finite numbers.
     pub fn numbers<const N: usize>(&self, expected: &str) -> anyhow::Result<[f64; N]> {
         let list = self.list(expected)?;
         if list.len() != N {
@@ -117,7 +117,7 @@ impl<'a> Field<'a> {
     /// Returns a finite number.
     ///
     /// # Errors
-    /// The field is not a finite number.
+    /// Fails when the field is not a finite number.
     pub fn number(&self) -> anyhow::Result<f64> {
         let number = self.value.as_f64().filter(|number| number.is_finite());
         number.ok_or_else(|| self.wrong("a finite number"))
@@ -126,7 +126,7 @@ impl<'a> Field<'a> {
     /// Returns a text.
     ///
     /// # Errors
-    /// The field is not a text.
+    /// Fails when the field is not a text.
     pub fn text(&self) -> anyhow::Result<&'a str> {
         self.value.as_str().ok_or_else(|| self.wrong("a text"))
     }

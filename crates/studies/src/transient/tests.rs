@@ -1,4 +1,4 @@
-//! Cases files: reading, refusals, and answers equal to those of the file.
+//! Tests of cases files: reading, refusals, and answers equal to those of the file.
 #![allow(clippy::unwrap_used)]
 
 use super::*;

@@ -28,7 +28,7 @@ impl Board {
         volts.clamp(-self.table.input_limit_v, self.table.input_limit_v)
     }
 
-    /// Returns the clamp of the zener, V: it scales with the range of the supply.
+    /// Returns the voltage at which the zener clamps, V: it scales with the range of the supply.
     pub(super) fn zener_v(&self) -> f64 {
         self.table.zener_v * self.supply.range().factor
     }

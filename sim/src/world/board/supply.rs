@@ -16,7 +16,7 @@ use crate::world::wiring::Wiring;
 pub struct SupplyRange {
     /// State of the two range outputs, bit n = `supply_range_n`.
     pub code: u8,
-    /// Factor on the gains of the sources.
+    /// Factor by which the range multiplies the gains of the sources.
     pub factor: f64,
     /// Largest voltage, V.
     pub max_v: f64,
@@ -33,9 +33,9 @@ pub struct CoilSupply {
     change: Option<(SupplyRange, f64)>,
     change_us: f64,
     zero_mv: f64,
-    /// Voltage at the terminal of each source.
+    /// Voltage at the terminal of each source, V.
     volts: [f64; 3],
-    /// Volts of supply per volt of each source, at factor 1.
+    /// Volts of the supply per volt at the terminal of each source, in a range with factor 1.
     gain: [f64; 3],
     ramp_start_mv: f64,
     arm_level_v: f64,

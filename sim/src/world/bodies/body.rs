@@ -12,7 +12,7 @@ const PUSHER: usize = 1;
 const SORT_Z: usize = 5;
 const SORT_AXIS: usize = 7;
 
-/// Places of a part, in the order of the bodies after the elements.
+/// Names of the bodies that stand for a part in each of its places; in the list of bodies they follow the elements.
 pub const PARTS: [&str; 4] = ["part_pocket", "part_pusher", "part_nest", "part_gripper"];
 
 /// One body: its solids at rest and its motion.
@@ -90,7 +90,7 @@ pub fn element(scene: &Scene, element: &Element) -> Body {
     Body::new(element.id.clone(), solids, moves)
 }
 
-/// Builds a part in each of its places; a part between the fingers is defined at its grip: z down, axis at the
+/// Builds a part in each of its places. The part between the fingers rests where they grip it: z down, axis at the
 /// nest.
 pub fn parts(scene: &Scene, size: &Size) -> Vec<Body> {
     let places = &scene.guard;

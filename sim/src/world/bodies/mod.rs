@@ -105,7 +105,7 @@ impl Bodies {
         found
     }
 
-    /// Returns the greatest depth of two bodies along their way, mm.
+    /// Returns the greatest depth to which two bodies penetrate each other along their way, mm.
     fn deepest_mm(
         &self,
         pair: (usize, usize),

@@ -24,7 +24,7 @@ pub struct Body {
     /// Shape.
     #[serde(flatten)]
     pub form: Form,
-    /// Pose relative to the owner; identity by default.
+    /// Pose in the machine, or in the compound that contains the shape; identity by default.
     #[serde(default)]
     pub pose: Placement,
 }
@@ -83,9 +83,9 @@ pub struct Pair {
     pub a: String,
     /// Second body, in the same form.
     pub b: String,
-    /// Rule for the two.
+    /// Contact rule of the two.
     pub rule: Rule,
-    /// Permitted depth, mm.
+    /// Depth to which the two may press into each other, mm.
     pub depth_mm: Option<f64>,
     /// Actuators that may press them together; empty for any.
     #[serde(default)]

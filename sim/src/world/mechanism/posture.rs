@@ -1,4 +1,4 @@
-//! Postures of the mechanism for the detection of crashes, and the review of the motion since the last one.
+//! Postures of the mechanism for the detection of crashes, and the check of the motion between two of them.
 
 use std::collections::BTreeSet;
 
@@ -13,14 +13,14 @@ pub(super) struct CrashWatch {
     /// Last check: instant (microseconds) and posture.
     last: Option<(u64, Posture)>,
     touching: BTreeSet<(usize, usize)>,
-    /// The part of the pocket is still in front of the pusher that pulls it back.
+    /// True while the part of the pocket is still in front of the returning pusher, not yet at rest in the pocket.
     pub pulled_back: bool,
-    /// A fault makes the rising fingers leave their part in the nest.
+    /// True when a fault makes the rising fingers leave their part in the nest.
     pub slides_off: bool,
 }
 
 impl CrashWatch {
-    /// Starts without a check.
+    /// Creates the watch before its first check.
     pub fn new(bodies: Bodies) -> Self {
         Self {
             bodies,
@@ -39,7 +39,7 @@ impl Mechanism {
         let Some((from_us, before)) = self.lookout.last.replace((now_us, now)) else {
             return;
         };
-        // The places have not changed since the last check, since every change calls it.
+        // The places have not changed since the last check, because a check precedes every change.
         let from = Posture {
             mm: before.mm,
             ..now

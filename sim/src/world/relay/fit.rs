@@ -9,7 +9,7 @@
 //!
 //! Newton's method on the exact statics fits the thresholds first; they do not depend on mass or eddy currents.
 //! Broyden's method on whole transients then fits the times. All parameters are logarithms, so none becomes
-//! negative. No relay can show about one pair of times in thirty, since a heavy armature does not fall fast; then
+//! negative. Of thirty drawn pairs of times about one is impossible, since a heavy armature does not fall fast; then
 //! the operate time is exact and the release time as near as possible. A slow relay has friction at its hinge, or
 //! iron that holds the flux: bisection fits that one parameter, and the other time follows.
 
@@ -26,7 +26,7 @@ pub struct FitTarget {
     pub turns: f64,
     /// Quasi-static pickup and release thresholds, V.
     pub volts: [f64; 2],
-    /// Operate time from nominal voltage and release time into the zener, s.
+    /// Operate time from rest at nominal voltage, and release time from nominal voltage into the zener, s.
     pub seconds: [f64; 2],
     /// Nominal coil voltage, V.
     pub nominal_v: f64,
@@ -215,7 +215,7 @@ impl FitTarget {
     }
 }
 
-/// Returns the first make of a contact, s; [`LONGEST_S`] if it never makes.
+/// Returns the instant of the first make of a contact, s; [`LONGEST_S`] if it never makes.
 fn first_make(model: &Model, start: State, drive: &Drive, contact: Kind) -> f64 {
     let mut solver = Solver::new(model, drive, 0.0, start, RTOL);
     while let Ok(Some(event)) = solver.advance(model, drive, LONGEST_S) {

@@ -60,7 +60,7 @@ pub struct Relay {
     pub record: RelayRecord,
 }
 
-/// Longest interval with a constant coil resistance, microseconds.
+/// Longest interval over which the coil resistance counts as constant, microseconds.
 const STILL_US: f64 = 50_000.0;
 /// Time after which the bounce of a closure has ended, microseconds.
 const SETTLING_US: f64 = 8_000.0;
@@ -123,7 +123,7 @@ impl Relay {
         &self.drawn
     }
 
-    /// Returns the rig time on each level of the motion.
+    /// Returns the rig time that the motion has spent on each level, held and moving.
     pub fn levels(&self) -> Levels {
         self.motion.levels()
     }
@@ -188,7 +188,7 @@ impl Relay {
         above_zero / (REFERENCE_C - self.copper_zero_c)
     }
 
-    /// Heats the coil up to `t_us`; the supply has been constant since the last call.
+    /// Advances the temperature of the coil to `t_us`; the supply has been constant since the last call.
     fn settle(&mut self, t_us: f64) {
         let volts = self.supply.volts();
         let seconds = (t_us - self.since_us) * 1e-6;

@@ -23,7 +23,7 @@ const LEAST_PUSH_N: f64 = 0.02;
 const CALM_M_PER_S: f64 = 4e-3;
 /// Distance from equilibrium above which the armature is not at rest, m.
 const CALM_M: f64 = 2e-7;
-/// Interval between two tests for rest of a moving armature, s.
+/// Interval at which the motion checks whether a moving armature has come to rest, s.
 const LOOK_S: f64 = 5e-4;
 /// Longest step of the flux while held, s.
 const FLUX_STEP_S: f64 = 2.5e-4;
@@ -33,7 +33,7 @@ const FLUX_STEP_SHARE: f64 = 0.25;
 /// Rate of the flux below which it counts as constant, V: a microvolt of the source.
 const STILL_V: f64 = 1e-6;
 
-/// Rig time on each level, s.
+/// Rig time spent on each level of the motion, s.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Levels {
     /// Armature pressed on a stop.
@@ -54,8 +54,8 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Starts at `t_s` without current, on the backstop, or on the seat where a weld holds the armature; a
-    /// `stuck` armature never moves.
+    /// Creates the motion at `t_s`, without current, on the backstop, or on the seat where a weld holds the armature;
+    /// a `stuck` armature never moves.
     pub fn new(model: Model, t_s: f64, drive: Drive, stuck: bool, seated: bool) -> Self {
         let mut state = model.at_rest(0.0);
         if seated {
@@ -73,7 +73,7 @@ impl Motion {
         }
     }
 
-    /// Returns the rig time on each level.
+    /// Returns the rig time spent on each level.
     pub fn levels(&self) -> Levels {
         self.levels
     }

@@ -62,7 +62,7 @@ impl RelayRecord {
         self.operations
     }
 
-    /// Returns the open time after that make, ms.
+    /// Returns the open time of this contact after its last full-voltage make, ms.
     pub fn bounce_ms(&self, contact: Contact) -> Option<f64> {
         let timing = &self.timing[contact as usize];
         timing.time_ms.map(|_| timing.bounce_us / 1000.0)

@@ -38,7 +38,7 @@ impl ContactFilm {
 pub struct RelayValues {
     /// Index in the lot, or in the list of certificates.
     pub index: u64,
-    /// Marks a reference part: it has a certificate and does not belong to the lot.
+    /// True for a reference part: it has a certificate and does not belong to the lot.
     pub is_reference: bool,
     /// Defect, if any.
     pub defect: Option<Defect>,
@@ -240,7 +240,7 @@ impl RelayValues {
         }
     }
 
-    /// Returns the results that a relay with these values shows; an open coil counts as wound.
+    /// Returns the results that a relay with these values shows; an open coil counts as intact.
     pub fn fit_target(&self, world: &WorldTable) -> FitTarget {
         let wound = self.nominal_ohm(world);
         FitTarget {

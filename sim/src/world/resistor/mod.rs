@@ -68,7 +68,7 @@ impl ProbeInterface for Resistor {
         self.supply_v / self.input_ohm()
     }
 
-    /// Without inductance no current flows into the suppression.
+    /// Changes the supply; without inductance no current flows into the suppression.
     fn drive(&mut self, _t_us: f64, supply: Supply) {
         self.supply_v = supply.volts();
     }

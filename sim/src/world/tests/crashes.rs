@@ -1,4 +1,4 @@
-//! Strokes that make bodies crash, and strokes that only seem to.
+//! Tests of strokes that make bodies crash, and of strokes that only seem to.
 
 use super::hand::{Hand, options};
 use crate::truth::WorldRecord;

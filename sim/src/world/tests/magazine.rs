@@ -18,7 +18,8 @@ fn loaded(parts: u64) -> Magazine {
     Magazine::load(&options, &world, &WorldFaults::default(), 23.0, 23.0).unwrap()
 }
 
-/// Empties the magazine; returns the number in the lot (`None` for a reference part) and the coil of every part.
+/// Empties the magazine; returns number in the lot (`None` for a reference part) and coil resistance (ohm) of each
+/// part.
 fn emptied(magazine: &mut Magazine) -> Vec<(Option<u64>, f64)> {
     let mut faults = WorldFaults::default();
     let parts = std::iter::from_fn(|| magazine.take(0, &mut faults));

@@ -84,7 +84,8 @@ async function readPart() {
   }
 }
 
-// Groups times less than 50 ms apart into bars: one characteristic may have readings far apart in a test, such as NC.
+// Groups times into bars; a pause of 50 ms begins a new bar, because readings of one characteristic may lie far apart
+// in a test, as those of NC do.
 function groupTimes(times, name) {
   const bars = [];
   for (const at of times.sort((a, b) => a - b)) {

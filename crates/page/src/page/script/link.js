@@ -1,6 +1,6 @@
 // The link to the rig: receives views and beats, and marks the page as stale without them.
 
-// A beat comes each second. One may be missing; values older than 3 s are grey in any case.
+// Silence after which the link counts as lost, ms: a beat comes each second, and one may be missing.
 const STALE_MS = 2200;
 const AGAIN_MS = 1000;
 let heard = -Infinity;

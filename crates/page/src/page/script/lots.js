@@ -5,7 +5,7 @@ const BOOK = 20;
 const AUDIT = 50;
 let book = [];
 let skipped = 0;
-// Lot and state at the last reading; a change causes the next one.
+// Lot and state when the page last read the lots; when they change, the page reads the lots again.
 let readFor = "";
 
 const underWay = (lot) => view && view.under_way && view.lot === lot;
@@ -18,7 +18,7 @@ async function orderLot(order) {
   if (await giveOrder(order, lotAnswer)) readBook();
 }
 
-// Returns the reason against an order about a lot: of the machine or of the lot; empty without one.
+// Returns why the machine or the lot forbids an order about the lot; empty when neither does.
 function whyNotLot(order, line) {
   if (order === "release_lot" && underWay(line.lot)) return word("lots-clear_alarm");
   if (underWay(line.lot)) return order === "close_lot" ? whyNot("close_lot") : whyNot("start", "lot");

@@ -49,7 +49,7 @@ function showMimic() {
 
 // --- a motion that the guard refused: mover, blocker and swept volume ---
 
-// Falls back to the id: a plant's own scene may have bodies without a text.
+// Returns the text of a body, or its id: a plant's own scene may have bodies without a text.
 const bodyText = (id) => wordOr("body-" + id, id.replaceAll("_", " "));
 
 const bodiesText = ({mover, blocker, text}) => (mover === "" ? text : bodyText(mover) + " → " + bodyText(blocker));
@@ -70,7 +70,7 @@ function hull(points) {
   return [...half(sorted), ...half(sorted.reverse())];
 }
 
-// Returns the area that a body sweeps between the ends of its strokes: the hull of its silhouettes, which are convex.
+// Returns polygons of the area that a body sweeps during its strokes: the hull of each silhouette at the ends.
 function swept(body, rides, strokes) {
   const shifts = [0, 1, 2].map((which) => rides.reduce(([right, down], [name, x, y]) => {
     const stroke = strokes.find((it) => it.actuator === name);

@@ -22,7 +22,7 @@ function showLast(last) {
   at("values").replaceChildren(...measuredKeys().map((key) => valueRow(key, last)));
 }
 
-// Returns the characteristics with limits in the recipe, all before the first lot.
+// Returns the characteristics that have limits in the recipe; before the first lot, all characteristics.
 function measuredKeys() {
   const keys = keysOf((key) => Object.hasOwn(view.limits, key));
   return keys.length ? keys : keysOf(() => true);
@@ -37,7 +37,8 @@ function valueRow(key, last) {
   return row;
 }
 
-// Draws a value between its limits. Without a limit the band ends at 0 or at 1.5 times the greatest number.
+// Draws a value in the band of its limits. Without a lower limit the band begins at 0 or at a value below 0, without an
+// upper limit it ends at 1.5 times the greatest number.
 function bandCell(key, last) {
   const cell = make("td"), limits = view.limits[key], value = last ? last.values[key] : undefined;
   if (!limits || !Number.isFinite(value)) return cell;

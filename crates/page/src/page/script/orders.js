@@ -14,14 +14,15 @@ async function sendOrder(order) {
   }
 }
 
-// Sends an order of a logged-in person and passes the answer to `show`; returns whether the rig took the order.
+// Sends an order if a person is logged in; passes the answer, or the refusal, to `show`; returns whether the rig took
+// it.
 async function giveOrder(order, show) {
   const why = me === null ? word("stop-login") : await sendOrder(order);
   show(why || word("order-" + order.order) + ": " + word("order-taken"));
   return why === "";
 }
 
-// Returns the text of a jog that the guard refuses, with the page's names of both bodies; empty for other orders.
+// Returns why the guard refuses a jog, with the page's names of both bodies; empty for any other order.
 function refusedJog({order, motion}) {
   const jog = order === "jog" && view.machine.jogs.find((it) => it.motion === motion);
   return jog && jog.refused && jog.refused.mover ? word("collision") + ": " + refusedText(jog.refused) : "";

@@ -13,7 +13,7 @@ async function enterQuality() {
   }
 }
 
-// Returns the figures of a printed report without its style.
+// Returns the drawings of a printed report that match the selector `which`, without the style of the report.
 async function figures(path, which) {
   const text = (await (await ask(path)).text()).replace(/<style[^]*?<\/style>/g, "").replace(/ style="[^"]*"/g, "");
   const page = new DOMParser().parseFromString(text, "text/html");

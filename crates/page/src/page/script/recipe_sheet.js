@@ -1,9 +1,10 @@
 // A revision of a recipe as a sheet: every key in words with its unit; for an engineer with range and input.
 
-// Three columns.
+// Sections of the sheet, in three columns.
 const RECIPE_SECTIONS = [["about", "part", "decision"], ["limits"], ["test", "strategy"]];
 let recipe = null, drawnRecipe = "";
-// Texts typed into the newest revision, by path; the refusal of a value; the last message, as a function of the language.
+// Texts typed into the newest revision, by path of the key. Below: the last refusal of a value, and a function that
+// returns the last message in the present language.
 const typed = new Map();
 let refusedField = null, recipeMessage = () => ["", false];
 
@@ -11,10 +12,10 @@ const mayRevise = () => me !== null && me.role === "engineer" && recipe !== null
 const recipeSection = (path) => (path.startsWith("test.strategy.") ? "strategy" : path.includes(".") ? path.split(".")[0] : "about");
 const rangeText = (it) => (it.low === undefined ? "" : (it.low_allowed ? it.low + " … " : "> " + it.low + " … ") + it.high);
 
-// Returns the text of a value for its input; for a list one text per number.
+// Returns a value as the text of its input field; for a list, one text per number.
 const asTyped = (value) => (Array.isArray(value) ? value.map(String) : value === null ? "" : String(value));
 
-// Converts typed text to the value for the rig. Text that is no number goes as it is; the rig refuses it with the key.
+// Converts typed text to the value for the rig. Sends text that is no number as it is; the rig refuses it with the key.
 function asValue(field, text) {
   if (Array.isArray(text)) return text.map((it) => asValue({form: "number"}, it));
   if (text === "" && field.optional) return null;

@@ -30,7 +30,7 @@ const unitText = (unit) => UNITS[unit] || unit || "";
 // --- characteristics ---
 
 const characteristic = (key) => CHARACTERISTICS.find((it) => it.key === key);
-// Falls back to the key: imported files may hold characteristics that no kind has.
+// Returns the name of a characteristic, or its key: imported files may hold characteristics that no kind has.
 const nameOf = (key) => characteristic(key)?.[language] ?? key;
 const unitOf = (key) => unitText(characteristic(key)?.unit);
 const keysOf = (has) => CHARACTERISTICS.map((it) => it.key).filter(has);

@@ -1,4 +1,4 @@
-//! Contrast of every text with its background, by the formula of WCAG 2.2, clause 1.4.3.
+//! Tests of the contrast of every text with its background, by the formula of WCAG 2.2, clause 1.4.3.
 
 use super::super::LOOK;
 

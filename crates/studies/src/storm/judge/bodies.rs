@@ -41,8 +41,8 @@ pub fn violations(case: &Case) -> Vec<String> {
     violations
 }
 
-/// Assigns rows to the numbers of their bodies and describes rows without one. The bin decides for a landed part, the place
-/// at the verdict for the others.
+/// Returns each row with the number of its body, and a description of each row without a body. The bin identifies the
+/// body of a landed part, the place at the verdict any other body.
 pub fn owners(case: &Case) -> (Vec<(&Part, usize)>, Vec<String>) {
     let (mut owners, mut violations) = (Vec::new(), Vec::new());
     let (landed, other): (Vec<&Part>, Vec<&Part>) =
@@ -79,8 +79,8 @@ fn body_by_bin(case: &Case, row: &Part) -> Option<usize> {
         .map(|(number, _)| number)
 }
 
-/// Returns the body in the nest for a tested part. A part without a test may also have been in the gripper: then the body
-/// there comes first, unless it has a row in the same life.
+/// Returns the body that was in the nest at the verdict. For a part without a test the body in the gripper comes first,
+/// unless that one has a row in the same life.
 fn body_by_place(case: &Case, row: &Part, known: &[(&Part, usize)]) -> Option<usize> {
     let judged_us = rig_us(row.time);
     let at = |place: &Place| {
@@ -180,7 +180,8 @@ fn in_a_bin(
     }
 }
 
-/// Returns true when an alarm of the life at that instant declares the loss, or of a later life up to the first that homed.
+/// Returns true when an alarm declares the loss: one of the life at that instant, or of a later life up to the first
+/// that homed.
 fn is_declared(case: &Case, at_us: u64) -> bool {
     has_alarm(case, at_us, |alarm| DECLARED.contains(&alarm.code.as_str()))
 }

@@ -25,13 +25,13 @@ use units::Span;
 /// Everything that the rules need. All times are microseconds of rig time, over all lives.
 #[derive(Debug, Clone)]
 pub struct Case {
-    /// Lives in their order.
+    /// Lives of the controller, in order of time.
     pub lives: Vec<EndedLife>,
     /// Every body that has left the magazine.
     pub bodies: Vec<BodyTruth>,
-    /// Driven motions: instant of the begin, and name of the mechanism.
+    /// Driven motions: instant of the start, and name of the actuator.
     pub driven: Vec<(u64, &'static str)>,
-    /// Bodies that touched, as the rig describes them.
+    /// Bodies that touched although they must not, as the rig describes them.
     pub touched: Vec<String>,
     /// Coils driven in a supply range above the commanded one.
     pub overdrives: Vec<Overdrive>,

@@ -1,4 +1,4 @@
-//! The rules find errors: one sound case, and one planted error for each rule.
+//! Tests that the rules find errors: one sound case, and one planted error for each rule.
 
 #![allow(clippy::unwrap_used)]
 

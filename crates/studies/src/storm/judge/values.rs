@@ -75,7 +75,7 @@ fn foreign_value(readings: &[Reading], part: &PartTruth) -> Option<String> {
 }
 
 fn misjudged(case: &Case, row: &Part, readings: &[Reading], part: &PartTruth) -> Option<String> {
-    // Least distance inside its range, above 0 inside.
+    // Distance of the truth from the nearer limit, above 0 inside the range.
     let inside = |it: &Reading| {
         let own = case.limits.iter().find(|(known, _)| *known == it.parameter);
         own.map_or(f64::INFINITY, |(_, range)| {

@@ -39,7 +39,8 @@ impl Waveform {
     /// Creates a waveform from points of (seconds, volts).
     ///
     /// # Errors
-    /// Returns the index of the first point that is not finite or precedes its predecessor; 0 for an empty list.
+    /// Fails with the index of the first point that is not finite or precedes its predecessor; with 0 for an empty
+    /// list.
     pub fn new(points: Vec<[f64; 2]>) -> Result<Self, usize> {
         let finite = |p: &[f64; 2]| p[0].is_finite() && p[1].is_finite();
         if points.is_empty() {

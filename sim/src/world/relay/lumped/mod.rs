@@ -39,15 +39,15 @@ pub use solver::{Event, SolveError, Solver};
 
 /// The five states in SI units, in the order of the constants below.
 pub type State = [f64; 5];
-/// Flux linkage.
+/// Index of the flux linkage, V s.
 pub const LAMBDA: usize = 0;
-/// Travel of the armature.
+/// Index of the travel of the armature, m.
 pub const X: usize = 1;
-/// Its speed.
+/// Index of the speed of the armature, m/s.
 pub const V: usize = 2;
-/// Travel of the moving contact.
+/// Index of the travel of the moving contact, m.
 pub const Y: usize = 3;
-/// Its speed.
+/// Index of the speed of the moving contact, m/s.
 pub const W: usize = 4;
 
 /// Result of a transient: its events and the cost of the integration.

@@ -17,7 +17,7 @@ pub struct Model {
     eddy: f64,
     per_phis: f64,
     per_mass: [f64; 2],
-    /// Positions of its stops.
+    /// Positions of the stops of the relay, m.
     pub stops: StopPositions,
     pub(super) stop: Stop,
     pub(super) contact: Stop,
@@ -116,8 +116,8 @@ impl Model {
         -current * self.p.N * self.p.N / self.p.k_ec
     }
 
-    /// Returns the rate of the flux linkage of a resting armature, V; decides without a flag whether the
-    /// suppression conducts.
+    /// Returns the rate of the flux linkage while the armature rests, V; decides from the state, without a flag,
+    /// whether the suppression conducts.
     pub fn resting_flux_rate(&self, t_s: f64, s: &State, drive: &Drive) -> f64 {
         let current = self.still_current(s);
         let conducting = self.flux_rate(t_s, current, Modes::default(), drive);
@@ -127,7 +127,7 @@ impl Model {
         }
     }
 
-    /// Returns the time constant of the flux linkage of a resting armature, s: of winding and eddy currents
+    /// Returns the time constant of the flux linkage while the armature rests, s: of winding and eddy currents
     /// together, or of eddy currents alone while the suppression blocks.
     pub fn flux_time_s(&self, s: &State, flux_rate: f64, drive: &Drive) -> f64 {
         let reluctance = self.reluctance(s[LAMBDA] / self.p.N, self.p.X - s[X]);

@@ -26,7 +26,8 @@ fn a_specimen_shows_its_drawn_thresholds_and_times() {
             };
             near(model.pickup().volts, part.operate_v, 1e-9);
             near(model.release().volts, part.release_v, 1e-9);
-            // The draw of a defect ignores which times such springs permit; the fit comes as near as it can.
+            // The times of a defective part are drawn even if its springs do not permit them; the fit comes as near as
+            // it can.
             let sound = part.defect.is_none() && part.time_origin == TimeOrigin::Lot;
             if sound || part.time_origin == TimeOrigin::Hinge {
                 near(fit_target.operate_s(&model) * 1e3, part.operate_ms, 1e-3);

@@ -1,5 +1,5 @@
-//! Tests of the five-state model. Other programs computed the figures with many digits from the same equations,
-//! at two tolerances each.
+//! Tests of the five-state model. Other programs computed the expected figures from the same equations with many
+//! digits, each at two tolerances.
 #![allow(clippy::unwrap_used)]
 
 mod hard;

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Volts, NC open, NO make, seat, last change of NO, makes.
+/// Operations: volts; seconds until NC opens, NO makes, the armature seats, NO changes last; makes of NO.
 const OPERATIONS: [(f64, f64, f64, f64, f64, u32); 3] = [
     (
         9.0,
@@ -30,7 +30,8 @@ const OPERATIONS: [(f64, f64, f64, f64, f64, u32); 3] = [
     ),
 ];
 
-/// Suppression, NO open, NC make, current gone, last change of NC, makes.
+/// Releases: volts of the suppression; seconds until NO opens, NC makes, the current is gone, NC changes last; makes of
+/// NC.
 const RELEASES: [(f64, f64, f64, f64, f64, u32); 3] = [
     (
         60.0,
