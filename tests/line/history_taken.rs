@@ -1,4 +1,4 @@
-//! Histories that cannot be written: of another program, of a newer version, locked by another process.
+//! Histories that cannot be written: of another program, of a newer version, of another rig, locked by another process.
 
 use crate::program::{Workshop, objects};
 use rusqlite::Connection;
@@ -53,6 +53,61 @@ fn a_lot_refuses_the_history_of_a_newer_program() {
         ),
         ("", 3)
     );
+}
+
+#[test]
+fn real_and_simulated_parts_never_share_a_history() {
+    let workshop = Workshop::new("other-rig");
+    workshop.run(&format!("{LOT} --count 1")).with_status(0);
+    let refused = |words: &str, holds: &str| {
+        let said = workshop.run(words).with_status(2);
+        let told = format!("relayrig.db is the history of {holds}");
+        assert!(said.stderr.contains(&told), "{words}: {said}");
+        assert!(said.stderr.contains("--db"), "{words}: {said}");
+        assert_eq!(said.stdout, "", "{words}");
+    };
+    for words in [
+        "run --lot B --recipe jzc-22f-012 --count 1",
+        "serve --listen 127.0.0.1:0",
+        "calibrate",
+        "calibrate --verify",
+    ] {
+        refused(words, "the simulated rig");
+    }
+    let by_hand = Connection::open(workshop.folder.join("relayrig.db")).unwrap();
+    by_hand
+        .execute("UPDATE rig SET source = 'rig'", [])
+        .unwrap();
+    drop(by_hand);
+    for words in [
+        LOT,
+        "serve --listen 127.0.0.1:0 --sim",
+        "--db relayrig.db demo --listen 127.0.0.1:0",
+        "calibrate --sim",
+        "history generate --parts 3",
+    ] {
+        refused(words, "a real rig");
+    }
+    workshop.write("old.csv", "operate_voltage_v\n7.5\n");
+    workshop
+        .run("history import old.csv --lot old")
+        .with_status(0);
+    workshop.run("history list").with_status(0);
+    assert_eq!(workshop.count("SELECT count(*) FROM run"), 2);
+}
+
+#[test]
+fn a_demo_has_a_history_of_its_own() {
+    let workshop = Workshop::new("demo-history");
+    let mut demo = workshop.start_logging("demo --listen 127.0.0.1:0");
+    let mut told = BufReader::new(demo.stderr.take().unwrap());
+    let mut text = String::new();
+    while !text.contains("history in relayrig-demo.db") {
+        assert!(told.read_line(&mut text).unwrap() > 0, "{text}");
+    }
+    demo.kill().unwrap();
+    demo.wait().unwrap();
+    assert!(!workshop.has("relayrig.db"));
 }
 
 #[test]

@@ -4,7 +4,7 @@
 
 use super::{
     AlarmChangeRecord, CurveRecord, InsideRecord, LotStateRecord, OrderRecord,
-    ReferenceCheckRecord, RunEndRecord, WearRecord,
+    ReferenceCheckRecord, ReopeningRecord, RunEndRecord, WearRecord,
 };
 use machine::dut::Reason;
 use serde::{Deserialize, Serialize};
@@ -188,6 +188,8 @@ pub enum Row {
     RunEnded(RunEndRecord),
     /// A new state of a lot.
     LotState(LotStateRecord),
+    /// A complete lot that is opened again.
+    Reopened(ReopeningRecord),
     /// A check of reference parts against their certificates.
     ReferenceCheck(ReferenceCheckRecord),
     /// An order with its answer.

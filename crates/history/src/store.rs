@@ -5,7 +5,7 @@
 use super::error::{Doing, HistoryError, Result};
 use super::{
     AlarmRecord, CalibrationRecord, LandingRecord, LotRecord, PartRecord, Row, alarm_states, gates,
-    insert, inside, landing, open, orders, run_end, series, wear,
+    insert, inside, landing, open, orders, owner, reopening, run_end, series, wear,
 };
 use rusqlite::{Connection, OptionalExtension, Transaction, TransactionBehavior, params};
 use std::collections::HashMap;
@@ -81,7 +81,9 @@ impl Store {
         const DOING: &str = "opening the lot";
         let source = source(lot.simulated);
         let written_by = self.written_by.clone();
+        let path = self.path.clone();
         let transaction = self.transaction(DOING)?;
+        owner::claim(&transaction, &path, lot.simulated)?;
         let (run, number) = insert::run(&transaction, lot, source, &written_by).doing(DOING)?;
         transaction.commit().doing(DOING)?;
         let before = self.row_ids.runs.insert(lot.lot.clone(), run);
@@ -270,6 +272,7 @@ fn write(transaction: &Transaction<'_>, row_ids: &mut RowIds, rows: &[Row]) -> R
         Row::LotState(it) => gates::state(transaction, it)
             .map(|_| ())
             .doing("recording the state of a lot"),
+        Row::Reopened(it) => reopening::insert(transaction, it),
         Row::ReferenceCheck(it) => gates::reference_check(transaction, row_ids, it),
         Row::Order(it) => orders::insert(transaction, row_ids, it),
         Row::Wear(it) => wear::add(transaction, it),

@@ -103,7 +103,7 @@ pub(super) async fn card(State(app): App, printed: Members<CardQuery>) -> Result
         let recipe = config::load_recipe(&dir, &name)?;
         let paper = paper(lang.unwrap_or(Lang::Zh));
         let plant = config::load_card(&dir)?;
-        let card = card::card(paper.language, &recipe, &plant, &paper.made);
+        let card = card::card(&paper, &recipe, &plant);
         Ok::<_, ApiError>(with_policy(card))
     };
     blocking(made).await

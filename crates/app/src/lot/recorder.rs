@@ -41,6 +41,7 @@ impl Recorder {
     /// Opens the history and begins the lot's run; returns what the run takes over, on a rig a valid calibration.
     pub fn open(db: &Path, context: &LotContext) -> anyhow::Result<(Self, PriorState)> {
         let mut store = Store::open(db, &Identity::of_this_program())?;
+        store.claim(context.is_simulated())?;
         store.cut_off(context.is_simulated(), context.epoch_us)?;
         let prior_state = PriorState::read(&store, context)?;
         let mut recorder = Self {

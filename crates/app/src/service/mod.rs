@@ -82,6 +82,7 @@ impl Service {
             #[cfg(feature = "sim")]
             RigSource::Simulated(_) => {}
         }
+        history::check_rig(&files.db, source.is_simulated())?;
         let order = between(&files.config)?;
         let recipe = Arc::new(load_recipe(&files.config, &order.recipe)?);
         let admitted = |order: LotOrder| -> Result<AdmittedLot, AdmissionError> {
@@ -153,7 +154,7 @@ impl Service {
                 Exit::Stopped => match self.router.next() {
                     Some(AfterRun::Lot(lot)) => next = Some(*lot),
                     Some(AfterRun::Hold(held)) => {
-                        let row = lot_decision::state(&held.0, &held.1, Decision::Hold);
+                        let row = lot_decision::state_row(&held.0, &held.1, Decision::Hold);
                         Store::open(&self.files.db, &Identity::of_this_program())?
                             .record(&[row])?;
                     }

@@ -131,7 +131,7 @@ fn every_table_is_strict_and_every_column_has_its_remark() {
     assert_eq!(
         names.join(" "),
         "alarm alarm_state calibration curve export golden_check inside lot lot_state measurement ordered \
-         parameter part reason recipe retest run run_end sample series wear"
+         parameter part reason recipe reopening retest rig run run_end sample series wear"
     );
     for (table, sql) in &tables {
         assert!(sql.contains(") STRICT"), "{table}");
