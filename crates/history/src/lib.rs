@@ -74,8 +74,8 @@ pub use orders::{OrderEntry, OrderRecord};
 pub use owner::check_rig;
 pub use part::{Measurement, Part, Sample};
 pub use record::{
-    AlarmRecord, CalibrationRecord, InterruptedRecord, LandingRecord, LotRecord, MeasurementRecord,
-    PartRecord, Row, SampleRecord, snapshot_hash,
+    AlarmRecord, CalibratedRecord, CalibrationRecord, InterruptedRecord, LandingRecord, LotRecord,
+    MeasurementRecord, PartRecord, Row, SampleRecord, snapshot_hash,
 };
 pub use rejudge::rejudged;
 pub use reopening::{Reopening, ReopeningRecord};

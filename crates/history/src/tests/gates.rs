@@ -261,10 +261,21 @@ fn the_calibration_that_a_run_measures_by_stays_with_it() {
     let file = File::new();
     let mut store = file.store();
     store.begin_lot(&lot("A")).unwrap();
-    store.calibrated("A", "0123").unwrap();
+    let of = |lot: &str| {
+        Row::Calibrated(CalibratedRecord {
+            lot: lot.into(),
+            calibration: CalibrationRecord {
+                hash: "0123".into(),
+                body: "{}".into(),
+                ..CalibrationRecord::default()
+            },
+        })
+    };
+    store.record(&[of("A")]).unwrap();
     let lots = file.archive().lots(&Filter::default()).unwrap();
     assert_eq!(lots[0].calibration_hash.as_deref(), Some("0123"));
-    assert!(store.calibrated("B", "0123").is_err());
+    assert!(store.record(&[of("B")]).is_err());
+    assert_eq!(count(&file.by_hand(), "calibration"), 1);
 }
 
 #[test]
