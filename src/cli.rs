@@ -49,14 +49,9 @@ pub struct Cli {
     /// Directory with rig.toml, scene.toml, golden.toml, sim.toml and recipes/
     #[arg(long, global = true, default_value = "config", value_name = "DIR")]
     pub config: PathBuf,
-    /// History file
-    #[arg(
-        long,
-        global = true,
-        default_value = "relayrig.db",
-        value_name = "FILE"
-    )]
-    pub db: PathBuf,
+    /// History file of one rig, real or simulated [default: relayrig.db, or relayrig-demo.db for demo]
+    #[arg(long, global = true, value_name = "FILE")]
+    pub db: Option<PathBuf>,
     /// Level of the log on stderr: error, warn, info, debug, or a filter per module
     #[arg(long, global = true, default_value = "info", value_name = "FILTER")]
     pub log: String,
@@ -96,7 +91,7 @@ pub enum Command {
     History(history::HistoryArgs),
     /// Unacknowledged alarms; acknowledge or shelve them
     Alarm(alarm::AlarmArgs),
-    /// State of a lot; hold, release or close it
+    /// State of a lot; hold, release, close or reopen it
     Lot(lot::LotArgs),
     /// Use counts of probes and jaws since their last replacement
     Wear(wear::WearArgs),
@@ -108,12 +103,24 @@ pub enum Command {
     Quality(history::QualityArgs),
 }
 
+impl Command {
+    /// Returns the name of the history file without `--db`.
+    const fn own_history(&self) -> &'static str {
+        match self {
+            #[cfg(feature = "sim")]
+            Self::Demo(_) => "relayrig-demo.db",
+            _ => "relayrig.db",
+        }
+    }
+}
+
 impl Cli {
     /// Runs the command. An error is bad input; the caller prints it once.
     pub fn execute(self) -> anyhow::Result<Exit> {
+        let own = self.command.own_history();
         let files = Files {
             config: self.config,
-            db: self.db,
+            db: self.db.unwrap_or_else(|| own.into()),
         };
         let (config, db) = (&files.config, &files.db);
         match self.command {

@@ -26,7 +26,6 @@ pub fn run(config: &Path, args: &CardArgs) -> anyhow::Result<Exit> {
     let recipe = load_recipe(config, &args.recipe)?;
     let plant = load_card(config)?;
     let paper = args.paper.paper();
-    args.paper
-        .write(&card(paper.language, &recipe, &plant, &paper.made))?;
+    args.paper.write(&card(&paper, &recipe, &plant))?;
     Ok(Exit::Done)
 }

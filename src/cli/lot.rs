@@ -1,9 +1,9 @@
-//! `relayrig lot`: shows the state of a lot; holds, releases or closes it.
+//! `relayrig lot`: shows the state of a lot; holds, releases, closes or reopens it.
 //!
 //! A decision is an order like those of a screen: the audit of orders records it with the name of the person.
 
 use super::person;
-use anyhow::{Context, ensure};
+use anyhow::{Context, anyhow};
 use app::exit::Exit;
 use app::lot_decision;
 use history::{Archive, Decision, Filter};
@@ -11,14 +11,16 @@ use machine::view::Order;
 use serde_json::json;
 use std::io::Write;
 use std::path::Path;
+use texts::Lang;
 
-/// Shows, holds, releases or closes a lot.
+/// Shows, holds, releases, closes or reopens a lot.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   relayrig lot show A
   relayrig lot hold A --by li --reason 'wrong label on the reel'
   relayrig lot release A --by li --reason 'label was corrected'
   relayrig lot close A --by li
+  relayrig lot reopen A --by zhao --reason 'forty parts were found behind the feeder'
 
 A lot that is held takes no run. A run that is under way goes on to its end.")]
 pub struct LotArgs {
@@ -50,6 +52,11 @@ enum Action {
         after_help = "Example: relayrig lot close A --by li --reason 'rest of the reel returned'"
     )]
     Close(Decided),
+    /// Allow runs of a complete lot again, with the recipe that it has
+    #[command(
+        after_help = "Example: relayrig lot reopen A --by zhao --reason 'forty parts were found'"
+    )]
+    Reopen(Decided),
 }
 
 /// A decision about a lot.
@@ -72,24 +79,20 @@ pub fn run(db: &Path, args: &LotArgs) -> anyhow::Result<Exit> {
         Action::Hold(it) => decide(db, it, Decision::Hold)?,
         Action::Release(it) => decide(db, it, Decision::Release)?,
         Action::Close(it) => decide(db, it, Decision::Close)?,
+        Action::Reopen(it) => decide(db, it, Decision::Reopen)?,
     }
     Ok(Exit::Done)
 }
 
 fn decide(db: &Path, it: &Decided, decision: Decision) -> anyhow::Result<()> {
     let by = person(&it.by)?;
-    ensure!(
-        decision != Decision::Hold || !it.reason.is_empty(),
-        "--reason: found nothing, expected the reason"
-    );
-    known(&Archive::open(db)?, &it.lot)?;
     let order = Order {
         order: decision.order().into(),
         lot: Some(it.lot.clone()),
         reason: Some(it.reason.clone()),
         ..Order::default()
     };
-    Ok(lot_decision::write(db, &order, &by, decision)?)
+    lot_decision::write(db, &order, &by, decision).map_err(|why| anyhow!("{}", why.say(Lang::En)))
 }
 
 fn known(archive: &Archive, lot: &str) -> anyhow::Result<history::LotStatus> {
@@ -106,9 +109,10 @@ fn show(archive: &Archive, lot: &str, as_json: bool) -> anyhow::Result<()> {
     };
     let (runs, counts) = (archive.lots(&filter)?, archive.lot_yield(lot)?);
     let checks = archive.reference_checks(&filter)?;
+    let reopenings = archive.reopenings(lot)?;
     let mut out = std::io::stdout().lock();
     if as_json {
-        let it = json!({"lot": lot, "standing": standing, "yield": counts, "runs": runs, "golden_checks": checks});
+        let it = json!({"lot": lot, "standing": standing, "yield": counts, "runs": runs, "golden_checks": checks, "reopenings": reopenings});
         writeln!(out, "{it}")?;
         return Ok(());
     }
@@ -138,6 +142,9 @@ fn show(archive: &Archive, lot: &str, as_json: bool) -> anyhow::Result<()> {
             run.counts.pass,
             run.counts.parts
         )?;
+    }
+    for it in &reopenings {
+        writeln!(out, "reopened at {} by {}: {}", it.at, it.who, it.why)?;
     }
     let percent = |n: u64| 100.0 * n as f64 / counts.parts.max(1) as f64;
     writeln!(

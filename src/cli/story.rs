@@ -62,8 +62,10 @@ pub fn run(files: &Files, args: &StoryArgs) -> anyhow::Result<Exit> {
         TruthFile::create(path)?;
     }
     let lot = args.script.file_stem().unwrap_or_default();
+    // Every telling is a lot of its own.
+    let now = jiff::Zoned::now().strftime("%Y-%m-%d %H:%M:%S%.6f");
     let order = LotOrder {
-        lot: format!("story {}", lot.to_string_lossy()),
+        lot: format!("story {} {now}", lot.to_string_lossy()),
         recipe: args.recipe.clone(),
         count: Some(script.parts),
         retest: None,

@@ -83,8 +83,23 @@ test("a held lot waits until a maintainer releases it", async () => {
   const maintainer = await visit(browser, rig, { role: "maintainer", path: "/#lots" });
   await lotRow(maintainer, "A").waitFor();
   await decide(maintainer, "A", "release_lot", "label was corrected");
-  await lotRow(maintainer, "A").getByText(WORDS["lot_state-open"].en).waitFor();
+  await lotRow(maintainer, "A").getByText(WORDS["lot_state-complete"].en).waitFor();
   await leave(maintainer);
+});
+
+test("an engineer reopens a complete lot with a reason", async () => {
+  const maintainer = await visit(browser, rig, { role: "maintainer", path: "/#lots" });
+  await startLot(maintainer, "A", 1);
+  await shown(maintainer, "#l_answer", "lot A is complete");
+  await decide(maintainer, "A", "reopen_lot", "late parts");
+  await shown(maintainer, "#l_answer", "takes the role engineer");
+  await leave(maintainer);
+  const engineer = await visit(browser, rig, { role: "engineer", path: "/#lots" });
+  await lotRow(engineer, "A").waitFor();
+  await decide(engineer, "A", "reopen_lot", "late parts");
+  await lotRow(engineer, "A").getByText(WORDS["lot_state-open"].en).waitFor();
+  await lotRow(engineer, "A").getByText("late parts (zhao)").waitFor();
+  await leave(engineer);
 });
 
 test("a replacement resets its wear counter", async () => {

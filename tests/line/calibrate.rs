@@ -2,13 +2,16 @@
 
 use crate::program::Workshop;
 
-/// Marks the calibration in the history of `workshop` as made on a rig.
+/// Marks the history of `workshop` and its calibration as those of a real rig.
 fn as_if_of_a_rig(workshop: &Workshop, change: &str) {
     let history = rusqlite::Connection::open(workshop.folder.join("relayrig.db")).unwrap();
     let query = format!(
         "UPDATE calibration SET body = json_set(body, '$.simulated', json('false')){change}"
     );
     assert_eq!(history.execute(&query, []).unwrap(), 1);
+    history
+        .execute("UPDATE rig SET source = 'rig'", [])
+        .unwrap();
 }
 
 const RUN_ON_A_RIG: &str = "run --lot A --recipe jzc-22f-012 --count 1";

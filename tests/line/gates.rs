@@ -2,11 +2,22 @@
 
 use crate::program::{Said, Workshop};
 
-/// Runs a lot on the simulated rig with seed 1.
+/// Runs lot A on the simulated rig with seed 1.
 fn run(workshop: &Workshop, count: u64, more: &str) -> Said {
+    run_lot(workshop, "A", count, more)
+}
+
+fn run_lot(workshop: &Workshop, lot: &str, count: u64, more: &str) -> Said {
     workshop.run(&format!(
-        "run --sim --pace virtual --lot A --recipe jzc-22f-012 --count {count} --seed 1 --json {more}"
+        "run --sim --pace virtual --lot {lot} --recipe jzc-22f-012 --count {count} --seed 1 --json {more}"
     ))
+}
+
+/// Opens the complete lot A again.
+fn reopen(workshop: &Workshop) {
+    workshop
+        .run("lot reopen A --by zhao --reason late_parts")
+        .with_status(0);
 }
 
 fn with_lot(name: &str, settings: &str) -> Workshop {
@@ -107,7 +118,7 @@ fn only_first_articles_get_confirmation_measurements() {
 }
 
 #[test]
-fn an_open_lot_keeps_its_recipe() {
+fn a_lot_keeps_its_recipe_for_life() {
     let workshop = Workshop::new("gates_frozen");
     run(&workshop, 4, "--fault door").with_status(3);
     assert_eq!(state(&workshop), "open");
@@ -116,17 +127,56 @@ fn an_open_lot_keeps_its_recipe() {
         "slow_repeats = 3 ",
         "slow_repeats = 4 ",
     );
+    let refused = |more: &str| {
+        let said = run(&workshop, 1, more).with_status(2);
+        assert!(
+            said.stderr.contains("--recipe") && said.stderr.contains("name another lot"),
+            "{said}"
+        );
+    };
+    refused("");
+    workshop.run("lot close A --by li").with_status(0);
+    refused("");
+    refused("--retest li");
+    reopen(&workshop);
+    refused("");
+    assert_eq!(workshop.count("SELECT count(*) FROM run"), 1);
+}
+
+#[test]
+fn a_complete_lot_runs_again_only_after_a_reopening() {
+    let workshop = Workshop::new("gates_reopened");
+    run(&workshop, 2, "").with_status(0);
     let refused = run(&workshop, 1, "").with_status(2);
     assert!(
-        refused.stderr.contains("--recipe") && refused.stderr.contains("lot close"),
+        refused.stderr.contains("is complete since")
+            && refused.stderr.contains("relayrig lot reopen"),
         "{refused}"
     );
-    workshop.run("lot close A --by li").with_status(0);
-    run(&workshop, 1, "").with_status(0);
-    assert_eq!(
-        workshop.count("SELECT count(DISTINCT recipe_id) FROM run"),
-        2
+    run(&workshop, 1, "--retest li").with_status(0);
+    for way in ["hold A --by li --reason label", "release A --by li"] {
+        workshop.run(&format!("lot {way}")).with_status(0);
+    }
+    assert_eq!(state(&workshop), "complete", "a release reopens nothing");
+    let without = workshop.run("lot reopen A --by zhao").with_status(2);
+    assert!(
+        without.stderr.contains("why the lot is reopened"),
+        "{without}"
     );
+    reopen(&workshop);
+    let twice = workshop.run("lot reopen A --by zhao --reason again");
+    assert!(
+        twice.with_status(2).stderr.contains("not complete"),
+        "an open lot"
+    );
+    run(&workshop, 1, "").with_status(0);
+    assert_eq!(state(&workshop), "complete");
+    for told in ["lot show A", "history report --lot A --lang en"] {
+        let told = workshop.run(told).with_status(0);
+        assert!(told.stdout.contains("by zhao: late_parts"), "{told}");
+    }
+    let orders = workshop.run("history orders --who zhao --json").objects();
+    assert_eq!(orders.last().unwrap()["what"]["order"], "reopen_lot");
 }
 
 #[test]
@@ -158,7 +208,7 @@ fn worn_probes_alarm_once_and_the_counter_survives() {
     let touches = || workshop.count("SELECT count FROM wear WHERE name = 'probe_touches'");
     // References in the empty nest, five reference parts, three of the lot.
     assert_eq!(touches(), 9);
-    run(&workshop, 1, "").with_status(0);
+    run_lot(&workshop, "B", 1, "").with_status(0);
     assert_eq!(touches(), 16);
     workshop
         .run("wear --sim replaced probe_touches --by li")
@@ -175,6 +225,7 @@ fn fouling_probes_raise_an_alarm_before_a_pin_opens() {
     let workshop = with_lot("gates_fouled", "[wear]\nprobe_contact_ohm = 1.5\n");
     run(&workshop, 40, "").with_status(0);
     assert!(workshop.texts("SELECT code FROM alarm").is_empty());
+    reopen(&workshop);
     run(&workshop, 40, "--fault probe_film=8").with_status(0);
     assert_eq!(workshop.texts("SELECT code FROM alarm"), ["probe_contact"]);
     let told = workshop.texts("SELECT text FROM alarm");

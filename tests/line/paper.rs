@@ -19,11 +19,14 @@ fn every_page_of_a_lot_exists_in_both_languages() {
                 .with_status(0);
             assert!(said.stdout.starts_with("<!DOCTYPE html>"), "{page}");
             assert!(said.stdout.contains(not_tested), "{page} {language}");
+            let across = said.stdout.contains("class=\"simulation\"");
+            assert_eq!(across, !page.starts_with("card"), "{page}");
         }
         let charts =
             format!("history spc --param operate_voltage_v --page --lang {language} --out c.html");
         workshop.run(&charts).with_status(0);
-        assert!(workshop.read("c.html").contains("<svg"));
+        let chart = workshop.read("c.html");
+        assert!(chart.contains("<svg") && chart.contains("class=\"simulation\""));
     }
     let said = workshop.run("history report --lot B").with_status(2);
     assert!(said.stderr.contains("history list"), "{}", said.stderr);

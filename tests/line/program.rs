@@ -66,12 +66,25 @@ impl Workshop {
     /// As [`Self::run`], with a limit on the size of files, in blocks of the shell.
     #[cfg(all(feature = "sim", unix))]
     pub fn run_with_little_room(&self, blocks: u32, line: &str) -> Said {
+        said(&self.with_little_room(blocks, line).output().unwrap())
+    }
+
+    /// As [`Self::start_logging`], with a limit on the size of files, in blocks of the shell.
+    #[cfg(all(feature = "sim", unix))]
+    pub fn start_with_little_room(&self, blocks: u32, line: &str) -> Child {
+        let mut command = self.with_little_room(blocks, line);
+        command.stdout(Stdio::null()).stderr(Stdio::piped());
+        command.spawn().unwrap()
+    }
+
+    #[cfg(all(feature = "sim", unix))]
+    fn with_little_room(&self, blocks: u32, line: &str) -> Command {
         // Without the trap the system would kill the program instead of refusing the write.
         let mut shell = Command::new("sh");
-        shell.args(["-c", "trap '' XFSZ; ulimit -f \"$0\"; exec \"$@\""]);
+        shell.args(["-c", "trap '' XFSZ; ulimit -S -f \"$0\"; exec \"$@\""]);
         shell.arg(blocks.to_string());
         shell.arg(env!("CARGO_BIN_EXE_relayrig"));
-        said(&self.worded(shell, line).output().unwrap())
+        self.worded(shell, line)
     }
 
     /// Starts `relayrig` without its log.

@@ -13,8 +13,8 @@ const RECIPE: &str = "jzc-22f-012";
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// The program with its page, and a session of an engineer.
-struct Served {
-    process: Child,
+pub struct Served {
+    pub process: Child,
     address: String,
     token: String,
 }
@@ -27,9 +27,13 @@ impl Drop for Served {
 }
 
 impl Served {
-    fn start(workshop: &Workshop, words: &str) -> Self {
+    pub fn start(workshop: &Workshop, words: &str) -> Self {
         let line = format!("serve --listen 127.0.0.1:0 {words}");
-        let mut process = workshop.start_logging(&line);
+        Self::over(workshop.start_logging(&line))
+    }
+
+    /// Logs in at the page of a program whose log is piped.
+    pub fn over(mut process: Child) -> Self {
         let mut told = BufReader::new(process.stderr.take().unwrap());
         let mut text = String::new();
         let after = |text: &str, before: &str, end: char| {
@@ -84,25 +88,25 @@ impl Served {
     }
 
     /// Gives an order and checks that it is accepted.
-    fn order(&self, order: &Value) {
+    pub fn order(&self, order: &Value) {
         let (status, body) = self.post("/api/orders", order);
         assert_eq!(status, 200, "{order}: {body}");
     }
 
     /// Gives an order and returns the reason of its refusal.
-    fn refused(&self, order: &Value) -> String {
+    pub fn refused(&self, order: &Value) -> String {
         let (status, body) = self.post("/api/orders", order);
         assert_eq!(status, 409, "{order}: {body}");
         assert!(body["reason_zh"].is_string(), "{body}");
         body["reason"].as_str().unwrap().to_owned()
     }
 
-    fn start_lot(&self, lot: &str, count: u64) {
+    pub fn start_lot(&self, lot: &str, count: u64) {
         self.order(&json!({"order": "start", "lot": lot, "recipe": RECIPE, "count": count}));
     }
 
     /// Waits for a view that passes `test`.
-    fn until(&self, what: &str, test: impl Fn(&Value) -> bool) -> Value {
+    pub fn until(&self, what: &str, test: impl Fn(&Value) -> bool) -> Value {
         let began = Instant::now();
         loop {
             let view = self.get("/api/view");
@@ -114,12 +118,12 @@ impl Served {
         }
     }
 
-    fn until_state(&self, state: &str) -> Value {
+    pub fn until_state(&self, state: &str) -> Value {
         self.until(state, |view| view["machine"]["state"] == state)
     }
 
     /// Waits for the end of the lot and checks the number of judged parts.
-    fn until_complete(&self, lot: &str, parts: u64) {
+    pub fn until_complete(&self, lot: &str, parts: u64) {
         let over = |view: &Value| view["lot"] == lot && view["under_way"] == false;
         let view = self.until("over", over);
         assert_eq!(view["judged"], parts, "{view}");
@@ -128,8 +132,44 @@ impl Served {
         assert_eq!(landed, parts, "{view}");
     }
 
+    /// Waits until the history cannot be written; the machine is safe and a clear is refused with the reason.
+    pub fn until_history_lost(&self, reason: &str) {
+        let lost = |view: &Value| {
+            let alarms = view["alarms"].as_array().unwrap();
+            view["machine"]["state"] == "Aborted"
+                && alarms.iter().any(|it| it["code"] == "history_lost")
+        };
+        let view = self.until("lost", lost);
+        let text = view["alarms"][0]["text_en"].as_str().unwrap();
+        assert!(
+            text.contains("relayrig.db") && text.contains(reason),
+            "{text}"
+        );
+        let why = self.refused(&json!({"order": "clear"}));
+        assert!(why.contains(reason), "{why}");
+    }
+
+    /// Clears, resets and starts once the history is written again.
+    pub fn resume(&self) {
+        self.until("written again", |view| {
+            view["alarms"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .all(|it| it["code"] != "history_lost" || it["state"] == "returned")
+        });
+        for (word, state) in [
+            ("clear", "Stopped"),
+            ("reset", "Idle"),
+            ("start", "Execute"),
+        ] {
+            self.order(&json!({"order": word}));
+            self.until_state(state);
+        }
+    }
+
     /// Sends Ctrl-C and returns the exit status.
-    fn interrupted(mut self) -> i32 {
+    pub fn interrupted(mut self) -> i32 {
         let id = self.process.id().to_string();
         Command::new("kill").args(["-INT", &id]).status().unwrap();
         self.process.wait().unwrap().code().unwrap()

@@ -50,9 +50,20 @@ pub enum AdmissionError {
         /// State of the lot, with the instant and the reason of the hold.
         standing: Box<LotStatus>,
     },
-    /// The lot is not complete and began with another recipe.
+    /// The lot is complete and the order is no retest.
     #[error(
-        "--recipe: found {found}, expected {} {}, with which lot \"{lot}\" began (relayrig lot close ends it)",
+        "--lot: \"{lot}\" is complete since {}; expected another lot, or --retest (relayrig lot reopen opens it again)",
+        standing.since
+    )]
+    Complete {
+        /// Name of the lot.
+        lot: String,
+        /// State of the lot, with the instant at which it was complete.
+        standing: Box<LotStatus>,
+    },
+    /// The lot began with another recipe.
+    #[error(
+        "--recipe: found {found}, expected {} {}, with which lot \"{lot}\" began and which it keeps; name another lot",
         standing.recipe,
         standing.recipe_hash.get(..12).unwrap_or_default()
     )]
@@ -79,6 +90,7 @@ impl AdmissionError {
             Self::Held { lot, standing } => refusal("lot_held")
                 .with("lot", lot)
                 .with("why", standing.why.as_deref().unwrap_or_default()),
+            Self::Complete { lot, .. } => refusal("lot_completed").with("lot", lot),
             Self::OtherRecipe { lot, standing, .. } => refusal("other_recipe")
                 .with("lot", lot)
                 .with("recipe", &standing.recipe),
@@ -91,8 +103,8 @@ impl AdmissionError {
 /// Returns the recipe of a lot that may be run.
 ///
 /// # Errors
-/// Fails when the lot is held, when it is not complete and began with another recipe, when a retest has no earlier run,
-/// or when this plant cannot measure the recipe.
+/// Fails when the lot is held, when it is complete and the order is no retest, when it began with another recipe, when a
+/// retest has no earlier run, or when this plant cannot measure the recipe.
 pub fn admit(
     db: &Path,
     plant: &Plant,
@@ -128,12 +140,13 @@ fn check_lot_state(db: &Path, recipe: &Recipe, order: &LotOrder) -> Result<(), A
     };
     match standing.state {
         LotState::Held => Err(AdmissionError::Held { lot, standing }),
-        LotState::Open | LotState::Running if standing.recipe_hash != recipe.hash => {
-            Err(AdmissionError::OtherRecipe {
-                lot,
-                found: format!("{} {}", recipe.name, &recipe.hash[..12]),
-                standing,
-            })
+        _ if standing.recipe_hash != recipe.hash => Err(AdmissionError::OtherRecipe {
+            lot,
+            found: format!("{} {}", recipe.name, &recipe.hash[..12]),
+            standing,
+        }),
+        LotState::Complete if order.retest.is_none() => {
+            Err(AdmissionError::Complete { lot, standing })
         }
         LotState::Open | LotState::Running | LotState::Complete => Ok(()),
     }

@@ -36,14 +36,14 @@ use machine::rig::level::Correction;
 use machine::rig::point::{DigitalIn, DigitalOutput};
 use machine::rig::wiring::{LineId, Wiring};
 use machine::station::Station;
-use machine::station::catalogue::AlarmCode;
 use machine::station::packml;
 use machine::station::trouble::Alarm;
-use machine::station::turn::{Ending, Inputs, TurnOutput};
+use machine::station::turn::{Ending, HistoryState, Inputs, TurnOutput};
 use machine::view::{self, OrderRequest, View};
 pub use orders::PANEL;
 pub use profile::Profile;
 use profile::lap;
+pub(crate) use publish::line as alarm_line;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
@@ -70,8 +70,8 @@ pub struct CycleLinks {
     pub orders: mpsc::Receiver<OrderRequest>,
     /// Wall clock at rig time zero, microseconds since 1970 UTC.
     pub epoch_us: i64,
-    /// The recorder sets it when the history fails; the rig must stop then.
-    pub history_lost: Arc<AtomicBool>,
+    /// State of the history; the recorder sets it.
+    pub history: watch::Receiver<HistoryState>,
     /// Sends the view to the screens.
     pub view: watch::Sender<View>,
 }
@@ -297,9 +297,6 @@ impl Cycle {
     }
 
     fn step(&mut self, now: RigTime) -> TurnOutput {
-        if self.links.history_lost.load(Ordering::Acquire) {
-            self.bus_alarm.get_or_insert(AlarmCode::HistoryLost.into());
-        }
         if let Some(requested_at) = self.image.input_at(DigitalIn::EmergencyStopOk) {
             self.worst_age = self.worst_age.max(now.since(requested_at));
         }
@@ -319,6 +316,7 @@ impl Cycle {
                 done,
             }),
             recorded: self.links.recorded.load(Ordering::Acquire),
+            history: self.links.history.borrow().clone(),
             bus: self.bus_alarm.take(),
             stop: self.links.stop.load(Ordering::Acquire),
         };

@@ -65,6 +65,7 @@ pub fn run_lot(
     outer: &mut dyn Subscriber,
 ) -> anyhow::Result<Exit> {
     let plant = Plant::load(&files.config)?;
+    history::check_rig(&files.db, source.is_simulated())?;
     let recipe = admit(&files.db, &plant, order, purpose)?;
     if purpose == Purpose::Lot
         && let Some(why) = admission::calibration_refusal(&files.db, &recipe, source)?

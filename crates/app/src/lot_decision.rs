@@ -1,18 +1,37 @@
-//! Writes a person's decision to hold, release or close a lot that is not under way; the audit keeps it with the name,
-//! like an order at a screen.
+//! Writes a person's decision to hold, release, close or reopen a lot that is not under way; the audit keeps it with the
+//! name, like an order at a screen.
 
-use history::{Decision, HistoryError, LotStateRecord, OrderRecord, Row, Store};
+use history::{
+    Archive, Decision, HistoryError, LotStateRecord, OrderRecord, ReopeningRecord, Row, Store,
+};
 use machine::view::{By, Order};
 use serde_json::json;
 use std::path::Path;
+use texts::Message;
 
 /// Writes an order about a lot, and the state that it gives the lot.
 ///
 /// # Errors
-/// Fails when the history cannot be written.
-pub fn write(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<(), HistoryError> {
-    let rows = [audit(order, by), state(order, by, decision)];
-    Store::open(db)?.record(&rows)
+/// Fails with the refusal for an unknown lot, a state of the lot that forbids the decision, a missing reason, or a history
+/// that cannot be written.
+pub fn write(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<(), Message> {
+    let reason = order.reason.as_deref().unwrap_or_default();
+    let lot = order.lot.as_deref().unwrap_or_default();
+    decision.reason_refusal(reason).map_or(Ok(()), Err)?;
+    let refused = |code| Message::new("refusal", code);
+    let trouble = |error: HistoryError| refused("program_trouble").with("detail", error);
+    let standing = match db.exists() {
+        true => Archive::open(db).and_then(|it| it.standing(lot)),
+        false => Ok(None),
+    };
+    let standing = standing.map_err(trouble)?;
+    let state = standing.ok_or_else(|| refused("no_such_lot").with("lot", lot))?;
+    decision.refusal(state.state).map_or(Ok(()), Err)?;
+    let rows = [audit(order, by), state_row(order, by, decision)];
+    let store = Store::open(db);
+    store
+        .and_then(|mut store| store.record(&rows))
+        .map_err(trouble)
 }
 
 /// Returns the audit row of an order outside a run.
@@ -29,12 +48,22 @@ pub fn audit(order: &Order, by: &By) -> Row {
 }
 
 /// Returns the row that puts the order's lot into its new state.
-pub fn state(order: &Order, by: &By, decision: Decision) -> Row {
-    let reason = order.reason.as_deref().unwrap_or_default();
-    Row::LotState(LotStateRecord {
-        lot: order.lot.clone().unwrap_or_default(),
-        state: decision.becomes(),
-        why: (decision == Decision::Hold).then(|| format!("{reason} ({})", by.who)),
-        at_us: jiff::Timestamp::now().as_microsecond(),
-    })
+pub fn state_row(order: &Order, by: &By, decision: Decision) -> Row {
+    let why = order.reason.clone().unwrap_or_default();
+    let lot = order.lot.clone().unwrap_or_default();
+    let at_us = jiff::Timestamp::now().as_microsecond();
+    match decision {
+        Decision::Reopen => Row::Reopened(ReopeningRecord {
+            lot,
+            at_us,
+            who: by.who.clone(),
+            why,
+        }),
+        Decision::Hold | Decision::Release | Decision::Close => Row::LotState(LotStateRecord {
+            lot,
+            state: decision.becomes(),
+            why: (decision == Decision::Hold).then(|| format!("{why} ({})", by.who)),
+            at_us,
+        }),
+    }
 }

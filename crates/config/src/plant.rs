@@ -39,13 +39,31 @@ pub struct Plant {
     pub reference_parts: ReferenceSet,
     /// Gates of a lot.
     pub lot: LotSettings,
+    /// Patience with a history that cannot be written.
+    pub history: HistorySettings,
     /// Text of `rig.toml`, which the record of a lot keeps.
     pub rig_text: String,
 }
 
-/// The sections of `rig.toml` that belong to measuring.
+/// Patience with a history that cannot be written.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(default)]
+pub struct HistorySettings {
+    /// Time after which the program ends, s.
+    pub give_up_s: f64,
+}
+
+impl Default for HistorySettings {
+    fn default() -> Self {
+        Self { give_up_s: 600.0 }
+    }
+}
+
+/// The sections of `rig.toml` that belong to measuring, and the history.
 #[derive(Deserialize)]
 struct GaugeSections {
+    #[serde(default)]
+    history: HistorySettings,
     reference: Option<ReferenceSettings>,
     accuracy: AccuracySettings,
     calibration: CalibrationSettings,
@@ -77,6 +95,7 @@ impl Plant {
             calibration: gauge.calibration,
             reference_parts,
             lot: load_lot(dir)?,
+            history: gauge.history,
             rig_text: rig.text,
         })
     }

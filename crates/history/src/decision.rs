@@ -12,11 +12,13 @@ pub enum Decision {
     Release,
     /// The lot is complete.
     Close,
+    /// The complete lot may be run again.
+    Reopen,
 }
 
 impl Decision {
     /// All decisions.
-    pub const ALL: [Self; 3] = [Self::Hold, Self::Release, Self::Close];
+    pub const ALL: [Self; 4] = [Self::Hold, Self::Release, Self::Close, Self::Reopen];
 
     /// Returns the name of its order.
     pub const fn order(self) -> &'static str {
@@ -24,6 +26,7 @@ impl Decision {
             Self::Hold => "hold_lot",
             Self::Release => "release_lot",
             Self::Close => "close_lot",
+            Self::Reopen => "reopen_lot",
         }
     }
 
@@ -32,11 +35,11 @@ impl Decision {
         Self::ALL.into_iter().find(|it| it.order() == word)
     }
 
-    /// Returns the state of the lot afterwards.
+    /// Returns the state of the lot afterwards; a release makes a lot that was complete before complete again.
     pub const fn becomes(self) -> LotState {
         match self {
             Self::Hold => LotState::Held,
-            Self::Release => LotState::Open,
+            Self::Release | Self::Reopen => LotState::Open,
             Self::Close => LotState::Complete,
         }
     }
@@ -50,9 +53,26 @@ impl Decision {
                 refused("lot_not_held")
             }
             (Self::Close, LotState::Complete) => refused("lot_complete"),
+            (Self::Reopen, LotState::Open | LotState::Running | LotState::Held) => {
+                refused("lot_not_complete")
+            }
             (Self::Hold, LotState::Open | LotState::Running | LotState::Complete)
             | (Self::Release, LotState::Held)
-            | (Self::Close, LotState::Open | LotState::Running | LotState::Held) => None,
+            | (Self::Close, LotState::Open | LotState::Running | LotState::Held)
+            | (Self::Reopen, LotState::Complete) => None,
+        }
+    }
+
+    /// Returns the refusal of a decision with this reason; `None` for one that needs none or has one.
+    pub fn reason_refusal(self, reason: &str) -> Option<Message> {
+        let missing = |code| {
+            let blank = reason.trim().is_empty();
+            blank.then(|| Message::new("refusal", code))
+        };
+        match self {
+            Self::Hold => missing("hold_without_reason"),
+            Self::Reopen => missing("reopen_without_reason"),
+            Self::Release | Self::Close => None,
         }
     }
 }

@@ -29,6 +29,18 @@ pub enum HistoryError {
         /// Latest schema known here.
         known: i64,
     },
+    /// The file belongs to a rig of the other kind.
+    #[error(
+        "{path} is the history of {holds}, found {found}: name another file with --db, since real and simulated parts never share one"
+    )]
+    OtherRig {
+        /// The file asked for.
+        path: PathBuf,
+        /// Rig of the file.
+        holds: &'static str,
+        /// Rig that would write.
+        found: &'static str,
+    },
     /// Another process held the file for longer than the busy timeout.
     #[error("{doing}: the history is locked by another process")]
     Locked {

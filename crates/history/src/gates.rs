@@ -2,10 +2,13 @@
 //!
 //! | state | a run may begin | set by |
 //! |---|---|---|
-//! | open | yes, with the recipe of the run before | a run that was stopped, cut off or ended by an alarm; a release |
+//! | open | yes, with its recipe | a run that was stopped, cut off or ended by an alarm; a release |
 //! | running | yes: the run before was cut off | the begin of a run; the next program on the rig makes it open |
 //! | held | no | a failed reference check, the reject-rate limit, a person |
-//! | complete | yes, as a new beginning | the count was reached, or a person closed it |
+//! | complete | a retest only, with the same recipe | the count was reached, or a person closed it |
+//!
+//! A lot keeps its recipe for life. A complete lot stays complete, whatever ends a retest or a hold, until a person reopens it
+//! ([`ReopeningRecord`](super::ReopeningRecord)).
 //!
 //! Parts judged after the last passed check and before a failed one are *suspect*. Their rows stay unchanged;
 //! [`Filter::suspect`](super::Filter) selects them. On a rig the checks of all runs count, on the simulated rig those of the
@@ -77,7 +80,7 @@ pub struct ReferenceCheckRecord {
     pub text: String,
 }
 
-/// State of a lot, with the recipe of its last run.
+/// State of a lot, with its recipe.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct LotStatus {
     /// State of the lot.
@@ -86,7 +89,7 @@ pub struct LotStatus {
     pub why: Option<String>,
     /// Time of the last change.
     pub since: Moment,
-    /// Name of the recipe of its last run.
+    /// Name of the recipe of its last run, imports aside.
     pub recipe: String,
     /// Hash of that recipe.
     pub recipe_hash: String,
@@ -127,13 +130,15 @@ pub(super) const SUSPECT: &str = " AND EXISTS (SELECT 1 FROM golden_check AS fai
     AND part.judged_at_us <= failed.at_us \
     AND (own.id = checked.id OR (own.source = 'rig' AND checked.source = 'rig')))";
 
-/// Stores the state of a lot; does nothing for a lot without runs. Returns the number of changed rows.
+/// Stores the state of a lot, `complete` instead of `open` for one that was complete; does nothing for a lot without runs.
+/// Returns the number of changed rows.
 pub(super) fn state(connection: &Connection, record: &LotStateRecord) -> rusqlite::Result<usize> {
     connection.execute(
-        "INSERT INTO lot_state (lot_id, state, why, since_us)
-         SELECT id, ?2, ?3, ?4 FROM lot WHERE name = ?1
-         ON CONFLICT (lot_id) DO UPDATE SET state = excluded.state, why = excluded.why,
-           since_us = excluded.since_us",
+        "INSERT INTO lot_state (lot_id, state, why, since_us, completed)
+         SELECT id, ?2, ?3, ?4, ?2 = 'complete' FROM lot WHERE name = ?1
+         ON CONFLICT (lot_id) DO UPDATE SET why = excluded.why, since_us = excluded.since_us,
+           state = iif(excluded.state = 'open' AND completed, 'complete', excluded.state),
+           completed = completed OR excluded.completed",
         params![record.lot, record.state.name(), record.why, record.at_us],
     )
 }
@@ -161,12 +166,13 @@ pub(super) fn reference_check(
 }
 
 impl Store {
-    /// Opens the lots whose run was cut off. The caller has just taken the rig (or the simulated rig), so that none of their
+    /// Opens the lots whose run was cut off, or completes them again after a retest. The caller has just taken the rig (or the simulated rig), so that none of their
     /// runs is under way.
     pub fn cut_off(&mut self, simulated: bool, at_us: i64) -> Result<()> {
         self.connection()
             .execute(
-                "UPDATE lot_state SET state = 'open', since_us = ?2 WHERE state = 'running'
+                "UPDATE lot_state SET state = iif(completed, 'complete', 'open'), since_us = ?2
+                 WHERE state = 'running'
                    AND ?1 = (SELECT source FROM run WHERE run.lot_id = lot_state.lot_id
                              ORDER BY number DESC LIMIT 1)",
                 params![source(simulated), at_us],
@@ -185,7 +191,7 @@ impl Archive {
                    ifnull(lot_state.since_us, lot.first_opened_us), recipe.name, recipe.hash
                  FROM lot JOIN run ON run.lot_id = lot.id JOIN recipe ON recipe.id = run.recipe_id
                    LEFT JOIN lot_state ON lot_state.lot_id = lot.id
-                 WHERE lot.name = ?1 ORDER BY run.number DESC LIMIT 1",
+                 WHERE lot.name = ?1 ORDER BY run.source = 'import', run.number DESC LIMIT 1",
                 [lot],
                 |row| {
                     Ok(LotStatus {

@@ -9,6 +9,7 @@
 //! - Judging by another recipe writes nothing ([`rejudged`]). Only runs that were copied whole can be deleted
 //!   ([`Store::prune`]).
 //! - A part that did not pass keeps the sampled curves of its test ([`CurveRecord`]).
+//! - A file belongs to one rig, real or simulated: its first run marks it ([`check_rig`]).
 //! - Any SQLite tool can read the file: every column has a remark, and the views `lots`, `parts`, `reasons`, `measurements`,
 //!   `samples`, `curves` and `alarms` show local time and names instead of row numbers.
 //!
@@ -38,10 +39,12 @@ mod lots;
 mod moment;
 mod open;
 mod orders;
+mod owner;
 mod part;
 mod reasons;
 mod record;
 mod rejudge;
+mod reopening;
 mod retention;
 mod run_end;
 mod series;
@@ -68,12 +71,14 @@ pub use lots::{LotSummary, Passed, Yield};
 pub use moment::{Moment, MomentError};
 pub use open::{APPLICATION_ID, SCHEMA};
 pub use orders::{OrderEntry, OrderRecord};
+pub use owner::check_rig;
 pub use part::{Measurement, Part, Sample};
 pub use record::{
-    AlarmRecord, CalibrationRecord, InterruptedRecord, LandingRecord, LotRecord, MeasurementRecord,
-    PartRecord, Row, SampleRecord, snapshot_hash,
+    AlarmRecord, CalibratedRecord, CalibrationRecord, InterruptedRecord, LandingRecord, LotRecord,
+    MeasurementRecord, PartRecord, Row, SampleRecord, snapshot_hash,
 };
 pub use rejudge::rejudged;
+pub use reopening::{Reopening, ReopeningRecord};
 pub use retention::Pruned;
 pub use run_end::RunEndRecord;
 pub use store::Store;

@@ -1,7 +1,7 @@
 //! The list of lots that were run, the latest first, each over all its runs.
 
 use super::error::{Doing, Result};
-use super::{Archive, LotStatus, LotYield, Moment};
+use super::{Archive, LotStatus, LotYield, Moment, Reopening};
 use serde::Serialize;
 
 /// A lot over all its runs.
@@ -17,6 +17,8 @@ pub struct LotEntry {
     pub cause: Option<String>,
     /// Text of the cause, English.
     pub cause_text: Option<String>,
+    /// Decisions to open the complete lot again.
+    pub reopenings: Vec<Reopening>,
     /// State and recipe.
     #[serde(flatten)]
     pub standing: LotStatus,
@@ -51,6 +53,7 @@ impl Archive {
             };
             book.push(LotEntry {
                 counts: self.lot_yield(&lot)?,
+                reopenings: self.reopenings(&lot)?,
                 opened: Moment(opened_us),
                 lot,
                 runs,

@@ -4,7 +4,7 @@
 
 use super::{
     AlarmChangeRecord, CurveRecord, InsideRecord, LotStateRecord, OrderRecord,
-    ReferenceCheckRecord, RunEndRecord, WearRecord,
+    ReferenceCheckRecord, ReopeningRecord, RunEndRecord, WearRecord,
 };
 use machine::dut::Reason;
 use serde::{Deserialize, Serialize};
@@ -171,9 +171,22 @@ pub struct CalibrationRecord {
     pub verified: bool,
 }
 
+/// Reference parts have calibrated the rig during the run of a lot.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CalibratedRecord {
+    /// The open lot at that time.
+    pub lot: String,
+    /// The calibration that the run uses from now on.
+    pub calibration: CalibrationRecord,
+}
+
 /// A record of the control cycle.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Row {
+    /// A run of a lot begins.
+    Run(LotRecord),
+    /// The run has a new calibration.
+    Calibrated(CalibratedRecord),
     /// A judged part.
     Part(PartRecord),
     /// A part whose beam has confirmed it.
@@ -188,6 +201,8 @@ pub enum Row {
     RunEnded(RunEndRecord),
     /// A new state of a lot.
     LotState(LotStateRecord),
+    /// A complete lot that is opened again.
+    Reopened(ReopeningRecord),
     /// A check of reference parts against their certificates.
     ReferenceCheck(ReferenceCheckRecord),
     /// An order with its answer.

@@ -4,12 +4,12 @@
 
 use super::error::{Doing, HistoryError, Result};
 use super::{
-    CalibrationRecord, LotRecord, PartRecord, Row, alarm_states, gates, insert, inside, landing,
-    open, orders, run_end, series, wear,
+    CalibratedRecord, CalibrationRecord, LotRecord, PartRecord, Row, alarm_states, gates, insert,
+    inside, landing, open, orders, owner, reopening, run_end, series, wear,
 };
 use rusqlite::{Connection, OptionalExtension, Transaction, TransactionBehavior, params};
 use std::collections::HashMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Name and version of this program; every run and the foot of every page keep them.
 pub(crate) const PROGRAM: &str = concat!("relayrig ", env!("CARGO_PKG_VERSION"));
@@ -18,6 +18,8 @@ pub(crate) const PROGRAM: &str = concat!("relayrig ", env!("CARGO_PKG_VERSION"))
 #[derive(Debug)]
 pub struct Store {
     connection: Connection,
+    /// The file, for messages.
+    pub(super) path: PathBuf,
     row_ids: RowIds,
 }
 
@@ -46,6 +48,7 @@ impl Store {
     pub fn open(path: &Path) -> Result<Self> {
         Ok(Self {
             connection: open::writer(path)?,
+            path: path.to_owned(),
             row_ids: RowIds::default(),
         })
     }
@@ -53,9 +56,9 @@ impl Store {
     /// Opens a run of the lot and returns its number within the lot, from 1.
     pub fn begin_lot(&mut self, lot: &LotRecord) -> Result<u32> {
         const DOING: &str = "opening the lot";
-        let source = source(lot.simulated);
+        let path = self.path.clone();
         let transaction = self.transaction(DOING)?;
-        let (run, number) = insert::run(&transaction, lot, source).doing(DOING)?;
+        let (run, number) = begin(&transaction, &path, lot)?;
         transaction.commit().doing(DOING)?;
         let before = self.row_ids.runs.insert(lot.lot.clone(), run);
         assert_ne!(before, Some(run), "one row for two runs");
@@ -86,38 +89,21 @@ impl Store {
         Ok(number)
     }
 
-    /// Stores the hash of the calibration that the open run of the lot uses from now on.
-    pub fn calibrated(&mut self, lot: &str, hash: &str) -> Result<()> {
-        let run = self.row_ids.run(lot)?;
-        let changed = self
-            .connection
-            .execute(
-                "UPDATE run SET calibration_hash = ?2 WHERE id = ?1",
-                params![run, hash],
-            )
-            .doing("freezing the calibration of a run")?;
-        assert_eq!(changed, 1, "an open run without its row");
-        Ok(())
-    }
-
-    /// Closes the run of the lot; later rows for it are refused.
+    /// Closes the run of the lot and packs its values; later rows for it are refused. After an error it is still open.
     pub fn close_lot(&mut self, lot: &str, at_us: i64) -> Result<()> {
-        const PACKING: &str = "packing the values of a closed lot";
+        const DOING: &str = "closing the lot";
         let run = self.row_ids.run(lot)?;
-        let changed = self
-            .connection
-            .execute(
-                "UPDATE run SET closed_at_us = ?2 WHERE id = ?1",
-                params![run, at_us],
-            )
-            .doing("closing the lot")?;
+        let transaction = self.transaction(DOING)?;
+        let closed = "UPDATE run SET closed_at_us = ?2 WHERE id = ?1";
+        let changed = transaction
+            .execute(closed, params![run, at_us])
+            .doing(DOING)?;
         assert_eq!(changed, 1, "an open run without its row");
+        series::pack(&transaction, run).doing(DOING)?;
+        transaction.commit().doing(DOING)?;
         self.row_ids.runs.remove(lot);
         assert!(self.row_ids.run(lot).is_err(), "a closed run gets rows");
-        // The run stays closed when packing fails: statistics then read the index.
-        let transaction = self.transaction(PACKING)?;
-        series::pack(&transaction, run).doing(PACKING)?;
-        transaction.commit().doing(PACKING)
+        Ok(())
     }
 
     /// Writes a batch in one transaction; on an error nothing of it is written.
@@ -128,17 +114,21 @@ impl Store {
         const DOING: &str = "recording";
         let Self {
             connection,
+            path,
             row_ids,
             ..
         } = self;
         let transaction = connection
             .transaction_with_behavior(TransactionBehavior::Immediate)
             .doing(DOING)?;
-        let before = row_ids.parameters.len();
-        let written =
-            write(&transaction, row_ids, rows).and_then(|()| transaction.commit().doing(DOING));
-        if written.is_err() && row_ids.parameters.len() != before {
-            row_ids.parameters.clear();
+        let (parameters, runs) = (row_ids.parameters.len(), row_ids.runs.clone());
+        let written = write(&transaction, (path, row_ids), rows)
+            .and_then(|()| transaction.commit().doing(DOING));
+        if written.is_err() {
+            row_ids.runs = runs;
+            if row_ids.parameters.len() != parameters {
+                row_ids.parameters.clear();
+            }
         }
         let is_over = connection.is_autocommit();
         assert!(written.is_err() || is_over, "a batch is left open");
@@ -147,24 +137,7 @@ impl Store {
 
     /// Stores a calibration; for one that exists only updates `verified`.
     pub fn save_calibration(&mut self, calibration: &CalibrationRecord) -> Result<()> {
-        let CalibrationRecord {
-            made_at_us,
-            due_at_us,
-            hash,
-            body,
-            verified,
-        } = calibration;
-        assert!(made_at_us <= due_at_us, "due before it was made");
-        assert!(!hash.is_empty(), "a calibration without its name");
-        self.connection
-            .execute(
-                "INSERT INTO calibration (made_at_us, due_at_us, hash, body, verified)
-                 VALUES (?1, ?2, ?3, ?4, ?5)
-                 ON CONFLICT (hash, made_at_us) DO UPDATE SET verified = excluded.verified",
-                params![made_at_us, due_at_us, hash, body, verified],
-            )
-            .doing("saving the calibration")?;
-        Ok(())
+        save(&self.connection, calibration)
     }
 
     /// Returns the newest calibration of a rig for one coil voltage, expired or not.
@@ -201,8 +174,56 @@ pub(super) const fn source(simulated: bool) -> &'static str {
     if simulated { "simulated" } else { "rig" }
 }
 
-fn write(transaction: &Transaction<'_>, row_ids: &mut RowIds, rows: &[Row]) -> Result<()> {
+/// Opens a run; returns its row and its number within the lot.
+fn begin(tx: &Transaction<'_>, path: &Path, lot: &LotRecord) -> Result<(i64, u32)> {
+    owner::claim(tx, path, lot.simulated)?;
+    insert::run(tx, lot, source(lot.simulated)).doing("opening the lot")
+}
+
+fn save(connection: &Connection, calibration: &CalibrationRecord) -> Result<()> {
+    let CalibrationRecord {
+        made_at_us,
+        due_at_us,
+        hash,
+        body,
+        verified,
+    } = calibration;
+    assert!(made_at_us <= due_at_us, "due before it was made");
+    assert!(!hash.is_empty(), "a calibration without its name");
+    connection
+        .execute(
+            "INSERT INTO calibration (made_at_us, due_at_us, hash, body, verified)
+             VALUES (?1, ?2, ?3, ?4, ?5)
+             ON CONFLICT (hash, made_at_us) DO UPDATE SET verified = excluded.verified",
+            params![made_at_us, due_at_us, hash, body, verified],
+        )
+        .doing("saving the calibration")?;
+    Ok(())
+}
+
+/// Saves a calibration that the open run of the lot uses from now on.
+fn calibrated(tx: &Transaction<'_>, row_ids: &RowIds, it: &CalibratedRecord) -> Result<()> {
+    save(tx, &it.calibration)?;
+    let freeze = "UPDATE run SET calibration_hash = ?2 WHERE id = ?1";
+    let run = row_ids.run(&it.lot)?;
+    let changed = tx.execute(freeze, params![run, it.calibration.hash]);
+    let changed = changed.doing("freezing the calibration of a run")?;
+    assert_eq!(changed, 1, "an open run without its row");
+    Ok(())
+}
+
+fn write(
+    transaction: &Transaction<'_>,
+    (path, row_ids): (&Path, &mut RowIds),
+    rows: &[Row],
+) -> Result<()> {
     rows.iter().try_for_each(|row| match row {
+        Row::Run(lot) => {
+            let (run, _) = begin(transaction, path, lot)?;
+            row_ids.runs.insert(lot.lot.clone(), run);
+            Ok(())
+        }
+        Row::Calibrated(it) => calibrated(transaction, row_ids, it),
         Row::Part(part) => insert::part(transaction, row_ids, part),
         Row::Interrupted(it) => landing::interrupted(transaction, row_ids, it),
         Row::Landed(landed) => landing::landing(transaction, row_ids, landed),
@@ -212,6 +233,7 @@ fn write(transaction: &Transaction<'_>, row_ids: &mut RowIds, rows: &[Row]) -> R
         Row::LotState(it) => gates::state(transaction, it)
             .map(|_| ())
             .doing("recording the state of a lot"),
+        Row::Reopened(it) => reopening::insert(transaction, it),
         Row::ReferenceCheck(it) => gates::reference_check(transaction, row_ids, it),
         Row::Order(it) => orders::insert(transaction, row_ids, it),
         Row::Wear(it) => wear::add(transaction, it),
@@ -260,10 +282,10 @@ impl Store {
             .busy_timeout(std::time::Duration::ZERO)
             .expect("a time-out can be set");
     }
-    /// Makes every later write fail.
-    pub(super) fn read_only(&self) {
+    /// Makes every later write fail, or none.
+    pub(super) fn read_only(&self, on: bool) {
         self.connection
-            .pragma_update(None, "query_only", true)
+            .pragma_update(None, "query_only", on)
             .expect("a file can be kept from being written");
     }
     /// Makes every write fail that would enlarge the file.

@@ -133,7 +133,7 @@ pub(super) fn routes() -> Vec<Route> {
         Route::post(
             "/api/orders",
             "An order to the station: taken, or 409 with the reason in English and Chinese. `mode`, `jog`, `step`, \
-             `shelve`, `release_lot` and `replaced` take a maintainer.",
+             `shelve`, `release_lot` and `replaced` take a maintainer, `reopen_lot` an engineer.",
             orders::order,
         )
         .with(&ORDER)
@@ -192,10 +192,10 @@ const ORDER: [Member; 11] = [
         "Of `acknowledge` (all without it) and `shelve`: code of the alarm.",
     ),
     may("minutes", "Of `shelve`: 1 to 480; 30 without it."),
-    may("reason", "Reason of `shelve` and `hold_lot`."),
+    may("reason", "Reason of `shelve`, `hold_lot` and `reopen_lot`."),
     may(
         "lot",
-        "Of `start` (without it the lot under way continues), `hold_lot`, `release_lot`, `close_lot`: name of the lot.",
+        "Of `start` (without it the lot under way continues), `hold_lot`, `release_lot`, `close_lot`, `reopen_lot`: name of the lot.",
     ),
     may("recipe", "Of `start` with a lot: name of its recipe."),
     may(

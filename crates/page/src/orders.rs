@@ -58,10 +58,12 @@ pub(super) async fn order(
     }
 }
 
-/// Returns the weakest role that may give `order`; a maintainer for what takes knowledge of the machine.
+/// Returns the weakest role that may give `order`; a maintainer for what takes knowledge of the machine, an
+/// engineer for a complete lot.
 fn needs(order: &Order) -> Role {
     match order.order.as_str() {
         "mode" | "jog" | "step" | "shelve" | "release_lot" | "replaced" => Role::Maintainer,
+        "reopen_lot" => Role::Engineer,
         _other => Role::Operator,
     }
 }

@@ -100,7 +100,7 @@ pub(super) async fn card(State(app): App, printed: Members<CardQuery>) -> Result
         let recipe = config::load_recipe(&dir, &name)?;
         let paper = paper(language(lang));
         let plant = config::load_card(&dir)?;
-        let card = card::card(paper.language, &recipe, &plant, &paper.made);
+        let card = card::card(&paper, &recipe, &plant);
         Ok::<_, ApiError>(with_policy(card))
     };
     blocking(made).await

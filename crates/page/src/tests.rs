@@ -156,7 +156,7 @@ async fn controller(
                 Ok(())
             }
             "jog" | "mode" | "step" | "shelve" | "hold_lot" | "release_lot" | "close_lot"
-            | "replaced" => Ok(()),
+            | "reopen_lot" | "replaced" => Ok(()),
             _other => Err(texts::Message::new("refusal", "run_ended")),
         };
         asked.answer(answer);

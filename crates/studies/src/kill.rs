@@ -71,7 +71,8 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
         }
         if round % 10 == 9 {
             counts.restarts += 1;
-            counts.refused += u64::from(!short_lot_completes(order, &db)?);
+            let lot = format!("after {}", name(round));
+            counts.refused += u64::from(!short_lot_completes(order, &db, &lot)?);
         }
         bar.inc(1);
     }
@@ -168,8 +169,8 @@ fn start_lot(
 }
 
 /// Runs a short lot in the same history and returns whether it completes.
-fn short_lot_completes(order: &Order, db: &Path) -> anyhow::Result<bool> {
-    let mut child = start_lot(order, db, ("after", 2), 1, Stdio::null())?;
+fn short_lot_completes(order: &Order, db: &Path, lot: &str) -> anyhow::Result<bool> {
+    let mut child = start_lot(order, db, (lot, 2), 1, Stdio::null())?;
     Ok(child.wait()?.success())
 }
 

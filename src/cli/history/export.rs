@@ -6,7 +6,7 @@ use anyhow::Context;
 use app::copies;
 use app::progress::{PIECES, progress};
 use clap::{Args, ValueEnum};
-use history::inquiry::{checks, export};
+use history::inquiry::{checks, export, paper};
 use history::{Archive, Filter, csv::BYTE_ORDER_MARK};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -80,8 +80,8 @@ fn spreadsheet(
     );
     let name = file.display();
     let bar = progress(Some(archive.count_parts(filter)?), PIECES);
-    let language = args.lang.language();
-    let mut workbook = export::spreadsheet(archive, filter, parameters, language, || bar.inc(1))?;
+    let paper = paper::paper_of(archive, filter, args.lang.language())?;
+    let mut workbook = export::spreadsheet(archive, filter, parameters, &paper, || bar.inc(1))?;
     bar.finish_and_clear();
     workbook
         .save(file)

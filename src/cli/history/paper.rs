@@ -3,8 +3,8 @@
 use crate::cli::output::Output;
 use anyhow::Context;
 use clap::{Args, ValueEnum};
-use history::inquiry;
 use history::report::{Lang, Paper};
+use history::{Archive, Filter, inquiry};
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -38,6 +38,12 @@ impl LangArg {
 }
 
 impl PaperArgs {
+    /// Returns paper of this language for the selected runs, made now.
+    pub(super) fn paper_of(&self, archive: &Archive, filter: &Filter) -> anyhow::Result<Paper> {
+        let language = self.lang.language();
+        Ok(inquiry::paper::paper_of(archive, filter, language)?)
+    }
+
     /// Returns the settings of a printed page: its language, and now as the time of printing.
     pub fn paper(&self) -> Paper {
         inquiry::paper::paper(self.lang.language())

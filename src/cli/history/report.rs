@@ -25,7 +25,7 @@ pub(super) struct ReportArgs {
 
 pub(super) fn run(archive: &Archive, args: &ReportArgs) -> anyhow::Result<()> {
     let filter = args.runs.filter();
-    let on = args.paper.paper();
+    let on = args.paper.paper_of(archive, &filter)?;
     let page = match (args.part, args.alarms) {
         (Some(seq), _) => paper::part_certificate(archive, &filter, seq, &on)?,
         (None, true) => paper::alarm_list(archive, &filter, &on)?,

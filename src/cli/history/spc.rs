@@ -58,7 +58,7 @@ pub(super) fn run(archive: &Archive, args: &SpcArgs) -> anyhow::Result<()> {
     )?;
     if args.page {
         let about = filter.lot.clone().unwrap_or_default();
-        let paper = args.paper.paper();
+        let paper = args.paper.paper_of(archive, &filter)?;
         return args
             .paper
             .write(&charts::page(&paper, &about, &charts, args.last));

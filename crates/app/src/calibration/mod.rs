@@ -49,6 +49,7 @@ pub fn calibrate(
     outer: &mut dyn Subscriber,
 ) -> anyhow::Result<Calibrated> {
     let nominal_v = reference_voltage(&files.config, recipe)?;
+    history::check_rig(&files.db, source.is_simulated())?;
     let stored = match verify {
         true => Some(valid_calibration(
             &open(&files.db)?,

@@ -13,6 +13,7 @@ mod context;
 mod counts;
 mod event;
 mod journal;
+mod outage;
 mod prior_state;
 mod progress;
 mod recorder;
@@ -34,16 +35,20 @@ use super::controls::Controls;
 use super::exit::{Cause, Exit};
 use super::links;
 use super::order_queue::OrderQueue;
+use super::source::RigSource;
 use super::traces::Traces;
 use crate::cycle::{CycleLinks, Event, Profile};
 use bus::{LineLog, Pace};
-use machine::station::turn::Ending;
+use history::HistoryError;
+use machine::station::turn::{Ending, HistoryState};
+pub(crate) use outage::Patience;
+use outage::{Outage, history_lost};
 use recorder::Recorder;
 use screen::Screen;
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use tokio::sync::mpsc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use tokio::sync::{mpsc, watch};
 
 /// A lot with its rig, history and controls, ready to run.
 pub struct LotRunner<'a> {
@@ -59,20 +64,21 @@ impl LotRunner<'_> {
     /// Runs the lot until it ends; `outer` receives every event. Panics outside a runtime of [`super::block_on`].
     ///
     /// # Errors
-    /// Fails when the history cannot be opened or closed, a line has no wiring, or the truth file cannot be written.
+    /// Fails when the history cannot be opened, a line has no wiring, or the truth file cannot be written.
     pub async fn run(
         &self,
         orders: OrderQueue,
         outer: &mut dyn Subscriber,
     ) -> anyhow::Result<Exit> {
         let (context, controls) = (&self.context, self.controls);
-        let pace = pace_of(context);
+        let pace = pace_of(context.source);
         let speed = context.source.speed();
         let limiter = speed.map(|speed| tokio::spawn(pace.limit_speed(speed)));
         let mut lines = links::open(context, &pace)?;
         let traces = Traces::new(self.db, context.plant, &lines.logs);
         controls.show_traffic(&traces);
         let (recorder, prior_state) = Recorder::open(self.db, context)?;
+        let (history, history_seen) = watch::channel(HistoryState::Written);
         let mut stream = Stream {
             lot: LotProgress::new(*context, lines.eeprom_count()),
             recorder,
@@ -82,11 +88,17 @@ impl LotRunner<'_> {
             },
             traces,
             outer,
+            history,
+            patience: Patience {
+                db: self.db,
+                controls,
+                pace,
+                give_up_s: context.plant.history.give_up_s,
+            },
         };
         stream.tell(&LotEvent::Begun)?;
         let (events, received) = mpsc::unbounded_channel::<Event>();
         let recorded = Arc::new(AtomicU64::new(0));
-        let history_lost = Arc::new(AtomicBool::new(false));
         let links = CycleLinks {
             events,
             recorded: Arc::clone(&recorded),
@@ -94,7 +106,7 @@ impl LotRunner<'_> {
             abort: Arc::clone(&controls.abort),
             orders: orders.orders,
             epoch_us: context.epoch_us,
-            history_lost: Arc::clone(&history_lost),
+            history: history_seen,
             view: controls.view.clone(),
         };
         let ends = std::mem::take(&mut lines.ends);
@@ -103,8 +115,7 @@ impl LotRunner<'_> {
         let running = tokio::spawn(cycle.run());
         let kept = stream.keep(received, &recorded).await;
         if let Err(error) = &kept {
-            tracing::error!("history: {error:#}");
-            history_lost.store(true, Ordering::Release);
+            stream.give_up(error);
         }
         let ended = running.await;
         if let Some(limiter) = limiter {
@@ -112,7 +123,7 @@ impl LotRunner<'_> {
         }
         let exit = match (&ended, &kept) {
             (Ok((ending, _)), Ok(())) => stream.lot.exit(ending),
-            (Ok(_), Err(error)) => Exit::Trouble(Cause::history_lost(&format!("{error:#}"))),
+            (Ok(_), Err(error)) => lost(error),
             (Err(_), _) => {
                 let cause = Cause::assertion();
                 tracing::error!("{}", cause.text);
@@ -120,21 +131,27 @@ impl LotRunner<'_> {
             }
         };
         let (ending, profile) = ended.unwrap_or((Ending::Alarm, Profile::default()));
-        let closed = stream.close(&ending, &exit, &profile, &lines.logs);
+        let closed = stream.close(&ending, &exit, &profile, &lines.logs).await;
         lines.finish(context.source)?;
-        // A history that is lost already cannot close the run; a failed assertion outranks a failed close.
-        if !exit.cause().is_some_and(Cause::is_program_failure) {
-            closed?;
-        }
-        Ok(exit)
+        // A failed assertion outranks a failed close.
+        Ok(match closed {
+            Err(error) if !exit.cause().is_some_and(Cause::is_program_failure) => lost(&error),
+            Ok(()) | Err(_) => exit,
+        })
     }
 }
 
-fn pace_of(context: &LotContext) -> Pace {
-    if context.source.is_virtual() {
-        Pace::virtual_time()
-    } else {
-        Pace::real()
+/// Returns the end of a program that cannot write its history.
+pub(crate) fn lost(error: &anyhow::Error) -> Exit {
+    tracing::error!("history: {error:#}");
+    Exit::Trouble(Cause::history_lost(&format!("{error:#}")))
+}
+
+/// Returns the clock of a rig.
+pub(crate) fn pace_of(source: &RigSource) -> Pace {
+    match source.is_virtual() {
+        true => Pace::virtual_time(),
+        false => Pace::real(),
     }
 }
 
@@ -145,6 +162,9 @@ struct Stream<'a, 'b> {
     screen: Screen,
     traces: Traces,
     outer: &'b mut dyn Subscriber,
+    /// Tells the cycle whether rows are written.
+    history: watch::Sender<HistoryState>,
+    patience: Patience<'a>,
 }
 
 impl Stream<'_, '_> {
@@ -154,22 +174,74 @@ impl Stream<'_, '_> {
         self.recorder.receive(event, &self.lot)
     }
 
-    /// Receives the events of the cycle until it ends; sets `recorded` to the last durable part.
+    /// Receives the events of the cycle until it ends; sets `recorded` to the last durable part. Rows that an outage leaves
+    /// pending are for [`Stream::close`].
+    ///
+    /// # Errors
+    /// Fails when an event has no rows.
     async fn keep(
         &mut self,
         mut events: mpsc::UnboundedReceiver<Event>,
         recorded: &AtomicU64,
     ) -> anyhow::Result<()> {
+        let pace = self.patience.pace;
         let mut batch = Vec::new();
-        while events.recv_many(&mut batch, 64).await > 0 {
+        let mut outage: Option<Outage> = None;
+        loop {
+            let retry_at = outage.as_ref().map(Outage::retry_at);
+            let more = tokio::select! {
+                biased;
+                more = events.recv_many(&mut batch, 64) => more > 0,
+                () = pace.sleep_until(retry_at.unwrap_or_default()), if retry_at.is_some() => true,
+            };
             for event in batch.drain(..) {
                 self.take_in(event)?;
             }
-            if let Some(ordinal) = self.recorder.commit().await? {
-                recorded.fetch_max(ordinal, Ordering::AcqRel);
+            if !more {
+                return Ok(());
+            }
+            if retry_at.is_some_and(|at| pace.now() < at) {
+                continue;
+            }
+            match self.recorder.commit().await {
+                Ok(ordinal) => self.written(&mut outage, ordinal.unwrap_or_default(), recorded),
+                Err(error) => self.unwritten(&mut outage, &error),
             }
         }
-        Ok(())
+    }
+
+    /// Publishes the last durable part and the end of an outage.
+    fn written(&self, outage: &mut Option<Outage>, ordinal: u64, recorded: &AtomicU64) {
+        recorded.fetch_max(ordinal, Ordering::AcqRel);
+        if outage.take().is_some() {
+            tracing::warn!("history: written again, nothing is lost");
+            self.history.send_replace(HistoryState::Written);
+        }
+    }
+
+    /// Tells the cycle that rows are pending.
+    fn unwritten(&mut self, outage: &mut Option<Outage>, error: &anyhow::Error) {
+        let (now, give_up_s) = (self.patience.pace.now(), self.patience.give_up_s);
+        if outage.is_none() {
+            tracing::error!("history: {error:#}; trying again for {give_up_s} s");
+        }
+        let outage = outage.get_or_insert_with(|| Outage::begin(now));
+        outage.failed(now);
+        if outage.is_too_long(now, give_up_s) || !error.is::<HistoryError>() {
+            return self.give_up(error);
+        }
+        self.history
+            .send_replace(match self.patience.controls.attended {
+                true => HistoryState::Lost(history_lost(self.patience.db, error)),
+                false => HistoryState::Waiting,
+            });
+    }
+
+    /// Ends the run because rows cannot be written.
+    fn give_up(&mut self, error: &anyhow::Error) {
+        self.patience.give_up_s = 0.0;
+        let alarm = history_lost(self.patience.db, error);
+        self.history.send_replace(HistoryState::GivenUp(alarm));
     }
 
     fn take_in(&mut self, event: Event) -> anyhow::Result<()> {
@@ -190,8 +262,11 @@ impl Stream<'_, '_> {
     }
 
     /// Ends the run in the history, after the parts that never landed and the summary.
-    fn close(
-        mut self,
+    ///
+    /// # Errors
+    /// Fails when the history cannot be written for too long; the run then stays open in it.
+    async fn close(
+        &mut self,
         ending: &Ending,
         exit: &Exit,
         profile: &Profile,
@@ -205,6 +280,13 @@ impl Stream<'_, '_> {
             .lot
             .summary(ending, exit.cause(), profile, writing, logs);
         self.tell(&LotEvent::Ended(Box::new(summary)))?;
-        self.recorder.close(ending, exit, &self.lot)
+        self.recorder.end(ending, exit, &self.lot);
+        let (recorder, lot) = (&mut self.recorder, &self.lot);
+        self.patience
+            .until_written(async || recorder.close(lot))
+            .await
     }
 }
+
+#[cfg(all(test, feature = "sim"))]
+mod outage_tests;

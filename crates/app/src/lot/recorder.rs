@@ -2,7 +2,7 @@
 //!
 //! Between lots the history has no run until a part found inside needs a row: the lot [`FOUND_LOT`](super::FOUND_LOT) then gets
 //! one. One transaction takes all pending rows; the recorder then publishes the ordinal of the last judged part, which
-//! allows the sorter to open its gripper. The database works on a blocking thread, one short task per transaction.
+//! allows the sorter to open its gripper. After a failed transaction its rows stay pending, in order. The database works on a blocking thread, one short task per transaction.
 
 use super::event::LotEvent;
 use super::journal::Journal;
@@ -13,7 +13,8 @@ use crate::cycle::Event;
 use crate::exit::Exit;
 use anyhow::Context;
 use history::{
-    CalibrationRecord, InterruptedRecord, LandingRecord, LotRecord, Row, Store, snapshot_hash,
+    CalibratedRecord, CalibrationRecord, InterruptedRecord, LandingRecord, LotRecord, Row, Store,
+    snapshot_hash,
 };
 use machine::dut::{Calibration, Reason};
 use machine::handling::inside::Inside;
@@ -40,6 +41,7 @@ impl Recorder {
     /// Opens the history and begins the lot's run; returns the state that the run takes over.
     pub fn open(db: &Path, context: &LotContext) -> anyhow::Result<(Self, PriorState)> {
         let mut store = Store::open(db)?;
+        store.claim(context.is_simulated())?;
         store.cut_off(context.is_simulated(), context.epoch_us)?;
         let prior_state = PriorState::read(&store, context)?;
         let mut recorder = Self {
@@ -51,24 +53,16 @@ impl Recorder {
             writing: Duration::ZERO,
         };
         if !context.purpose.is_between_lots() {
-            recorder.begin(context, prior_state.calibration.as_ref())?;
+            recorder.begin(context, prior_state.calibration.as_ref());
+            recorder.write()?;
         }
         Ok((recorder, prior_state))
     }
 
-    fn store(&mut self) -> anyhow::Result<&mut Store> {
-        self.store.as_mut().context("the history is closed")
-    }
-
-    fn begin(
-        &mut self,
-        context: &LotContext,
-        calibration: Option<&Calibration>,
-    ) -> anyhow::Result<()> {
+    /// Queues the begin of a run.
+    fn begin(&mut self, context: &LotContext, calibration: Option<&Calibration>) {
         let (order, recipe) = (context.order, context.recipe);
-        let begun = self.journal.begin(&order.lot, context.epoch_us);
-        let store = self.store()?;
-        store.begin_lot(&LotRecord {
+        self.rows.push(Row::Run(LotRecord {
             lot: order.lot.clone(),
             recipe: recipe.name.clone(),
             recipe_snapshot: recipe.source_text.clone(),
@@ -78,14 +72,15 @@ impl Recorder {
             simulated: context.is_simulated(),
             seed: context.source.seed(),
             retest: order.retest.clone(),
-        })?;
-        Ok(store.record(begun.as_slice())?)
+        }));
+        let begun = self.journal.begin(&order.lot, context.epoch_us);
+        self.rows.extend(begun);
     }
 
     /// Turns an event into rows of the next transaction.
     ///
     /// # Errors
-    /// Fails when a run or a calibration cannot be written.
+    /// Fails when a calibration is no JSON.
     pub fn receive(&mut self, event: &LotEvent, lot: &LotProgress) -> anyhow::Result<()> {
         match event {
             LotEvent::Cycle(event) => self.of_the_cycle(event, lot)?,
@@ -103,7 +98,7 @@ impl Recorder {
         match event {
             Event::Judged(judged) => {
                 if self.journal.has_no_lot() {
-                    self.begin(&lot.context, None)?;
+                    self.begin(&lot.context, None);
                 }
                 self.judged(judged, lot);
             }
@@ -184,9 +179,11 @@ impl Recorder {
             body: serde_json::to_string(calibration)?,
             verified: true,
         };
-        let store = self.store()?;
-        store.save_calibration(&record)?;
-        Ok(store.calibrated(&context.order.lot, &record.hash)?)
+        self.rows.push(Row::Calibrated(CalibratedRecord {
+            lot: context.order.lot.clone(),
+            calibration: record,
+        }));
+        Ok(())
     }
 
     /// Queues the machine's contents, for the next transaction and the end of the run.
@@ -200,41 +197,56 @@ impl Recorder {
     /// Writes the pending rows; returns the ordinal up to which parts are durable when it has grown.
     ///
     /// # Errors
-    /// Fails when the transaction fails, which then writes nothing.
+    /// Fails when the transaction fails, which then writes nothing; the rows stay pending, in order.
     pub async fn commit(&mut self) -> anyhow::Result<Option<u64>> {
         if !self.rows.is_empty() {
             self.queue_contents();
             let from = Instant::now();
             let rows = std::mem::take(&mut self.rows);
             let mut store = self.store.take().context("the history is closed")?;
-            let (store, written) = tokio::task::spawn_blocking(move || {
+            let (store, rows, written) = tokio::task::spawn_blocking(move || {
                 let written = store.record(&rows);
-                (store, written)
+                (store, rows, written)
             })
             .await
             .context("the history writer ended")?;
             self.store = Some(store);
             self.writing += from.elapsed();
-            written?;
+            if let Err(error) = written {
+                self.rows = rows;
+                return Err(error.into());
+            }
         }
         Ok(self.judged.take())
     }
 
-    /// Writes how the run ended, and closes it.
-    ///
-    /// # Errors
-    /// Fails when the history cannot be written; the run then stays open in it.
-    pub fn close(mut self, ending: &Ending, exit: &Exit, lot: &LotProgress) -> anyhow::Result<()> {
+    /// Queues how the run ended.
+    pub fn end(&mut self, ending: &Ending, exit: &Exit, lot: &LotProgress) {
         self.queue_contents();
         let end_us = lot.context.wall_us(lot.end());
         self.rows.extend(self.journal.ended(ending, exit, end_us));
-        let Some(store) = &mut self.store else {
-            return Ok(());
-        };
-        store.record(&self.rows)?;
-        if !self.journal.has_no_lot() {
-            store.close_lot(&lot.context.order.lot, end_us)?;
+    }
+
+    /// Writes the pending rows and closes the run.
+    ///
+    /// # Errors
+    /// Fails when the history cannot be written; what is not written yet stays pending.
+    pub fn close(&mut self, lot: &LotProgress) -> anyhow::Result<()> {
+        self.write()?;
+        let end_us = lot.context.wall_us(lot.end());
+        match &mut self.store {
+            Some(store) if !self.journal.has_no_lot() => {
+                Ok(store.close_lot(&lot.context.order.lot, end_us)?)
+            }
+            Some(_) | None => Ok(()),
         }
+    }
+
+    /// Writes the pending rows while no cycle turns.
+    fn write(&mut self) -> anyhow::Result<()> {
+        let store = self.store.as_mut().context("the history is closed")?;
+        store.record(&self.rows)?;
+        self.rows.clear();
         Ok(())
     }
 }

@@ -13,7 +13,8 @@
 //! | a person starts another lot, or holds this one, while the machine rests | is open, or held | runs the other lot, or goes between lots |
 //! | a port or module is missing | shows an alarm that names it | tries again at every clear |
 //! | Ctrl-C | finishes the parts inside, is open | ends: 4 when it stopped a lot, 3 when the lot had an active alarm, else 0 |
-//! | the history cannot be written, an assertion fails | makes outputs safe, is open | ends: 3 |
+//! | the history cannot be written | aborts; continues after clear, reset and start | writes what is pending once it can; ends after `give_up_s`: 3 |
+//! | an assertion fails | makes outputs safe, is open | ends: 3 |
 //!
 //! A simulated rig stays the same throughout. Before every lot the program empties its magazine and loads it, reference
 //! parts first, as a person would.
@@ -24,7 +25,9 @@ mod router;
 use super::admission::{AdmissionError, admit};
 use super::controls::Controls;
 use super::exit::Exit;
-use super::lot::{FOUND_LOT, LotContext, LotRunner, Purpose, Subscriber, mimic};
+use super::lot::{
+    FOUND_LOT, LotContext, LotRunner, Patience, Purpose, Subscriber, lost, mimic, pace_of,
+};
 use super::order::{Files, LotOrder};
 use super::order_queue::OrderQueue;
 use super::source::RigSource;
@@ -33,7 +36,7 @@ use super::{links, lot_decision};
 use super::{simulated, simulated::LiveRig};
 use anyhow::{Context, bail};
 use config::{Plant, load_recipe, recipe_names};
-use history::{Decision, Store};
+use history::{Decision, HistoryError, Store};
 use machine::dut::Recipe;
 use machine::station::packml::State;
 use machine::view::OrderRequest;
@@ -82,6 +85,7 @@ impl Service {
             #[cfg(feature = "sim")]
             RigSource::Simulated(_) => {}
         }
+        history::check_rig(&files.db, source.is_simulated())?;
         let order = between(&files.config)?;
         let recipe = Arc::new(load_recipe(&files.config, &order.recipe)?);
         let admitted = |order: LotOrder| -> Result<AdmittedLot, AdmissionError> {
@@ -137,9 +141,17 @@ impl Service {
     async fn work(&mut self, outer: &mut dyn Subscriber) -> anyhow::Result<Exit> {
         let mut next = self.first.take();
         let mut rests = State::Stopped;
+        let mut first = true;
         loop {
             let lot = next.take();
-            let exit = self.run_once(lot.as_ref(), rests, outer).await?;
+            let mut run = async || self.run_once(lot.as_ref(), rests, &mut *outer).await;
+            let exit = match std::mem::take(&mut first) {
+                true => run().await?,
+                false => match self.patience().until_written(run).await {
+                    Err(error) if error.is::<HistoryError>() => return Ok(lost(&error)),
+                    exit => exit?,
+                },
+            };
             rests = if exit == Exit::Done {
                 State::Complete
             } else {
@@ -153,13 +165,29 @@ impl Service {
                 Exit::Stopped => match self.router.next() {
                     Some(AfterRun::Lot(lot)) => next = Some(*lot),
                     Some(AfterRun::Hold(held)) => {
-                        let row = lot_decision::state(&held.0, &held.1, Decision::Hold);
-                        Store::open(&self.files.db)?.record(&[row])?;
+                        let row = lot_decision::state_row(&held.0, &held.1, Decision::Hold);
+                        let hold = async || {
+                            let rows = std::slice::from_ref(&row);
+                            let store = Store::open(&self.files.db);
+                            Ok(store.and_then(|mut store| store.record(rows))?)
+                        };
+                        if let Err(error) = self.patience().until_written(hold).await {
+                            return Ok(lost(&error));
+                        }
                     }
                     None => {}
                 },
                 Exit::Done | Exit::AnswerIsNo | Exit::BadInput => {}
             }
+        }
+    }
+
+    fn patience(&self) -> Patience<'_> {
+        Patience {
+            db: &self.files.db,
+            controls: &self.controls,
+            pace: pace_of(&self.source),
+            give_up_s: self.plant.history.give_up_s,
         }
     }
 

@@ -3,7 +3,7 @@
 //! - `start` with a lot: goes to the station once the lot is admitted. The station leaves its lot when the machine
 //!   rests; the run of the new lot follows.
 //! - `hold_lot`, `close_lot` of the lot under way go to its station; those of another lot go into the history, as
-//!   `release_lot` and `replaced` do.
+//!   `release_lot`, `reopen_lot` and `replaced` do.
 //! - Every other order goes straight to the station.
 //!
 //! The router sends refused orders to the station too, marked as denied, because the audit has one writer during a run.
@@ -16,7 +16,7 @@ use crate::lot_decision;
 use crate::order::LotOrder;
 use crate::source::RigSource;
 use config::Plant;
-use history::{Archive, Decision, Store};
+use history::{Decision, Store};
 use machine::view::{By, Order, OrderRequest};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -103,10 +103,15 @@ impl OrderRouter {
         let wanted = match decision {
             None if order.order == "start" => self.admitted(&order).await.map(Some),
             Some(Decision::Hold) if ours => {
-                require_reason(&order).map(|()| Some(AfterRun::Hold(Box::new((order, by)))))
+                let reason = order.reason.as_deref().unwrap_or_default();
+                let hold = || Some(AfterRun::Hold(Box::new((order.clone(), by))));
+                Decision::Hold
+                    .reason_refusal(reason)
+                    .map_or_else(|| Ok(hold()), Err)
             }
             Some(Decision::Close) if ours => Ok(None),
             Some(Decision::Release) if ours => Err(refused("lot_under_way")),
+            Some(Decision::Reopen) if ours => Err(refused("lot_not_complete")),
             _not_under_way => return self.write(asked).await,
         };
         if let Err(why) = wanted.and_then(|next| self.set_next(next)) {
@@ -156,7 +161,7 @@ impl OrderRouter {
         let (db, simulated) = (self.0.db.clone(), self.0.source.is_simulated());
         let (order, by) = (asked.order.clone(), asked.by.clone());
         let write = move || match Decision::ordered(&order.order) {
-            Some(decision) => write_decision(&db, &order, &by, decision),
+            Some(decision) => lot_decision::write(&db, &order, &by, decision),
             None => write_replacement(&db, &order, &by, simulated),
         };
         match blocking(write).await {
@@ -203,32 +208,6 @@ impl OrderRouter {
 fn is_about_lots(order: &Order) -> bool {
     let start = order.order == "start" && order.lot.is_some();
     start || machine::view::LOT_ORDERS.contains(&order.order.as_str())
-}
-
-fn write_decision(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<(), Message> {
-    if decision == Decision::Hold {
-        require_reason(order)?;
-    }
-    let name = order.lot.as_deref().unwrap_or_default();
-    let standing = match db.exists() {
-        true => Archive::open(db).and_then(|it| it.standing(name)),
-        false => Ok(None),
-    };
-    let Some(standing) = standing.map_err(|error| trouble(&error))? else {
-        return Err(refused("no_such_lot").with("lot", name));
-    };
-    if let Some(why) = decision.refusal(standing.state) {
-        return Err(why);
-    }
-    lot_decision::write(db, order, by, decision).map_err(|error| trouble(&error))
-}
-
-fn require_reason(order: &Order) -> Result<(), Message> {
-    let reason = order.reason.as_deref().unwrap_or_default();
-    if reason.trim().is_empty() {
-        return Err(refused("hold_without_reason"));
-    }
-    Ok(())
 }
 
 fn write_replacement(db: &Path, order: &Order, by: &By, simulated: bool) -> Result<(), Message> {

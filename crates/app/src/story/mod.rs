@@ -41,6 +41,7 @@ pub fn run(
     outer: &mut dyn Subscriber,
 ) -> anyhow::Result<(Option<StoryReport>, Exit)> {
     let plant = Plant::load(&files.config)?;
+    history::check_rig(&files.db, true)?;
     let recipe = admit(&files.db, &plant, order, Purpose::Lot)?;
     let live = simulated::build(&plant, &rig, order)?;
     let source = rig.on(LiveRig::new(live.clone()));

@@ -2,10 +2,9 @@
 
 use super::Result;
 use crate::columns::{self, Cell};
-use crate::report::Lang;
+use crate::report::Paper;
 use crate::report::sheet::Sheet;
 use crate::{Archive, Filter, csv};
-use jiff::tz::TimeZone;
 use rust_xlsxwriter::Workbook;
 use std::io::Write;
 
@@ -33,10 +32,10 @@ pub fn spreadsheet(
     archive: &Archive,
     filter: &Filter,
     parameters: &[String],
-    language: Lang,
+    paper: &Paper,
     mut each: impl FnMut(),
 ) -> Result<Workbook> {
-    let mut sheet = Sheet::new(language, TimeZone::system(), parameters)?;
+    let mut sheet = Sheet::new(paper, parameters)?;
     archive.each(filter, |part| {
         each();
         sheet.part(&part)

@@ -10,7 +10,15 @@ use crate::store::PROGRAM;
 use crate::{Archive, Filter};
 use jiff::{Timestamp, tz::TimeZone};
 
-/// Returns paper with the time zone of this computer and a foot with time and version.
+/// Returns paper for the selected runs, marked when one of them was on the simulated rig.
+pub fn paper_of(archive: &Archive, filter: &Filter, language: Lang) -> Result<Paper> {
+    Ok(Paper {
+        simulated: archive.is_simulated(filter)?,
+        ..paper(language)
+    })
+}
+
+/// Returns paper with the time zone of this computer and a foot with time and version, for no part.
 pub fn paper(language: Lang) -> Paper {
     let zone = TimeZone::system();
     let now = Timestamp::now().to_zoned(zone.clone());
@@ -19,6 +27,7 @@ pub fn paper(language: Lang) -> Paper {
         language,
         zone,
         made,
+        simulated: false,
     }
 }
 
@@ -45,6 +54,7 @@ pub fn lot_report(
     let report = LotReport {
         lot,
         runs: &runs,
+        reopenings: &archive.reopenings(lot)?,
         passed: archive.passed(filter)?,
         parameters: measured(archive, filter)?,
         effectiveness: use_of_time(archive, filter, &runs, ideal_cycle_s)?,

@@ -12,7 +12,7 @@ pub fn list(paper: &Paper, about: &str, alarms: &[Alarm]) -> String {
     let language = paper.language;
     let title = language.text("paper-alarm_list");
     let body = html! { (head(title, about)) (table(paper, alarms)) };
-    page(language, Format::Portrait, title, &paper.made, &body)
+    page(paper, Format::Portrait, title, &body)
 }
 
 pub(super) fn table(paper: &Paper, alarms: &[Alarm]) -> Markup {

@@ -4,6 +4,7 @@
 //! Steps, rating and drive come from the kind ([`Card`]), limits from the recipe, figures of the plant from `card.toml`
 //! ([`CardSettings`]).
 
+use super::Paper;
 use super::lot::limits;
 use super::page::{Format, page};
 use super::words::{figure, parameter, short_hash};
@@ -15,7 +16,8 @@ use quality::Limits;
 use texts::Lang;
 
 /// Returns the card as an HTML page, A4 landscape.
-pub fn card(language: Lang, recipe: &Recipe, plant: &CardSettings, made: &str) -> String {
+pub fn card(paper: &Paper, recipe: &Recipe, plant: &CardSettings) -> String {
+    let language = paper.language;
     let title = language.text("paper-operation_process_card");
     let kind = recipe.device.card();
     let body = html! {
@@ -25,7 +27,7 @@ pub fn card(language: Lang, recipe: &Recipe, plant: &CardSettings, made: &str) -
         p.remark { (language.text("paper-not_tested")) }
         (signatures(language))
     };
-    page(language, Format::Landscape, title, made, &body)
+    page(paper, Format::Landscape, title, &body)
 }
 
 fn header(language: Lang, recipe: &Recipe, kind: &Card, plant: &CardSettings) -> Markup {

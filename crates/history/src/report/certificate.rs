@@ -28,13 +28,7 @@ pub fn certificate(paper: &Paper, part: &Part, run: &LotSummary) -> String {
         p.remark { (language.text("paper-not_tested")) }
         (sign_off(language))
     };
-    page(
-        language,
-        Format::Portrait,
-        &format!("{title} {number}"),
-        &paper.made,
-        &body,
-    )
+    page(paper, Format::Portrait, &format!("{title} {number}"), &body)
 }
 
 fn about(paper: &Paper, part: &Part, run: &LotSummary) -> Vec<(&'static str, String)> {

@@ -4,12 +4,12 @@ use super::charts;
 use super::page::{Format, facts, head, page, sign_off};
 use super::words::{figure, parameter, percent, short_hash, span, unbroken};
 use super::{Paper, alarms};
-use crate::{Alarm, LotSummary, Passed};
+use crate::{Alarm, LotSummary, Passed, Reopening};
 use maud::{Markup, PreEscaped, html};
 use quality::capability::{Index, by_percentiles};
 use quality::effectiveness::Effectiveness;
 use quality::{Capability, Limits, Ordered, Spread, capability::D2_PAIR, spread};
-use texts::Lang;
+use texts::{Lang, Message};
 
 /// Data of a lot report.
 #[derive(Debug, Clone)]
@@ -18,6 +18,8 @@ pub struct LotReport<'a> {
     pub lot: &'a str,
     /// Its runs, at least one.
     pub runs: &'a [LotSummary],
+    /// Decisions to open the complete lot again.
+    pub reopenings: &'a [Reopening],
     /// Parts that passed.
     pub passed: Passed,
     /// Values in order of time, by parameter.
@@ -47,6 +49,7 @@ impl LotReport<'_> {
         let body = html! {
             (head(title, &self.about(language)))
             (self.facts(paper))
+            @for it in self.reopenings { p.remark { (reopening(paper, it)) } }
             h2 { (language.text("paper-result")) }
             (self.counts(language))
             h2 { (language.text("paper-parameters")) }
@@ -59,13 +62,8 @@ impl LotReport<'_> {
             p.remark { (language.text("paper-not_tested")) }
             (sign_off(language))
         };
-        page(
-            language,
-            Format::Portrait,
-            &format!("{title} {}", self.lot),
-            &paper.made,
-            &body,
-        )
+        let title = format!("{title} {}", self.lot);
+        page(paper, Format::Portrait, &title, &body)
     }
 
     fn about(&self, language: Lang) -> String {
@@ -201,6 +199,14 @@ impl LotReport<'_> {
             }
         }
     }
+}
+
+fn reopening(paper: &Paper, it: &Reopening) -> String {
+    Message::new("paper", "reopened")
+        .with("at", paper.time(it.at))
+        .with("who", &it.who)
+        .with("why", &it.why)
+        .say(paper.language)
 }
 
 fn row(language: Lang, it: &ParameterValues) -> Markup {

@@ -39,6 +39,8 @@ pub struct Paper {
     pub zone: TimeZone,
     /// Foot of the page: time and program version.
     pub made: String,
+    /// True for parts of the simulated rig: SIMULATION goes across every page.
+    pub simulated: bool,
 }
 
 impl Paper {

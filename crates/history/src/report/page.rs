@@ -1,5 +1,6 @@
 //! Frame of a page: A4, one style, head, foot, sign-off.
 
+use super::Paper;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use texts::Lang;
 
@@ -14,14 +15,8 @@ pub(super) enum Format {
 
 const STYLE: &str = include_str!("page.css");
 
-/// Returns a complete HTML file with `made` at its foot.
-pub(super) fn page(
-    language: Lang,
-    format: Format,
-    title: &str,
-    made: &str,
-    body: &Markup,
-) -> String {
+/// Returns a complete HTML file, with SIMULATION across it for simulated parts.
+pub(super) fn page(paper: &Paper, format: Format, title: &str, body: &Markup) -> String {
     let size = match format {
         Format::Portrait => "@page { size: A4 portrait; }",
         Format::Landscape => "@page { size: A4 landscape; }",
@@ -32,7 +27,7 @@ pub(super) fn page(
     };
     let whole = html! {
         (DOCTYPE)
-        html lang=(language.tag()) {
+        html lang=(paper.language.tag()) {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
@@ -40,8 +35,9 @@ pub(super) fn page(
                 style { (PreEscaped(STYLE)) (PreEscaped(size)) }
             }
             body class=(class) {
+                @if paper.simulated { p.simulation { (paper.language.text("simulation")) } }
                 main { (body) }
-                footer { (made) }
+                footer { (paper.made) }
             }
         }
     };

@@ -3,6 +3,7 @@
 //! Memory does not grow with the number of parts: the library writes rows to a temporary file, and only a [`Tally`] of each
 //! parameter stays. After [`ROWS`] rows the next sheet begins. Texts are written as texts, never as formulas.
 
+use super::Paper;
 use super::words::parameter;
 use crate::columns::{self, Cell};
 use crate::{Moment, Part};
@@ -10,9 +11,8 @@ use jiff::tz::TimeZone;
 use jiff::{Timestamp, Unit};
 use quality::ordered::Histogram;
 use quality::tally::Tally;
-use rust_xlsxwriter::{Chart, ChartType, Format, Workbook, Worksheet, XlsxError};
+use rust_xlsxwriter::{Chart, ChartType, Color, Format, Workbook, Worksheet, XlsxError};
 use std::collections::BTreeMap;
-use texts::Lang;
 
 /// Parts on one sheet; spreadsheets hold 1,048,576 rows.
 const ROWS: u32 = 1_000_000;
@@ -21,11 +21,13 @@ pub const EPOCH_DAYS: f64 = 25_569.0;
 /// Height of a chart in rows of the summary.
 const CHART_ROWS: u32 = 16;
 
+/// Column of the charts in the summary.
+const CHART_COLUMN: u16 = 7;
+
 /// A spreadsheet under construction.
 pub struct Sheet {
     workbook: Workbook,
-    language: Lang,
-    zone: TimeZone,
+    paper: Paper,
     time: Format,
     keys: Vec<String>,
     tallies: Vec<Tally>,
@@ -35,16 +37,20 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// Makes a spreadsheet with columns for these parameters.
-    pub fn new(language: Lang, zone: TimeZone, parameters: &[String]) -> Result<Self, XlsxError> {
+    /// Makes a spreadsheet with columns for these parameters, headed SIMULATION for simulated parts.
+    pub fn new(paper: &Paper, parameters: &[String]) -> Result<Self, XlsxError> {
         let mut workbook = Workbook::new();
-        workbook
-            .add_worksheet()
-            .set_name(language.text("paper-summary"))?;
+        let summary = workbook.add_worksheet();
+        summary.set_name(paper.language.text("paper-summary"))?;
+        if paper.simulated {
+            let simulation = paper.language.text("simulation");
+            let large = Format::new().set_bold().set_font_color(Color::Red);
+            summary.write_string_with_format(0, CHART_COLUMN, simulation, &large)?;
+        }
+        head(summary, paper);
         let mut sheet = Self {
             workbook,
-            language,
-            zone,
+            paper: paper.clone(),
             time: Format::new().set_num_format("yyyy-mm-dd hh:mm:ss"),
             keys: parameters.to_vec(),
             tallies: vec![Tally::default(); parameters.len()],
@@ -63,7 +69,12 @@ impl Sheet {
         }
         let to = self.workbook.worksheet_from_index(self.sheets)?;
         for (column, cell) in (0..).zip(columns::row(part, &self.keys)) {
-            written(to, (self.row, column), &cell, (&self.zone, &self.time))?;
+            written(
+                to,
+                (self.row, column),
+                &cell,
+                (&self.paper.zone, &self.time),
+            )?;
         }
         for (key, tally) in self.keys.iter().zip(&mut self.tallies) {
             let value = part.values.get(key).and_then(serde_json::Value::as_f64);
@@ -77,16 +88,17 @@ impl Sheet {
 
     /// Writes the summary and returns the workbook.
     pub fn finish(mut self) -> Result<Workbook, XlsxError> {
-        let name = self.language.text("paper-summary").to_owned();
+        let language = self.paper.language;
+        let name = language.text("paper-summary").to_owned();
         let bold = Format::new().set_bold();
         let to = self.workbook.worksheet_from_index(0)?;
         let header = [
-            self.language.text("paper-sheet_parameter"),
+            language.text("paper-sheet_parameter"),
             "n",
-            self.language.text("paper-sheet_mean"),
-            self.language.text("paper-sheet_sd"),
-            self.language.text("paper-sheet_min"),
-            self.language.text("paper-sheet_max"),
+            language.text("paper-sheet_mean"),
+            language.text("paper-sheet_sd"),
+            language.text("paper-sheet_min"),
+            language.text("paper-sheet_max"),
         ];
         for (column, text) in (0..).zip(header) {
             to.write_string_with_format(0, column, text, &bold)?;
@@ -96,22 +108,22 @@ impl Sheet {
         let mut histograms = Vec::new();
         for (key, tally) in self.keys.iter().zip(self.tallies) {
             let (spread, histogram) = tally.finish();
-            to.write_string(row, 0, parameter(self.language, key))?;
+            to.write_string(row, 0, parameter(language, key))?;
             to.write_number(row, 1, spread.n() as f64)?;
             let figures = [spread.mean(), spread.sd(), spread.min(), spread.max()];
             for (column, value) in (2..).zip(figures) {
                 number(to, row, column, value)?;
             }
             row += 1;
-            histograms.extend(histogram.map(|it| (parameter(self.language, key), it)));
+            histograms.extend(histogram.map(|it| (parameter(language, key), it)));
         }
         row += 1;
         let bins: Vec<(String, u64)> = self
             .bins
             .into_iter()
-            .map(|(bin, n)| (self.language.name("bin", &bin).to_owned(), n))
+            .map(|(bin, n)| (language.name("bin", &bin).to_owned(), n))
             .collect();
-        let title = self.language.text("paper-parts_bin");
+        let title = language.text("paper-parts_bin");
         let mut next = counted(to, &name, row, title, &bins)?;
         for (title, histogram) in histograms {
             next = counted(to, &name, next, &title, &classes(&histogram))?;
@@ -121,7 +133,7 @@ impl Sheet {
 
     fn next_sheet(&mut self) -> Result<(), XlsxError> {
         self.sheets += 1;
-        let name = self.language.text("paper-sheet_parts");
+        let name = self.paper.language.text("paper-sheet_parts");
         let name = match self.sheets {
             1 => name.to_owned(),
             more => format!("{name} {more}"),
@@ -129,6 +141,7 @@ impl Sheet {
         let bold = Format::new().set_bold();
         let to = self.workbook.add_worksheet_with_constant_memory()?;
         to.set_name(name)?;
+        head(to, &self.paper);
         to.set_freeze_panes(1, 0)?;
         to.set_column_width(0, 19)?;
         for (column, name) in (0..).zip(columns::header(&self.keys)) {
@@ -136,6 +149,14 @@ impl Sheet {
         }
         self.row = 1;
         Ok(())
+    }
+}
+
+/// Puts SIMULATION at the head of the printed sheet of simulated parts.
+fn head(sheet: &mut Worksheet, paper: &Paper) {
+    if paper.simulated {
+        let simulation = paper.language.text("simulation");
+        sheet.set_header(format!("&C&\"Arial,Bold\"&24{simulation}"));
     }
 }
 
@@ -165,7 +186,7 @@ fn counted(
     chart.title().set_name(title);
     chart.legend().set_hidden();
     chart.set_width(560).set_height(300);
-    to.insert_chart(row, 7, &chart)?;
+    to.insert_chart(row, CHART_COLUMN, &chart)?;
     Ok((last + 2).max(row + CHART_ROWS))
 }
 

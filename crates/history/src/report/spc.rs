@@ -34,7 +34,7 @@ pub fn spc(paper: &Paper, about: &str, charts: &[NamedChart<'_>], shown: usize) 
         }
         (legend(language, charts))
     };
-    page(language, Format::Landscape, heading, &paper.made, &body)
+    page(paper, Format::Landscape, heading, &body)
 }
 
 /// Returns subject and kind of a chart.

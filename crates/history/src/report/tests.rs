@@ -6,7 +6,7 @@ use super::certificate::certificate;
 use super::lot::{LotReport, ParameterValues};
 use super::spc::{NamedChart, spc};
 use super::*;
-use crate::{Alarm, AlarmState, LotSummary, Measurement, Part, Passed, Shelf, Yield};
+use crate::{Alarm, AlarmState, LotSummary, Measurement, Part, Passed, Reopening, Shelf, Yield};
 use config::load_recipe;
 use machine::dut::card::{CardSettings, Quota, STEPS};
 use machine::dut::{Reason, Recipe};
@@ -24,6 +24,7 @@ fn paper(language: Lang) -> Paper {
         language,
         zone: TimeZone::UTC,
         made: "2026-03-01 08:00 relayrig".into(),
+        simulated: false,
     }
 }
 
@@ -75,6 +76,10 @@ fn part(verdict: &str) -> Part {
 }
 
 fn lot_report(language: Lang) -> String {
+    lot_report_on(&paper(language))
+}
+
+fn lot_report_on(paper: &Paper) -> String {
     let alarms = [Alarm {
         lot: Some(EVIL.into()),
         run: Some(1),
@@ -106,6 +111,11 @@ fn lot_report(language: Lang) -> String {
     let report = LotReport {
         lot: EVIL,
         runs: &[run()],
+        reopenings: &[Reopening {
+            at: Moment(90_000_000),
+            who: "zhao".into(),
+            why: EVIL.into(),
+        }],
         passed: Passed {
             finally: 2,
             at_first: 1,
@@ -114,7 +124,7 @@ fn lot_report(language: Lang) -> String {
         effectiveness: None,
         alarms: &alarms,
     };
-    report.html(&paper(language))
+    report.html(paper)
 }
 
 #[test]
@@ -211,6 +221,39 @@ fn a_simulated_lot_says_so() {
 }
 
 #[test]
+fn paper_of_simulated_parts_says_simulation_across_it() {
+    let [chart, _] = individuals(&[1.0, 2.0, 3.0], Rules::Nelson).unwrap();
+    let named = [NamedChart {
+        of: "coil",
+        chart: &chart,
+        names: &[],
+    }];
+    for (language, word) in [(Lang::En, ">SIMULATION<"), (Lang::Zh, ">仿真<")] {
+        for simulated in [false, true] {
+            let paper = Paper {
+                simulated,
+                ..paper(language)
+            };
+            for page in [
+                lot_report_on(&paper),
+                certificate(&paper, &part("pass"), &run()),
+                spc(&paper, "", &named, 3),
+                alarms::list(&paper, "", &[]),
+            ] {
+                assert_eq!(page.contains(word), simulated, "{page}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_lot_report_shows_who_reopened_the_lot_and_why() {
+    let page = lot_report(Lang::En);
+    let words = "1970-01-01 00:01:30 +00:00 by zhao: &lt;/td&gt;";
+    assert!(page.contains(words), "{page}");
+}
+
+#[test]
 fn a_lot_report_has_both_yields_and_alarm_times() {
     let page = lot_report(Lang::En);
     assert!(page.contains("33.33 %") && page.contains("66.67 %"));
@@ -237,7 +280,7 @@ fn process_card(language: Lang) -> String {
         preparation_min: 15.0,
         quota: STEPS.iter().map(|it| ((*it).to_owned(), quota)).collect(),
     };
-    card(language, &recipe(), &plant, "today")
+    card(&paper(language), &recipe(), &plant)
 }
 
 #[test]

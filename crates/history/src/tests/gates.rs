@@ -67,19 +67,20 @@ fn a_check_sent_again_is_one_check() {
 
 #[test]
 fn failed_check_reaches_earlier_lots_on_a_rig_only() {
-    let file = File::new();
-    let mut store = file.store();
-    let of = |name: &str, simulated| LotRecord {
-        simulated,
-        ..lot(name)
-    };
-    for (name, simulated) in [("sim", true), ("rig 1", false), ("rig 2", false)] {
-        store.begin_lot(&of(name, simulated)).unwrap();
-        store.record(&parts(name, 2)).unwrap();
+    for (simulated, expected) in [(false, 4), (true, 1)] {
+        let file = File::new();
+        let mut store = file.store();
+        for name in ["first", "second"] {
+            let run = LotRecord {
+                simulated,
+                ..lot(name)
+            };
+            store.begin_lot(&run).unwrap();
+            store.record(&parts(name, 2)).unwrap();
+        }
+        store.record(&[check("second", 9_000_000, false)]).unwrap();
+        assert_eq!(suspects(&file).len(), expected);
     }
-    store.record(&[check("rig 2", 9_000_000, false)]).unwrap();
-    let lots: Vec<String> = suspects(&file).into_iter().map(|it| it.0).collect();
-    assert_eq!(lots, ["rig 1", "rig 1", "rig 2", "rig 2"]);
 }
 
 #[test]
@@ -90,7 +91,12 @@ fn a_lot_has_its_last_state_and_begins_open() {
     let standing = || file.archive().standing("A").unwrap().unwrap();
     assert_eq!(standing().state, LotState::Open);
     assert_eq!(standing().recipe, "jzc-22f-012");
-    for state in LotState::ALL {
+    for state in [
+        LotState::Running,
+        LotState::Held,
+        LotState::Open,
+        LotState::Complete,
+    ] {
         let record = LotStateRecord {
             lot: "A".into(),
             state,
@@ -108,12 +114,8 @@ fn a_lot_has_its_last_state_and_begins_open() {
 fn the_next_program_opens_a_lot_cut_off() {
     let file = File::new();
     let mut store = file.store();
-    let put = |store: &mut Store, name: &str, simulated: bool, state| {
-        let opened = LotRecord {
-            simulated,
-            ..lot(name)
-        };
-        store.begin_lot(&opened).unwrap();
+    let put = |store: &mut Store, name: &str, state| {
+        store.begin_lot(&lot(name)).unwrap();
         let record = LotStateRecord {
             lot: name.into(),
             state,
@@ -122,15 +124,105 @@ fn the_next_program_opens_a_lot_cut_off() {
         };
         store.record(&[Row::LotState(record)]).unwrap();
     };
-    put(&mut store, "cut off", false, LotState::Running);
-    put(&mut store, "simulated", true, LotState::Running);
-    put(&mut store, "held", false, LotState::Held);
-    store.cut_off(false, 20).unwrap();
+    put(&mut store, "cut off", LotState::Running);
+    put(&mut store, "held", LotState::Held);
+    store.cut_off(false, 10).unwrap();
+    assert_eq!(
+        file.archive().standing("cut off").unwrap().unwrap().state,
+        LotState::Running
+    );
+    store.cut_off(true, 20).unwrap();
     let standing = |name: &str| file.archive().standing(name).unwrap().unwrap();
     let cut_off = standing("cut off");
     assert_eq!((cut_off.state, cut_off.since), (LotState::Open, Moment(20)));
-    assert_eq!(standing("simulated").state, LotState::Running);
     assert_eq!(standing("held").state, LotState::Held);
+}
+
+#[test]
+fn a_complete_lot_is_open_only_after_a_reopening() {
+    let file = File::new();
+    let mut store = file.store();
+    store.begin_lot(&lot("A")).unwrap();
+    let put = |store: &mut Store, state| {
+        let record = LotStateRecord {
+            lot: "A".into(),
+            state,
+            why: None,
+            at_us: 9,
+        };
+        store.record(&[Row::LotState(record)]).unwrap();
+    };
+    let state = || file.archive().standing("A").unwrap().unwrap().state;
+    put(&mut store, LotState::Complete);
+    for before in [LotState::Held, LotState::Running] {
+        put(&mut store, before);
+        assert_eq!(state(), before);
+        put(&mut store, LotState::Open);
+        assert_eq!(state(), LotState::Complete, "after {before:?}");
+    }
+    put(&mut store, LotState::Running);
+    store.cut_off(true, 20).unwrap();
+    assert_eq!(state(), LotState::Complete, "a retest that was cut off");
+    let reopened = ReopeningRecord {
+        lot: "A".into(),
+        at_us: 30,
+        who: "zhao".into(),
+        why: "late parts".into(),
+    };
+    store.record(&[Row::Reopened(reopened)]).unwrap();
+    assert_eq!(state(), LotState::Open);
+    let [decision] = &file.archive().reopenings("A").unwrap()[..] else {
+        panic!("one decision")
+    };
+    assert_eq!((decision.at, decision.who.as_str()), (Moment(30), "zhao"));
+    put(&mut store, LotState::Running);
+    put(&mut store, LotState::Open);
+    assert_eq!(state(), LotState::Open);
+}
+
+#[test]
+fn an_import_does_not_change_the_recipe_of_a_lot() {
+    let file = File::new();
+    let mut store = file.store();
+    store.begin_lot(&lot("A")).unwrap();
+    let imported = LotRecord {
+        recipe: "imported".into(),
+        recipe_hash: "other".into(),
+        ..lot("A")
+    };
+    store.import(&imported, Vec::new()).unwrap();
+    let standing = file.archive().standing("A").unwrap().unwrap();
+    assert_eq!(standing.recipe, "jzc-22f-012");
+}
+
+#[test]
+fn a_file_belongs_to_the_rig_of_its_first_run() {
+    for simulated in [false, true] {
+        let file = File::new();
+        assert!(check_rig(&file.path, simulated).is_ok(), "no file");
+        let mut store = file.store();
+        store.import(&lot("old"), Vec::new()).unwrap();
+        assert!(check_rig(&file.path, simulated).is_ok(), "an import");
+        let of = |simulated| LotRecord {
+            simulated,
+            ..lot("A")
+        };
+        store.begin_lot(&of(simulated)).unwrap();
+        assert!(store.claim(simulated).is_ok() && check_rig(&file.path, simulated).is_ok());
+        store.close_lot("A", 2_000_000).unwrap();
+        let refused = [
+            store.begin_lot(&of(!simulated)).map(drop),
+            store.claim(!simulated),
+            check_rig(&file.path, !simulated),
+        ];
+        for error in refused.map(Result::unwrap_err) {
+            let text = error.to_string();
+            let holds = ["a real rig", "the simulated rig"][usize::from(simulated)];
+            assert!(text.contains(&format!("history.db is the history of {holds}")));
+            assert!(text.contains("--db"), "{text}");
+        }
+        assert_eq!(count(&file.by_hand(), "run"), 2);
+    }
 }
 
 #[test]
@@ -169,10 +261,21 @@ fn a_run_keeps_its_calibration() {
     let file = File::new();
     let mut store = file.store();
     store.begin_lot(&lot("A")).unwrap();
-    store.calibrated("A", "0123").unwrap();
+    let of = |lot: &str| {
+        Row::Calibrated(CalibratedRecord {
+            lot: lot.into(),
+            calibration: CalibrationRecord {
+                hash: "0123".into(),
+                body: "{}".into(),
+                ..CalibrationRecord::default()
+            },
+        })
+    };
+    store.record(&[of("A")]).unwrap();
     let lots = file.archive().lots(&Filter::default()).unwrap();
     assert_eq!(lots[0].calibration_hash.as_deref(), Some("0123"));
-    assert!(store.calibrated("B", "0123").is_err());
+    assert!(store.record(&[of("B")]).is_err());
+    assert_eq!(count(&file.by_hand(), "calibration"), 1);
 }
 
 #[test]

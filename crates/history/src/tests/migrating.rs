@@ -67,12 +67,42 @@ fn a_migrated_file_keeps_rows_and_takes_new_ones() {
         );
         archive.check().unwrap();
         let mut store = file.store();
-        assert_eq!(store.begin_lot(&lot("批次")).unwrap(), 2);
+        assert!(store.begin_lot(&lot("批次")).is_err(), "simulated");
+        let real = LotRecord {
+            simulated: false,
+            ..lot("批次")
+        };
+        assert_eq!(store.begin_lot(&real).unwrap(), 2);
         store
             .record(&[Row::Part(part("批次", 1, "pass", 7.6))])
             .unwrap();
         assert_eq!(store.pragma("user_version"), SCHEMA.to_string());
         assert_eq!(file.archive().count_parts(&Filter::default()).unwrap(), 3);
+    }
+}
+
+#[test]
+fn a_file_of_before_belongs_to_the_rig_of_its_rows() {
+    let of = "INSERT INTO run (id, lot_id, number, recipe_id, opened_at_us, source, written_by)
+        VALUES (2, 1, 2, 1, 5, 'simulated', 'relayrig of old');";
+    let calibrated = "INSERT INTO calibration (hash, made_at_us, due_at_us, verified, body)
+        VALUES ('x', 1, 2, 1, '{\"simulated\":true}');";
+    let bare = "DELETE FROM measurement; DELETE FROM reason; DELETE FROM part; DELETE FROM run;";
+    for (change, expected) in [
+        ("", Some("rig")),
+        (of, Some("rig")),
+        (&format!("{bare}{of}"), Some("simulated")),
+        (&format!("{bare}{calibrated}"), Some("simulated")),
+        (bare, None),
+    ] {
+        let file = File::new();
+        of_schema(&file, 10);
+        file.by_hand().execute_batch(change).unwrap();
+        file.archive();
+        let found = file
+            .by_hand()
+            .query_row("SELECT source FROM rig", [], |row| row.get::<_, String>(0));
+        assert_eq!(found.ok().as_deref(), expected, "{change}");
     }
 }
 

@@ -76,12 +76,40 @@ fn a_file_locked_elsewhere_is_an_error_by_name() {
 fn read_only_file_is_readable_and_names_its_error() {
     let file = File::new();
     let mut store = filled(&file, 10);
-    store.read_only();
+    store.read_only(true);
     let rows = [Row::Part(part("A", 11, "pass", 7.0))];
     let refusal = store.record(&rows).unwrap_err();
     assert_eq!(refusal.to_string(), "recording: the history is read-only");
     assert!(store.begin_lot(&lot("B")).is_err());
     assert_eq!(file.archive().count_parts(&Filter::default()).unwrap(), 10);
+}
+
+#[test]
+fn a_batch_that_failed_is_written_whole_once_the_file_can_be_written() {
+    let file = File::new();
+    let mut store = file.store();
+    let batch = [
+        Row::Run(lot("A")),
+        Row::Part(part("A", 1, "pass", 7.0)),
+        Row::Part(part("A", 2, "fail", 9.5)),
+    ];
+    store.read_only(true);
+    for _ in 0..2 {
+        assert!(store.record(&batch).is_err());
+        assert!(store.close_lot("A", 9_000_000).is_err(), "no run is open");
+    }
+    store.read_only(false);
+    store.record(&batch).unwrap();
+    store.read_only(true);
+    assert!(store.close_lot("A", 9_000_000).is_err());
+    store.read_only(false);
+    store.close_lot("A", 9_000_000).unwrap();
+    let runs = file.archive().lots(&Filter::default()).unwrap();
+    let [run] = &runs[..] else {
+        panic!("{} runs", runs.len())
+    };
+    assert_eq!((run.run, run.counts.parts), (1, 2));
+    assert_eq!(run.closed, Some(Moment(9_000_000)));
 }
 
 #[test]
@@ -131,7 +159,7 @@ fn every_table_is_strict_with_remarked_columns() {
     assert_eq!(
         names.join(" "),
         "alarm alarm_state calibration curve export golden_check inside lot lot_state measurement ordered \
-         parameter part reason recipe retest run run_end sample series wear"
+         parameter part reason recipe reopening retest rig run run_end sample series wear"
     );
     for (table, sql) in &tables {
         assert!(sql.contains(") STRICT"), "{table}");

@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::Part;
-use crate::report::Lang;
 use crate::report::sheet::Sheet;
+use crate::report::{Lang, Paper};
 use calamine::{Data, Reader, Xlsx};
 use jiff::tz::TimeZone;
 use std::io::Cursor;
@@ -18,10 +18,31 @@ fn part(operate_v: f64) -> Part {
     part
 }
 
+fn paper(simulated: bool) -> Paper {
+    Paper {
+        language: Lang::En,
+        zone: TimeZone::UTC,
+        made: String::new(),
+        simulated,
+    }
+}
+
+#[test]
+fn a_spreadsheet_of_simulated_parts_says_so() {
+    for simulated in [false, true] {
+        let sheet = Sheet::new(&paper(simulated), &[]).unwrap();
+        let bytes = sheet.finish().unwrap().save_to_buffer().unwrap();
+        let mut book: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).unwrap();
+        let summary = book.worksheet_range("Summary").unwrap();
+        let word = Data::String("SIMULATION".into());
+        assert_eq!(summary.get((0, 7)) == Some(&word), simulated);
+    }
+}
+
 #[test]
 fn a_spreadsheet_reads_back_with_charts_without_formula() {
     let keys = ["operate_voltage_v".to_owned()];
-    let mut sheet = Sheet::new(Lang::En, TimeZone::UTC, &keys).unwrap();
+    let mut sheet = Sheet::new(&paper(false), &keys).unwrap();
     for _ in 0..3 {
         sheet.part(&part(7.704_22)).unwrap();
     }

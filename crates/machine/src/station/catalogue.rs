@@ -23,7 +23,7 @@ pub enum Reaction {
 /// What ends the cause of an alarm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ClearedBy {
-    /// The sensor that has shown the cause.
+    /// The sensor that has shown the cause, or the history once it is written again.
     Sensor,
     /// The order `clear`, `unhold` or `reset`.
     Operator,
@@ -114,7 +114,7 @@ codes! {
     /// A module has not confirmed its safe outputs in time.
     OutputsNotConfirmed = "outputs_not_confirmed", Abort, Operator;
     /// The program cannot write the history file.
-    HistoryLost = "history_lost", Abort, Operator;
+    HistoryLost = "history_lost", Abort, Sensor;
     /// The supply is in another range than the one selected.
     SupplyRange = "supply_range", Abort, Operator;
     /// References or reference parts do not agree with their certificates.

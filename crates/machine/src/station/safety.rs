@@ -4,7 +4,7 @@ use super::Station;
 use super::catalogue::{self, AlarmCode, ClearedBy, Reaction};
 use super::packml::{self, Command, On, State};
 use super::trouble::Alarm;
-use super::turn::{Ending, Inputs, TurnOutput};
+use super::turn::{Ending, HistoryState, Inputs, TurnOutput};
 use crate::dut::verdict::Verdict;
 use crate::handling::ledger::Part;
 use crate::handling::mechanism::SENSOR_AGE;
@@ -47,6 +47,7 @@ impl Station {
         there.extend(stuck);
         there.extend(self.full_bins(now, inputs.image));
         there.extend(self.still_starved(now, inputs.image));
+        there.extend(inputs.history.alarm().cloned());
         self.alarms.annunciator.sensed(&there);
         let trouble = &mut output.notes.trouble;
         if !packml::is_aborted(self.machine.state) {
@@ -61,6 +62,9 @@ impl Station {
         output.notes.take_over();
         if !self.line.dark.is_empty() {
             self.alarms.timeouts.wait_for_bin();
+        }
+        if inputs.history == HistoryState::Waiting {
+            self.alarms.timeouts.forget();
         }
         let feeder = &self.line.feeder;
         let late = self

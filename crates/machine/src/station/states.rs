@@ -23,7 +23,7 @@ impl Station {
         if self.machine.ended {
             return;
         }
-        if inputs.stop && !self.machine.stopping {
+        if inputs.stops() && !self.machine.stopping {
             self.machine.stopping = true;
             if packml::next(self.machine.state, On::Command(Command::Stop)).is_some() {
                 self.enter(Command::Stop, now, output);

@@ -11,7 +11,7 @@
 //! | over the bin | rows of the part durable, beam read, the part before landed | 15 s |
 //!
 //! The other steps wait for a neighbour with a timeout, or for parts, without one. A full bin stops the clock over the
-//! bin; in maintenance no timeout applies.
+//! bin; in maintenance, and while an unattended run waits for its history, no timeout applies.
 
 use super::catalogue::AlarmCode;
 use super::packml::{Mode, State};

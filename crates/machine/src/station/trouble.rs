@@ -204,6 +204,13 @@ impl Alarm {
         Self::of_a_fault(AlarmCode::CalibrationFailed, fault)
     }
 
+    /// Returns the alarm that the history file cannot be written, for this reason.
+    pub fn history_lost(file: &str, why: &str) -> Self {
+        Self::from(AlarmCode::HistoryLost)
+            .with("file", file)
+            .with("detail", why)
+    }
+
     /// Returns the alarm that the stored calibration is unusable, so that no lot begins.
     pub fn calibration_invalid(why: &str) -> Self {
         Self::from(AlarmCode::CalibrationInvalid).with("detail", why)

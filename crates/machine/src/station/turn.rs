@@ -18,6 +18,8 @@ pub struct Inputs<'a> {
     pub job: Option<NestDone>,
     /// Ordinal up to which parts are durably recorded.
     pub recorded: u64,
+    /// State of the history.
+    pub history: HistoryState,
     /// Trouble of a line or module, in one turn only.
     pub bus: Option<Alarm>,
     /// True when the operator ends the lot after the parts inside (one Ctrl-C).
@@ -32,6 +34,34 @@ pub struct Inputs<'a> {
     pub verified: bool,
 }
 
+/// State of the history, which keeps the rows of the station.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub enum HistoryState {
+    /// Rows are written.
+    #[default]
+    Written,
+    /// Rows wait, and nobody is there to clear an alarm: no part goes, no timeout applies.
+    Waiting,
+    /// Rows cannot be written at present.
+    Lost(Alarm),
+    /// Rows could not be written for too long: the run ends.
+    GivenUp(Alarm),
+}
+
+impl HistoryState {
+    /// Returns the alarm while it is active.
+    pub const fn alarm(&self) -> Option<&Alarm> {
+        match self {
+            Self::Lost(alarm) | Self::GivenUp(alarm) => Some(alarm),
+            Self::Written | Self::Waiting => None,
+        }
+    }
+
+    const fn is_given_up(&self) -> bool {
+        matches!(self, Self::GivenUp(_))
+    }
+}
+
 /// Result of a reference check.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Checked {
@@ -39,6 +69,13 @@ pub struct Checked {
     pub passed: bool,
     /// Serial number of the part, or the disagreement.
     pub text: String,
+}
+
+impl Inputs<'_> {
+    /// Returns true when the run ends after the parts inside.
+    pub(super) const fn stops(&self) -> bool {
+        self.stop || self.history.is_given_up()
+    }
 }
 
 named! {

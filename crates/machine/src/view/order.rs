@@ -23,7 +23,13 @@ pub const ORDERS: [&str; 16] = [
 ];
 
 /// Words of orders about lots and wear counters, which never move the rig.
-pub const LOT_ORDERS: [&str; 4] = ["hold_lot", "release_lot", "close_lot", "replaced"];
+pub const LOT_ORDERS: [&str; 5] = [
+    "hold_lot",
+    "release_lot",
+    "close_lot",
+    "reopen_lot",
+    "replaced",
+];
 
 /// An order; the station ignores members that its word does not need.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -42,10 +48,11 @@ pub struct Order {
     /// For `shelve`: minutes, 1 to 480; 30 if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub minutes: Option<u32>,
-    /// For `shelve` and `hold_lot`: the reason.
+    /// For `shelve`, `hold_lot` and `reopen_lot`: the reason.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// For `start` (continues the open lot if absent), `hold_lot`, `release_lot`, `close_lot`: name of the lot.
+    /// For `start` (continues the open lot if absent), `hold_lot`, `release_lot`, `close_lot`,
+    /// `reopen_lot`: name of the lot.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lot: Option<String>,
     /// For `start` with a lot: name of the recipe.

@@ -12,7 +12,7 @@ use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
 use axum::http::{HeaderName, Uri};
 use axum::response::{IntoResponse, Response};
 use history::csv::BYTE_ORDER_MARK;
-use history::inquiry::{InquiryError, checks, export};
+use history::inquiry::{InquiryError, checks, export, paper};
 use std::io::{self, Write};
 
 /// Most parts of a spreadsheet, about 15 MB; the command `history export` makes larger ones.
@@ -76,8 +76,8 @@ pub(crate) async fn xlsx(State(app): App, uri: Uri) -> Result<(Saved, Vec<u8>), 
             );
             return Err(InquiryError::member("limit", reason).into());
         }
-        let language = language(own.lang);
-        let mut book = export::spreadsheet(archive, &filter, &keys, language, || {})?;
+        let paper = paper::paper_of(archive, &filter, language(own.lang))?;
+        let mut book = export::spreadsheet(archive, &filter, &keys, &paper, || {})?;
         Ok(book.save_to_buffer().map_err(InquiryError::from)?)
     };
     Ok((XLSX, app.readers.read(made).await?))

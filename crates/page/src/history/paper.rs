@@ -27,7 +27,7 @@ pub(crate) async fn lot(State(app): App, uri: Uri) -> Result<Page, ApiError> {
     let (filter, own) = printed(&uri, "report/lot", &["lot", "run", "recipe"])?;
     refuse("seq", own.seq.is_some())?;
     page(app, move |archive| {
-        let on = paper::paper(language(own.lang));
+        let on = paper::paper_of(archive, &filter, language(own.lang))?;
         Ok(paper::lot_report(archive, &filter, own.ideal_cycle_s, &on)?)
     })
     .await
@@ -41,7 +41,7 @@ pub(crate) async fn certificate(State(app): App, uri: Uri) -> Result<Page, ApiEr
         return Err(InquiryError::member("seq", "missing: which part of the lot").into());
     };
     page(app, move |archive| {
-        let on = paper::paper(language(own.lang));
+        let on = paper::paper_of(archive, &filter, language(own.lang))?;
         Ok(paper::part_certificate(archive, &filter, seq, &on)?)
     })
     .await
@@ -53,7 +53,7 @@ pub(crate) async fn alarms(State(app): App, uri: Uri) -> Result<Page, ApiError> 
     refuse("seq", own.seq.is_some())?;
     refuse("ideal_cycle_s", own.ideal_cycle_s.is_some())?;
     page(app, move |archive| {
-        let on = paper::paper(language(own.lang));
+        let on = paper::paper_of(archive, &filter, language(own.lang))?;
         Ok(paper::alarm_list(archive, &filter, &on)?)
     })
     .await
@@ -65,7 +65,7 @@ pub(crate) async fn chart(State(app): App, uri: Uri) -> Result<Page, ApiError> {
     checks::validate(&filter)?;
     let last = how.last()?;
     page(app, move |archive| {
-        let on = paper::paper(language(how.lang));
+        let on = paper::paper_of(archive, &filter, language(how.lang))?;
         let about = filter.lot.clone().unwrap_or_default();
         let charts = super::charted(archive, filter, &how)?;
         Ok(charts::page(&on, &about, &charts, last))

@@ -109,6 +109,10 @@ async fn an_order_needs_a_role_or_a_stronger_one() {
         (r#"{"order":"close_lot","lot":"A"}"#, [401, 200, 200, 200]),
         (r#"{"order":"release_lot","lot":"A"}"#, [401, 403, 200, 200]),
         (
+            r#"{"order":"reopen_lot","lot":"A","reason":"late parts"}"#,
+            [401, 403, 403, 200],
+        ),
+        (
             r#"{"order":"replaced","counter":"probe_touches"}"#,
             [401, 403, 200, 200],
         ),

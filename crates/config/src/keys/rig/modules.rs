@@ -21,6 +21,11 @@ pub(super) const BUS: &[Key] = keys! {
     key("scan_period_ms", from_to(0.0, 1000.0, "ms"), "cycle", "pause of the motion scan; 0 polls without rest");
 };
 
+pub(super) const HISTORY: &[Key] = keys! {
+    optional("give_up_s", from_to(0.0, 86_400.0, "s"), "app",
+        "time after which a program ends with status 3 because it cannot write the history; default 600");
+};
+
 pub(super) const SAFETY: &[Key] = keys! {
     key("estop_reaction_ms", above_zero(2000.0, "ms"), "rig",
         "longest reaction to the emergency-stop contact that the plant accepts");

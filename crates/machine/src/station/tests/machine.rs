@@ -16,7 +16,7 @@ use crate::rig::point::{DigitalIn, DigitalInput, DigitalOut, Point};
 use crate::station::gates::LotSettings;
 use crate::station::orders::{Order, Refused};
 use crate::station::trouble::Alarm;
-use crate::station::turn::{Ending, Inputs, TurnOutput};
+use crate::station::turn::{Ending, HistoryState, Inputs, TurnOutput};
 use crate::station::{Plan, Station};
 use std::collections::{BTreeMap, VecDeque};
 use units::{RigTime, Span};
@@ -93,6 +93,7 @@ pub fn quiet(image: &Image) -> Inputs<'_> {
         image,
         job: None,
         recorded: 0,
+        history: HistoryState::Written,
         bus: None,
         stop: false,
         abort: false,

@@ -64,6 +64,7 @@ fn every_alarm() -> Vec<Alarm> {
     let few = Message::new("fault", "too_few").with("measured", 2);
     let others = [
         Alarm::bus("silent"),
+        Alarm::history_lost("relayrig.db", "recording: locked"),
         Alarm::stale(DigitalIn::AirOk),
         Alarm::button_stuck(DigitalIn::ButtonStop),
         Alarm::part_sticks(),

@@ -1,6 +1,7 @@
-// Lots: starts, holds, releases and closes them; wear counters; audit of orders.
+// Lots: starts, holds, releases, closes and reopens them; wear counters; audit of orders.
 
-const DECISIONS = ["hold_lot", "release_lot", "close_lot"];
+const DECISIONS = ["hold_lot", "release_lot", "close_lot", "reopen_lot"];
+const WITH_REASON = ["hold_lot", "reopen_lot"];
 const BOOK = 20;
 const AUDIT = 50;
 let book = [];
@@ -20,6 +21,7 @@ async function orderLot(order) {
 
 // Returns why the machine or the lot forbids an order about the lot; empty when neither does.
 function whyNotLot(order, line) {
+  if (order === "reopen_lot" && underWay(line.lot)) return line.why_not[order]?.[language] ?? "";
   if (order === "release_lot" && underWay(line.lot)) return word("lots-clear_alarm");
   if (underWay(line.lot)) return order === "close_lot" ? whyNot("close_lot") : whyNot("start", "lot");
   if (me === null) return word("stop-login");
@@ -63,6 +65,7 @@ function lotRow(line) {
   const state = make("span", word("lot_state-" + line.state), "lot_state " + line.state);
   if (line.why) state.append(make("small", line.why));
   if (line.cause && !underWay(line.lot)) state.append(make("small", line.cause + ": " + line.cause_text));
+  for (const it of line.reopenings) state.append(make("small", word("lots-reopened") + ": " + it.why + " (" + it.who + ")"));
   const orders = make("div", undefined, "row");
   orders.append(lotButton("start", line, () => choose(line)),
     ...DECISIONS.map((order) => lotButton(order, line, () => askDecision(order, line.lot))));
@@ -123,7 +126,7 @@ function askDecision(order, lot) {
   at("decide_about").textContent = word("lots-about-" + order);
   at("decide_go").textContent = word("order-" + order);
   at("decide_reason").value = "";
-  at("decide_reason").required = order === "hold_lot";
+  at("decide_reason").required = WITH_REASON.includes(order);
   at("decide").showModal();
 }
 

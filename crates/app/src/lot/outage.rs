@@ -1,0 +1,128 @@
+//! Time during which the history cannot be written: when to try again, and when to give up.
+
+use crate::controls::Controls;
+use crate::cycle::alarm_line;
+use bus::Pace;
+use history::HistoryError;
+use machine::station::annunciator::Annunciator;
+use machine::station::trouble::Alarm;
+use std::path::Path;
+use std::time::Instant;
+use units::{RigTime, Span};
+
+/// Time between two tries.
+const RETRY: Span = Span::ms(1000);
+
+/// An outage of the history.
+#[derive(Debug)]
+pub(super) struct Outage {
+    began: RigTime,
+    /// Begin by the wall clock: virtual time stands still while a try waits for a lock.
+    began_wall: Instant,
+    retry_at: RigTime,
+}
+
+impl Outage {
+    /// Begins with a failed try at `now`.
+    pub fn begin(now: RigTime) -> Self {
+        Self {
+            began: now,
+            began_wall: Instant::now(),
+            retry_at: now + RETRY,
+        }
+    }
+
+    /// Returns the time of the next try.
+    pub fn retry_at(&self) -> RigTime {
+        self.retry_at
+    }
+
+    /// Notes another failed try.
+    pub fn failed(&mut self, now: RigTime) {
+        assert!(now >= self.began, "a try before the outage");
+        self.retry_at = now + RETRY;
+    }
+
+    /// Returns true once the outage has lasted for `give_up_s`, by the clock of the rig or of the wall.
+    pub fn is_too_long(&self, now: RigTime, give_up_s: f64) -> bool {
+        let rig_s = now.since(self.began).as_seconds();
+        rig_s >= give_up_s || self.began_wall.elapsed().as_secs_f64() >= give_up_s
+    }
+}
+
+/// Patience with writes while no cycle turns.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Patience<'a> {
+    /// History file.
+    pub db: &'a Path,
+    /// Flags and view of the program.
+    pub controls: &'a Controls,
+    /// Clock of the rig.
+    pub pace: Pace,
+    /// Longest outage, s.
+    pub give_up_s: f64,
+}
+
+impl Patience<'_> {
+    /// Repeats `write` while the history fails it, and shows the alarm at the page meanwhile.
+    ///
+    /// # Errors
+    /// Fails with any other error at once, and with that of the history after a stop or when the outage was too long.
+    pub async fn until_written<T>(
+        &self,
+        mut write: impl AsyncFnMut() -> anyhow::Result<T>,
+    ) -> anyhow::Result<T> {
+        let mut outage: Option<Outage> = None;
+        loop {
+            let error = match write().await {
+                Ok(done) => {
+                    if outage.is_some() {
+                        self.controls.view.send_modify(|view| view.alarms.clear());
+                    }
+                    return Ok(done);
+                }
+                Err(error) => error,
+            };
+            let now = self.pace.now();
+            let outage = outage.get_or_insert_with(|| Outage::begin(now));
+            outage.failed(now);
+            let over = outage.is_too_long(now, self.give_up_s) || self.controls.is_stopping();
+            if over || !error.is::<HistoryError>() {
+                return Err(error);
+            }
+            tracing::warn!("history: {error:#}; trying again");
+            self.show(&history_lost(self.db, &error));
+            self.pace.sleep_until(outage.retry_at()).await;
+        }
+    }
+
+    fn show(&self, alarm: &Alarm) {
+        let mut list = Annunciator::default();
+        list.raise(alarm, RigTime(0));
+        let now_us = jiff::Timestamp::now().as_microsecond();
+        let lines = list.listed().iter().map(|it| alarm_line(it, now_us));
+        let lines = lines.collect();
+        self.controls.view.send_modify(|view| view.alarms = lines);
+    }
+}
+
+/// Returns the alarm of a history that cannot be written.
+pub(super) fn history_lost(db: &Path, error: &anyhow::Error) -> Alarm {
+    Alarm::history_lost(&db.display().to_string(), &format!("{error:#}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_outage_is_tried_every_second_until_it_is_too_long() {
+        let mut outage = Outage::begin(RigTime(5_000_000));
+        assert_eq!(outage.retry_at(), RigTime(6_000_000));
+        assert!(!outage.is_too_long(RigTime(6_000_000), 2.0));
+        outage.failed(RigTime(6_000_000));
+        assert_eq!(outage.retry_at(), RigTime(7_000_000));
+        assert!(outage.is_too_long(RigTime(7_000_000), 2.0));
+        assert!(Outage::begin(RigTime(0)).is_too_long(RigTime(0), 0.0));
+    }
+}
