@@ -271,7 +271,7 @@ impl Machine {
         let mut output = self.station.step(now, inputs);
         self.answers.append(&mut output.answers);
         self.verify = output.rig.verify;
-        self.ending = output.record.ending.clone().or(self.ending.take());
+        self.ending = output.record.ending.or(self.ending);
         self.last_outputs.clone_from(&output.rig.outputs);
         if output.rig.safe {
             self.make_safe();
