@@ -1,12 +1,12 @@
-//! Writes a person's decision to hold, release or close a lot that is not under way; the audit keeps it with the name,
-//! like an order at a screen.
+//! Writes a person's decision to hold, release or close a lot that is not running now. The audit keeps the decision
+//! with the person's name, like an order from a screen.
 
 use history::{Decision, HistoryError, LotStateRecord, OrderRecord, Row, Store};
 use machine::view::{By, Order};
 use serde_json::json;
 use std::path::Path;
 
-/// Writes an order about a lot, and the state that it gives the lot.
+/// Writes an order about a lot, and the state that the order gives the lot.
 ///
 /// # Errors
 /// Fails when the history cannot be written.
@@ -15,7 +15,7 @@ pub fn write(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<()
     Store::open(db)?.record(&rows)
 }
 
-/// Returns the audit row of an order outside a run.
+/// Returns the audit row of an order that is given while no run of its lot is under way.
 pub fn audit(order: &Order, by: &By) -> Row {
     Row::Order(OrderRecord {
         lot: None,
@@ -28,7 +28,7 @@ pub fn audit(order: &Order, by: &By) -> Row {
     })
 }
 
-/// Returns the row that puts the order's lot into its new state.
+/// Returns the row that puts the lot of the order into its new state.
 pub fn state(order: &Order, by: &By, decision: Decision) -> Row {
     let reason = order.reason.as_deref().unwrap_or_default();
     Row::LotState(LotStateRecord {

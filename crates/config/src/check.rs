@@ -1,7 +1,7 @@
-//! Checks a file against its [`Form`]: all keys are known and present, all values have their type and range.
+//! Checks a file against its [`Form`]: every key is known and present, every value has its type and range.
 //!
-//! Rules between values (an address used twice, low above high) belong to the module that owns the settings, which reports
-//! a [`Fault`].
+//! Rules between values (an address used twice, low above high) belong to the module that owns the settings; that
+//! module reports a broken rule as a [`Fault`].
 
 use super::error::ConfigError;
 use super::nearest::{nearest, suggestion};
@@ -10,24 +10,24 @@ use machine::form::{Form, Key, Points, Range};
 use machine::rig::fault::Fault;
 use std::path::PathBuf;
 
-/// A parsed file.
+/// A configuration file, parsed.
 #[derive(Debug)]
 pub struct File {
-    /// Path in messages.
+    /// Path that messages name.
     pub path: PathBuf,
-    /// The whole text.
+    /// Content of the file.
     pub text: String,
-    /// Parsed text.
+    /// Tree of the parsed content.
     pub root: Node,
 }
 
 impl File {
-    /// Checks every key; fails for the first one that is missing or that `keys` does not allow.
+    /// Checks every key; fails on the first key that is missing or that `keys` does not allow.
     pub fn check(&self, keys: &[Key]) -> Result<(), ConfigError> {
         self.table("", &self.root, keys)
     }
 
-    /// Adds file and line to a fault that another module has found.
+    /// Turns a fault that another module found into an error with file and line.
     pub fn locate(&self, fault: &Fault) -> ConfigError {
         if let Some((path, name)) = fault
             .key
@@ -62,7 +62,7 @@ impl File {
         }
     }
 
-    /// Returns a path in the notation of the file: `[module.rtd].type`, `golden[1].serial`, `[part].body_mm[2]`.
+    /// Returns a path as the file would write it: `[module.rtd].type`, `golden[1].serial`, `[part].body_mm[2]`.
     pub(super) fn label(&self, path: &str) -> String {
         let names: Vec<&str> = path.split('.').collect();
         let header = header_length(&self.root, &names);
@@ -126,7 +126,7 @@ impl File {
         }
     }
 
-    /// Checks entries of one form: all of `needed` must exist, others may when names are `free`.
+    /// Checks entries that all have one form: those in `needed` must exist; others may exist when names are `free`.
     fn named(
         &self,
         path: &str,
@@ -163,7 +163,7 @@ impl File {
         let Some(missing) = must.find(|name| node.get(name).is_none()) else {
             return Ok(());
         };
-        // A free name that resembles a missing one is a typing error.
+        // Where names are free, a name that resembles a missing one is a typing error.
         let mut others = self.entries(path, node)?.iter().map(|(name, _)| name);
         let slip = others
             .find(|name| !names.contains(&name.as_str()) && nearest(name, &[missing]).is_some());
@@ -221,7 +221,7 @@ impl File {
     }
 }
 
-/// Returns how many leading names belong to the header of a table: two in `[module.rtd]`, one in `[bus]`.
+/// Returns how many of the first names form the header of a table: two in `[module.rtd]`, one in `[bus]`.
 fn header_length(root: &Node, names: &[&str]) -> usize {
     let depth = if matches!(names.first(), Some(&"line" | &"module")) {
         2

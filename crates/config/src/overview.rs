@@ -6,10 +6,10 @@ use super::recipes::{load_recipe, recipe_names};
 use machine::rig::wiring::{LineId, Wiring};
 use std::path::Path;
 
-/// Loads every file and returns a text with a line per file, serial line and recipe.
+/// Loads every file and returns a text with one line per file, serial line and recipe.
 ///
 /// # Errors
-/// Fails with the first fault of the configuration.
+/// Fails on the first fault of the configuration.
 pub fn overview(dir: &Path) -> Result<String, ConfigError> {
     let plant = Plant::load(dir)?;
     let wiring = &plant.wiring;

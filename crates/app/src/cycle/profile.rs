@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-/// Wall time of each phase over all turns, seconds; bus, history and simulator take the rest of the run.
+/// Wall time of each phase, summed over all turns, seconds; bus, history and simulator take the rest of the run.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Profile {
     /// Number of turns.

@@ -1,12 +1,13 @@
-//! Runs a lot: one stream of events, and its subscribers.
+//! Runs a lot: one stream of events goes to several subscribers.
 //!
 //! | subscriber | does |
 //! |---|---|
 //! | `recorder` (with `journal`, `rows`) | writes the history, before the sorter may release a part |
 //! | `screen` | shows the run on the page |
-//! | the caller's | progress bar, rows on stdout, a script, a calibration to keep |
+//! | the caller's | shows a progress bar, prints rows on stdout, plays a script, or keeps a calibration |
 //!
-//! The cycle sends events; `progress` includes each one, and every subscriber then receives it with the progress.
+//! The cycle sends events; `progress` takes each into account first, then every subscriber receives it with the
+//! progress.
 
 mod assemble;
 mod context;
@@ -49,7 +50,7 @@ use tokio::sync::mpsc;
 pub struct LotRunner<'a> {
     /// History file.
     pub db: &'a Path,
-    /// Input of the run; its lot has passed admission.
+    /// Everything the run needs; its lot has passed admission.
     pub context: LotContext<'a>,
     /// Controls shared with page, signals and scripts.
     pub controls: &'a Controls,
@@ -122,7 +123,8 @@ impl LotRunner<'_> {
         let (ending, profile) = ended.unwrap_or((Ending::Alarm, Profile::default()));
         let closed = stream.close(&ending, &exit, &profile, &lines.logs);
         lines.finish(context.source)?;
-        // A history that is lost already cannot close the run; a failed assertion outranks a failed close.
+        // A lost history cannot close the run, and a failed assertion matters more than a failed close: both hide
+        // `closed`.
         if !exit.cause().is_some_and(Cause::is_program_failure) {
             closed?;
         }
@@ -154,7 +156,7 @@ impl Stream<'_, '_> {
         self.recorder.receive(event, &self.lot)
     }
 
-    /// Receives the events of the cycle until it ends; sets `recorded` to the last durable part.
+    /// Receives the events of the cycle until it ends; sets `recorded` to the ordinal of the last part on the disk.
     async fn keep(
         &mut self,
         mut events: mpsc::UnboundedReceiver<Event>,
@@ -189,7 +191,7 @@ impl Stream<'_, '_> {
         Ok(())
     }
 
-    /// Ends the run in the history, after the parts that never landed and the summary.
+    /// Reports the parts that will never land and the summary, then ends the run in the history.
     fn close(
         mut self,
         ending: &Ending,

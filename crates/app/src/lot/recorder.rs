@@ -1,8 +1,9 @@
 //! Writes the events of a run to the history.
 //!
-//! Between lots the history has no run until a part found inside needs a row: the lot [`FOUND_LOT`](super::FOUND_LOT) then gets
-//! one. One transaction takes all pending rows; the recorder then publishes the ordinal of the last judged part, which
-//! allows the sorter to open its gripper. The database works on a blocking thread, one short task per transaction.
+//! Between lots the history has no run. When a part found inside needs a row, the recorder begins a run of lot
+//! [`FOUND_LOT`](super::FOUND_LOT). One transaction takes all pending rows; the recorder then publishes the ordinal of
+//! the last judged part, which allows the sorter to open its gripper. The database works on a blocking thread, one
+//! short task per transaction.
 
 use super::event::LotEvent;
 use super::journal::Journal;
@@ -27,12 +28,12 @@ use std::time::{Duration, Instant};
 pub(super) struct Recorder {
     store: Option<Store>,
     journal: Journal,
-    /// Rows of the next transaction.
+    /// Rows that wait for the next transaction.
     rows: Vec<Row>,
-    /// Ordinal of the last judged part among them.
+    /// Ordinal of the last judged part among these rows.
     judged: Option<u64>,
     contents: Option<(Inside, Uses)>,
-    /// Wall time of all transactions.
+    /// Wall time of all transactions so far.
     pub writing: Duration,
 }
 
@@ -82,7 +83,7 @@ impl Recorder {
         Ok(store.record(begun.as_slice())?)
     }
 
-    /// Turns an event into rows of the next transaction.
+    /// Turns an event into rows that wait for the next transaction.
     ///
     /// # Errors
     /// Fails when a run or a calibration cannot be written.
@@ -128,7 +129,7 @@ impl Recorder {
                 }
             }
             Event::Calibrated(calibration) => self.calibrated(calibration, &lot.context)?,
-            // `PartDone` covers a landed part.
+            // The rows of a landed part come with `PartDone`.
             Event::State(_) | Event::Left(_) | Event::Landed(_) | Event::LotBegan(_) => {}
         }
         Ok(())
@@ -189,7 +190,7 @@ impl Recorder {
         Ok(store.calibrated(&context.order.lot, &record.hash)?)
     }
 
-    /// Queues the machine's contents, for the next transaction and the end of the run.
+    /// Queues the contents of the machine; called before each transaction and at the end of the run.
     fn queue_contents(&mut self) {
         if let Some((inside, uses)) = self.contents.take() {
             self.rows.extend(self.journal.uses(uses));
@@ -197,7 +198,8 @@ impl Recorder {
         }
     }
 
-    /// Writes the pending rows; returns the ordinal up to which parts are durable when it has grown.
+    /// Writes the pending rows; returns the ordinal of the last part now on the disk, or `None` when it is the same as
+    /// before.
     ///
     /// # Errors
     /// Fails when the transaction fails, which then writes nothing.

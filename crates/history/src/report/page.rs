@@ -1,4 +1,4 @@
-//! Frame of a page: A4, one style, head, foot, sign-off.
+//! Frame of a printable page: A4, one style, head, foot, boxes to sign.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use texts::Lang;
@@ -6,15 +6,15 @@ use texts::Lang;
 /// Orientation of the sheet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Format {
-    /// Upright.
+    /// Taller than wide.
     Portrait,
-    /// Lengthwise.
+    /// Wider than tall.
     Landscape,
 }
 
 const STYLE: &str = include_str!("page.css");
 
-/// Returns a complete HTML file with `made` at its foot.
+/// Returns a complete HTML file; `made` is the text at the foot of the page.
 pub(super) fn page(
     language: Lang,
     format: Format,
@@ -48,7 +48,7 @@ pub(super) fn page(
     whole.into_string()
 }
 
-/// Returns title and subtitle.
+/// Returns title and subtitle of a page.
 pub(super) fn head(title: &str, about: &str) -> Markup {
     html! {
         header {
@@ -58,7 +58,7 @@ pub(super) fn head(title: &str, about: &str) -> Markup {
     }
 }
 
-/// Returns pairs of name and text in two columns.
+/// Returns pairs of name and text, laid out in two columns.
 pub(super) fn facts(pairs: &[(&str, String)]) -> Markup {
     html! {
         dl.facts {
@@ -69,7 +69,7 @@ pub(super) fn facts(pairs: &[(&str, String)]) -> Markup {
     }
 }
 
-/// Returns boxes for names and dates.
+/// Returns boxes in which people write name and date.
 pub(super) fn sign_off(language: Lang) -> Markup {
     let roles = [
         language.text("paper-tested_by"),
