@@ -58,7 +58,7 @@
 //! | `probation.rs` | remembers addresses whose replies need confirmation |
 //! | `pace.rs` | rig time on tokio's timers, real or virtual |
 //! | `settings.rs`, `wire.rs` | time-outs, and the time that characters take |
-//! | `trace.rs`, `recorded.rs`, `health.rs`, `log.rs` | the last bytes, their text format, counts by module, the shared log |
+//! | `trace.rs`, `recorded.rs`, `health.rs`, `log.rs` | the last bytes, their text format, counts by module, shared log |
 //! | `port.rs`, `raw.rs` | serial ports; single frames for tools |
 
 mod answer;
