@@ -13,7 +13,7 @@ use super::double::Double;
 /// overlaps.
 const SIDE_BY_SIDE: usize = 4;
 
-/// Sums the terms 0 to `n` - 1.
+/// Returns the sum of the terms 0 to `n` - 1.
 fn total(n: usize, term: impl Fn(usize) -> Double) -> Double {
     let mut sums = [Double::default(); SIDE_BY_SIDE];
     let whole = n - n % SIDE_BY_SIDE;
