@@ -61,7 +61,7 @@ pub enum AdmissionError {
         lot: String,
         /// Name and hash of the recipe as ordered.
         found: String,
-        /// State of the lot, with the recipe that it began with.
+        /// State of the lot, and the recipe with which the lot began.
         standing: Box<LotStatus>,
     },
     /// The history cannot be read.

@@ -1,4 +1,4 @@
-//! Collision answers for the moves of a scene file, without a rig.
+//! Answers whether moves collide with the bodies of a scene file; needs no rig.
 
 use anyhow::{Context, anyhow, bail};
 use lpm::scene::{Format, MeshFault, MoveOrder, RigNames, Scene, read_moves, read_scene_of_rig};

@@ -76,7 +76,7 @@ pub struct CycleLinks {
     pub view: watch::Sender<View>,
 }
 
-/// A rig under control.
+/// The control cycle of one rig: its image, outputs, guard, station and lines.
 pub struct Cycle {
     wiring: Arc<Wiring>,
     pace: Pace,

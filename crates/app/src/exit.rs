@@ -100,7 +100,7 @@ impl Cause {
         Self::new("calibration_invalid", why)
     }
 
-    /// `not_calibrated`: the reference parts ended without a calibration.
+    /// `not_calibrated`: the run of the reference parts ended without a calibration.
     pub fn not_calibrated() -> Self {
         let text = "the reference parts ended without a calibration";
         Self::new("not_calibrated", text)

@@ -23,7 +23,7 @@ const TRIALS: u64 = 3;
 /// Number of parts unless `--count` gives another.
 const PARTS: u64 = 10;
 
-/// Measurement-system figures of one characteristic.
+/// Result of the study for one characteristic.
 #[derive(Debug)]
 pub struct Figure {
     /// The characteristic.

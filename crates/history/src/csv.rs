@@ -34,9 +34,9 @@ pub enum CsvError {
     Ragged {
         /// Number of the record's first line in the file, from 1.
         line: usize,
-        /// Fields found.
+        /// Number of fields found.
         found: usize,
-        /// Fields of the header.
+        /// Number of fields in the header.
         expected: usize,
     },
     /// A quoted field has no closing quote, or has text after it.

@@ -104,7 +104,7 @@ pub enum HistoryError {
     TooLarge {
         /// Name of the count.
         what: &'static str,
-        /// Its value.
+        /// Value of the count.
         value: u64,
     },
     /// The target of a backup already exists.

@@ -49,7 +49,7 @@ pub struct LotSummary {
 /// Number of parts by verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Yield {
-    /// All parts.
+    /// Number of all parts, judged or not.
     pub parts: u64,
     /// Passed parts.
     pub pass: u64,

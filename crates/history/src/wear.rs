@@ -64,14 +64,14 @@ fn read(connection: &Connection, simulated: bool) -> Result<Vec<Wear>> {
 }
 
 impl Archive {
-    /// Returns all counters of the real or the simulated rig.
+    /// Returns the use counts of all wearing parts of the real or the simulated rig.
     pub fn wear(&self, simulated: bool) -> Result<Vec<Wear>> {
         read(&self.connection, simulated)
     }
 }
 
 impl Store {
-    /// Returns all counters of the real or the simulated rig.
+    /// Returns the use counts of all wearing parts of the real or the simulated rig.
     pub fn wear(&self, simulated: bool) -> Result<Vec<Wear>> {
         read(self.connection(), simulated)
     }

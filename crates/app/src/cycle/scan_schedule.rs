@@ -10,14 +10,14 @@ use dcon::Command;
 /// One transaction in this many, polls of the contact not counted, reads the reset status of a module.
 const RESET_EVERY: usize = 16;
 
-/// The scan of one line.
+/// Schedule of the scan of one line.
 #[derive(Debug)]
 pub(super) struct ScanSchedule {
     /// Poll of the module with the emergency-stop contact; `None` on a line without this contact.
     priority: Option<Command>,
     /// Polls of the other modules.
     others: Vec<Command>,
-    /// Reset status of every module with outputs.
+    /// Commands that read the reset status, one for every module with outputs.
     pub(super) resets: Vec<Command>,
     /// True when the next transaction must poll the contact, because the last one did not.
     contact_is_due: bool,

@@ -43,7 +43,7 @@ fn scanned_modules(wiring: &Wiring, line: LineId) -> Vec<ModuleId> {
 /// The two queue ends of one line that the cycle holds.
 #[derive(Debug)]
 pub struct LineEnds {
-    /// The line.
+    /// Line that the queues belong to.
     pub line: LineId,
     /// Carries requests to the task of the line; holds one.
     pub requests: mpsc::Sender<Request>,

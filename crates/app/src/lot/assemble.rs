@@ -72,7 +72,7 @@ pub(super) fn cycle(
     };
     let mechanism = Mechanism::new(strokes, wiring.strokes, size_of(context.recipe));
     let mut station = Station::new(plan, device, wiring.axis.clone(), mechanism);
-    // Nobody is there to acknowledge alarms of an earlier run when this one is unattended.
+    // An unattended run raises no alarms of earlier runs again, because nobody is there to acknowledge them.
     for left in alarms.into_iter().filter(|_| attended) {
         raise_again(&mut station, left, context.epoch_us);
     }

@@ -222,7 +222,7 @@ impl Recorder {
         Ok(self.judged.take())
     }
 
-    /// Writes how the run ended, and closes it.
+    /// Writes how the run ended, and closes the run.
     ///
     /// # Errors
     /// Fails when the history cannot be written; the run then stays open in it.

@@ -1,4 +1,4 @@
-//! A run whose control cycle fails an assertion.
+//! Tests a run whose control cycle fails an assertion.
 
 #![allow(clippy::unwrap_used)]
 

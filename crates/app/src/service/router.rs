@@ -151,7 +151,7 @@ impl OrderRouter {
         blocking(check).await
     }
 
-    /// Writes an order that no run handles into the history.
+    /// Writes into the history an order that no run handles.
     async fn write(&self, asked: OrderRequest) {
         let (db, simulated) = (self.0.db.clone(), self.0.source.is_simulated());
         let (order, by) = (asked.order.clone(), asked.by.clone());

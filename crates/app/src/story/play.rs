@@ -38,7 +38,7 @@ pub(super) struct Player {
     journal: Option<File>,
 }
 
-/// Events so far, as far as a step of the script may wait for them.
+/// What has happened so far, as far as a step of the script may wait for it.
 #[derive(Debug, Default)]
 struct Observed {
     lot: bool,
