@@ -9,8 +9,8 @@
 //!    nothing about that later one. So the line attributes a reply to the oldest request that it fits, and prefers a
 //!    request for the name that is not outstanding.
 //! 2. If the module does not name itself, its reply stays outstanding for [`HORIZON`]. During that time the line
-//! accepts a reply of the same form only when the module repeats this reply and then names itself, with no other bytes
-//! in between. A write must not be repeated, so the line rejects the reply to a write.
+//!    accepts a reply of the same form only when the module repeats this reply and then names itself, with no other
+//!    bytes in between. A write must not be repeated, so the line rejects the reply to a write.
 
 use dcon::{Address, Command, Common};
 use units::{RigTime, Span};

@@ -4,9 +4,9 @@
 //!
 //! 1. before the request: [`Exchange::discard`] empties the input;
 //! 2. after the request: [`OutstandingReplies::could_be`] recognises a reply that may be late, and the transaction
-//! rejects it unless [`Transaction::confirm`] proves that the module meant it; 3. while resynchronising:
-//! [`Transaction::resynchronise`] discards what arrives before the module names itself, or before the line falls
-//! silent.
+//!    rejects it unless [`Transaction::confirm`] proves that the module meant it;
+//! 3. while resynchronising: [`Transaction::resynchronise`] discards what arrives before the module names itself, or
+//!    before the line falls silent.
 
 use super::LineSettings;
 use super::exchange::{Exchange, Frame, FrameEnd, SilenceEnd};

@@ -15,7 +15,7 @@
 //! 1. The text must be TOML.
 //! 2. Every key must be known, present, of its type and in its range ([`check`], by the tables in [`keys`]).
 //! 3. The values must fit together (no address used twice, low not above high); the module that owns the settings
-//! checks that.
+//!    checks that.
 //!
 //! The controller does not read `sim.toml`, which describes the simulated world.
 

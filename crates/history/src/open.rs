@@ -6,7 +6,7 @@
 //! 4. SQLite may not use bound values for its query plans (`QPSG`), because planning a statement again for each part
 //!    would take longer than running it.
 //! 5. Reads use the page cache, not a memory map: an I/O error in a map raises a signal, which would end the process
-//! that drives the rig.
+//!    that drives the rig.
 
 use super::error::{Doing, HistoryError, Result};
 use super::{reasons, series, views};

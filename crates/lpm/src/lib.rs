@@ -66,9 +66,9 @@
 //!    outward by the same error bound and then to single precision. Everything that the broad phase computes along the
 //!    path carries `space::sweep::SLACK_MM`, and the steps of height are monotone.
 //! 5. `solid` finds a body inside a closed mesh, and counts a doubtful body as inside; `closed` finds the closed
-//! surfaces of a mesh, however untidy its file is. 6. A comparison with NaN is false, and every comparison is written
-//! so that false means blocked. Iteration limits, invalid moves and invalid bodies mean blocked
-//! ([`ElementKey::UNDECIDABLE`]).
+//!    surfaces of a mesh, however untidy its file is.
+//! 6. A comparison with NaN is false, and every comparison is written so that false means blocked. Iteration limits,
+//!    invalid moves and invalid bodies mean blocked ([`ElementKey::UNDECIDABLE`]).
 //!
 //! # Why f64 with bounds
 //! With whole micrometres every comparison would be exact, but moves would be blocked up to 2 um too early, where at
