@@ -186,7 +186,7 @@ struct Plane<'a> {
     /// Separation of the plane from the origin of the mover at `h = 0`, minus the rounding bound, mm.
     base: f64,
     arm: Vec3,
-    /// Change per unit of `h`: of the separation from the origin of the mover (`rate`), and of the direction of support.
+    /// Change of this separation per unit of `h`, mm; `swing` is the change of the direction of support.
     rate: f64,
     swing: Vec3,
     bend: f64,

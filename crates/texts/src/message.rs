@@ -111,7 +111,7 @@ impl Message {
         self
     }
 
-    /// Selects the attribute `case` of the text, if it has one; see [`Self::try_say`].
+    /// Selects the attribute `case` of the text; a text without this attribute stays as it is.
     #[must_use]
     pub fn case(self, case: &'static str) -> Self {
         self.with(CASE, case)
