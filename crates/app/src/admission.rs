@@ -17,7 +17,7 @@ use std::path::Path;
 use std::sync::Arc;
 use texts::{Lang, Message};
 
-/// Reason why a lot is refused. The text is that of the command line and names the option at fault.
+/// Reason why a lot is refused. Its text is printed on the command line and names the option at fault.
 #[derive(Debug, thiserror::Error)]
 pub enum AdmissionError {
     /// The lot's name has characters or a length that the history does not allow.
@@ -26,7 +26,7 @@ pub enum AdmissionError {
         /// Name as given.
         found: String,
     },
-    /// The lot has a count of zero.
+    /// The lot has zero parts.
     #[error("--count: found 0, expected at least 1")]
     NoParts,
     /// The recipe is missing or invalid, or this plant cannot measure it.
@@ -72,16 +72,16 @@ pub enum AdmissionError {
         lot: String,
         /// Name and hash of the recipe as ordered.
         found: String,
-        /// State of the lot, with the recipe that it began with.
+        /// State of the lot, and the recipe with which the lot began.
         standing: Box<LotStatus>,
     },
-    /// The history is unreadable.
+    /// The history cannot be read.
     #[error(transparent)]
     History(#[from] HistoryError),
 }
 
 impl AdmissionError {
-    /// Returns the refusal for a person at a screen.
+    /// Returns the refusal as a text for the page.
     pub fn screen_message(&self) -> Message {
         let refusal = |code| Message::new("refusal", code);
         match self {
@@ -100,7 +100,7 @@ impl AdmissionError {
     }
 }
 
-/// Returns the recipe of a lot that may be run.
+/// Checks that a lot may run; returns its recipe.
 ///
 /// # Errors
 /// Fails when the lot is held, when it is complete and the order is no retest, when it began with another recipe, when a
@@ -152,8 +152,8 @@ fn check_lot_state(db: &Path, recipe: &Recipe, order: &LotOrder) -> Result<(), A
     }
 }
 
-/// Returns why the rig must be calibrated before a lot of this recipe; `None` on a simulated rig, which calibrates
-/// before every lot.
+/// Returns why a lot of this recipe must wait for a calibration of the rig; `None` when it need not, as on a simulated
+/// rig, which calibrates before every lot.
 ///
 /// # Errors
 /// Fails when the history cannot be read.
@@ -171,7 +171,7 @@ pub fn calibration_refusal(
     }
 }
 
-/// Records a run without parts, whose alarm says why the rig refused the lot.
+/// Records a run without parts, with an alarm that says why the rig refused the lot.
 ///
 /// # Errors
 /// Fails when the history cannot be written.

@@ -1,4 +1,4 @@
-//! Acknowledges or shelves alarms of ended runs on the order of a person, and records the order with the name in the audit.
+//! Acknowledges or shelves alarms that ended runs left, when a person orders it; the audit keeps order and name.
 
 use anyhow::bail;
 use history::{AlarmChange, AlarmChangeRecord, OrderRecord, Row, Store};
@@ -6,10 +6,10 @@ use machine::station::orders::shelf_minutes;
 use machine::view::{By, Order};
 use serde_json::json;
 
-/// Writes an order about alarms, and the change that it makes to them.
+/// Writes an order about alarms, and the change that the order makes to them.
 ///
 /// # Errors
-/// Fails when no unacknowledged alarm has this code, or the history cannot be written.
+/// Fails when no unacknowledged alarm has this code, or when the history cannot be written.
 pub fn write(store: &mut Store, simulated: bool, order: &Order, by: &By) -> anyhow::Result<()> {
     let left = store.unacknowledged_alarms(simulated)?;
     let code = order.alarm.as_ref();
@@ -35,7 +35,7 @@ pub fn write(store: &mut Store, simulated: bool, order: &Order, by: &By) -> anyh
     Ok(store.record(&rows)?)
 }
 
-/// Returns the row of the change that an order makes to alarms; `None` for other orders.
+/// Returns the row of the change that an order makes to alarms; `None` when the order changes none.
 pub fn change(simulated: bool, order: &Order, by: &By, at_us: i64) -> Option<Row> {
     let minutes = i64::from(shelf_minutes(order.minutes));
     let by = by.who.clone();

@@ -1,4 +1,4 @@
-//! Collision answers for the moves of a scene file, without a rig.
+//! Answers whether moves collide with the bodies of a scene file; needs no rig.
 
 use anyhow::{Context, anyhow, bail};
 use lpm::scene::{Format, MeshFault, MoveOrder, RigNames, Scene, read_moves, read_scene_of_rig};
@@ -14,11 +14,11 @@ pub struct MoveAnswer<'a> {
     pub id: &'a str,
     /// `clear` or `blocked`.
     pub verdict: &'static str,
-    /// Fraction of the move at which the distance first reaches the margin, rounded down; `None` when clear.
+    /// Fraction of the move, 0 to 1, at which the distance first reaches the margin, rounded down; `None` when clear.
     pub t_stop: Option<f64>,
-    /// Element that sets `t_stop`.
+    /// Element that stops the move at `t_stop`.
     pub blocker: Option<&'a str>,
-    /// Least distance over the whole move; `None` beyond the range of the search.
+    /// Least distance over the whole move, mm; `None` when it exceeds the range of the search.
     pub clearance_mm: Option<f64>,
     /// Point of the contact, mm.
     pub at: Option<[f64; 3]>,
@@ -35,7 +35,7 @@ pub struct LoadedScene {
 }
 
 impl LoadedScene {
-    /// Loads a scene file, TOML or JSON by its extension.
+    /// Loads a scene file; the extension says whether it is TOML or JSON.
     ///
     /// # Errors
     /// Fails on an invalid file; the error names the file and the path of the field.
@@ -62,7 +62,7 @@ impl LoadedScene {
         Ok(read_moves(text, &self.scene)?)
     }
 
-    /// Answers about one move, with clearances up to `range_mm`.
+    /// Answers about one move; finds clearances up to `range_mm` millimetres.
     pub fn answer<'a>(&'a self, order: &'a MoveOrder, range_mm: f64) -> MoveAnswer<'a> {
         let mover = &self.movers[order.mover];
         let ignore: Vec<ElementKey> = order

@@ -9,11 +9,11 @@ use tokio::sync::watch;
 /// Controls of a run; clones share the same flags and view.
 #[derive(Debug, Clone)]
 pub struct Controls {
-    /// Ends the lot once the parts inside are finished.
+    /// Ends the lot as soon as the parts inside the rig are finished.
     pub stop: Arc<AtomicBool>,
-    /// Ends the lot at once.
+    /// Ends the lot at once; parts stay inside the rig.
     pub abort: Arc<AtomicBool>,
-    /// A person is at a screen: alarms and stops do not end the run.
+    /// True when a person is at a screen: alarms and stops then do not end the run.
     pub attended: bool,
     /// Sends the view to the screens.
     pub view: watch::Sender<View>,
@@ -22,7 +22,7 @@ pub struct Controls {
 }
 
 impl Controls {
-    /// Creates controls without an order and with an empty view.
+    /// Creates controls without a stop, an abort or traffic, and with an empty view.
     pub fn new(attended: bool) -> Self {
         Self {
             stop: Arc::new(AtomicBool::new(false)),
@@ -39,7 +39,7 @@ impl Controls {
         tokio::spawn(watch_signals(flags));
     }
 
-    /// Returns true after a stop or an abort.
+    /// Returns true once a stop or an abort has been ordered.
     pub fn is_stopping(&self) -> bool {
         let flags = [&self.stop, &self.abort];
         flags.iter().any(|flag| flag.load(Ordering::Acquire))
@@ -50,7 +50,7 @@ impl Controls {
         *held = Some(traces.clone());
     }
 
-    /// Returns a function that gives the last messages of every line, at most as many as its argument.
+    /// Returns a function that takes a number and returns that many last messages of every line, or fewer.
     pub fn traffic(&self) -> impl Fn(usize) -> Vec<LineTraffic> + use<> {
         let traces = Arc::clone(&self.traces);
         move |last| {
@@ -61,8 +61,8 @@ impl Controls {
     }
 }
 
-/// Sets the first flag on Ctrl-C (or the signal of a service manager), which finishes the parts inside, and the second
-/// flag on the next one, which does not wait for them. A signal during logging is not lost.
+/// Sets the first flag at the first Ctrl-C or SIGTERM (the run then finishes the parts inside), and the second flag at
+/// the next one (the run then ends at once). A signal that arrives while this function logs is not lost.
 async fn watch_signals(flags: [Arc<AtomicBool>; 2]) -> std::io::Result<()> {
     use tokio::signal::unix::{SignalKind, signal};
     let mut pressed = signal(SignalKind::interrupt())?;

@@ -1,5 +1,5 @@
-//! Copies of the history on the disk, and deletion of old runs. The history notes every copy, because only a run that was
-//! copied whole may be deleted.
+//! Copies the history on the disk and deletes old runs. The history notes every copy, because a run may be deleted only
+//! after the whole run was copied.
 
 use history::{Archive, Filter, HistoryError, Pruned, Store};
 use std::fs::File;
@@ -11,14 +11,14 @@ const DAY_US: i64 = 86_400_000_000;
 /// Copies the history into a new file and returns its size in bytes.
 ///
 /// # Errors
-/// Fails when the file exists, cannot be written, or differs from the history.
+/// Fails when `file` exists, cannot be written, or differs from the history after the copy.
 pub fn backup(db: &Path, file: &Path) -> anyhow::Result<u64> {
     let bytes = Archive::open(db)?.backup(file)?;
     note(db, &Filter::default(), file)?;
     Ok(bytes)
 }
 
-/// Notes a written export whose filter takes runs whole.
+/// Notes in the history that an export was written, if its filter selects whole runs.
 ///
 /// # Errors
 /// Fails when the file cannot be flushed to the disk, or the history cannot be written.
@@ -38,7 +38,7 @@ fn note(db: &Path, filter: &Filter, file: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Runs of a history that were copied whole and ended at least a number of days ago.
+/// Whole-copied runs of a history that ended at least a given number of days ago.
 pub struct OldRuns {
     store: Store,
     now_us: i64,
@@ -49,7 +49,7 @@ impl OldRuns {
     /// Selects the runs that ended at least `days` days before now.
     ///
     /// # Errors
-    /// Fails without a history at `db`, or when it cannot be opened.
+    /// Fails when there is no history at `db`, or when it cannot be opened.
     pub fn open(db: &Path, days: u32) -> anyhow::Result<Self> {
         anyhow::ensure!(db.exists(), "no history at {}", db.display());
         let now_us = jiff::Timestamp::now().as_microsecond();

@@ -4,8 +4,8 @@
 //! scan -> step -> clear -> apply -> record -> publish
 //! ```
 //! One task owns the process image, the outputs, the guard and the station; each line is a task of its own with a queue
-//! for one request ([`traffic`]). A turn begins on an answer or at the instant that the last step named. Only the
-//! station knows the kind of device.
+//! for one request ([`traffic`]). A turn begins when an answer arrives, or at the instant that the last step asked for.
+//! Only the station knows which kind of device is under test.
 
 mod commission;
 mod event;
@@ -52,19 +52,19 @@ use tokio::sync::{mpsc, watch};
 use traffic::{Purpose, Traffic};
 use units::{RigTime, Span};
 
-/// Longest pause between two turns when the station waits for nothing.
+/// Longest pause between two turns when the station asks for no earlier instant.
 const IDLE: Span = Span::ms(50);
 
 /// Channels and flags between the cycle and the rest of the program.
 #[derive(Debug)]
 pub struct CycleLinks {
-    /// Carries events to the history; the parts inside the machine bound its length.
+    /// Carries events to the history; unbounded, but the parts inside the machine limit how many can wait.
     pub events: mpsc::UnboundedSender<Event>,
-    /// Ordinal up to which parts are durable; the history sets it.
+    /// Ordinal of the last part that is safely on the disk; the history sets it.
     pub recorded: Arc<AtomicU64>,
-    /// The operator's stop sets it.
+    /// The operator sets it to stop the lot after the parts inside.
     pub stop: Arc<AtomicBool>,
-    /// The operator sets it to end without waiting for the parts inside.
+    /// The operator sets it to stop the lot at once.
     pub abort: Arc<AtomicBool>,
     /// Orders of screens, each with the channel for its answer.
     pub orders: mpsc::Receiver<OrderRequest>,
@@ -76,7 +76,7 @@ pub struct CycleLinks {
     pub view: watch::Sender<View>,
 }
 
-/// A rig under control.
+/// The control cycle of one rig: its image, outputs, guard, station and lines.
 pub struct Cycle {
     wiring: Arc<Wiring>,
     pace: Pace,
@@ -88,26 +88,26 @@ pub struct Cycle {
     timeouts: Timeouts,
     links: CycleLinks,
     job_done: Option<JobDone>,
-    /// Nest of the current job, or of the last one.
+    /// Nest of the current measuring job, or of the last one.
     job_nest: NestId,
     bus_alarm: Option<Alarm>,
     profile: Profile,
     turned_at: RigTime,
-    /// The cycle writes safe values only.
+    /// True while the cycle writes only safe values, at the end of a run.
     making_safe: bool,
     pending_orders: Vec<OrderRequest>,
     orders_closed: bool,
     verified: bool,
     publish_at: RigTime,
-    /// State of the outer machine in the last event.
+    /// State of the whole rig (PackML) in the last event sent.
     published_state: packml::State,
-    /// Trouble that hides whether a module of the measuring line has restarted.
+    /// Bus trouble because of which nobody knows whether a module of the measuring line has restarted.
     lost_status: Option<String>,
-    /// Contents of the machine in the last event, for the next run.
+    /// Contents of the machine in the last event sent; the next run takes them over.
     inside: Inside,
-    /// Longest age of the emergency-stop input so far.
+    /// Longest age that the emergency-stop input has reached so far.
     worst_age: Span,
-    /// Motion that the guard refused last; cleared when another one moves.
+    /// Motion that the guard refused last; cleared when another motion begins.
     refused: Option<view::MotionView>,
 }
 
@@ -150,7 +150,7 @@ impl Cycle {
         }
     }
 
-    /// Verifies the modules, then turns until the station has ended and the outputs are safe.
+    /// Verifies the modules, then takes one turn after another until the station has ended and the outputs are safe.
     pub async fn run(mut self) -> (Ending, Profile) {
         self.verify().await;
         if let Some(alarm) = self
@@ -217,8 +217,8 @@ impl Cycle {
             answer.answered_at >= answer.requested_at,
             "answered before it was asked"
         );
-        // Reading the reset status clears it, so no reply can be repeated: after a lost reply a restart of the module
-        // under the part stays unknown, and the part is void.
+        // Reading the reset status clears it, so the read cannot be repeated: when its reply is lost, nobody knows
+        // whether the module restarted while it measured the part, and the part is void.
         let is_status = matches!(
             answer.command,
             Command::Common(_, dcon::Common::ReadResetStatus)
@@ -323,7 +323,7 @@ impl Cycle {
         self.station.step(now, inputs)
     }
 
-    /// Passes each wanted motion through the guard in turn; drives or refuses it.
+    /// Passes the wanted motions through the guard one by one; drives each, or refuses it.
     fn clear(&mut self, now: RigTime, output: &mut TurnOutput) {
         let moves = !output.rig.motions.is_empty() || output.rig.jog.is_some();
         assert!(
@@ -356,7 +356,7 @@ impl Cycle {
         }
     }
 
-    /// Turns outputs into commands and gives the measuring lines their job.
+    /// Turns outputs into commands, and hands the measuring job to the lines.
     fn apply(&mut self, now: RigTime, output: &mut TurnOutput) {
         if output.rig.safe {
             self.outputs.everything_safe();
@@ -401,7 +401,7 @@ impl Cycle {
         }
     }
 
-    /// Keeps the first bus trouble of the turn for the station.
+    /// Keeps the first bus trouble of the turn; the station learns it in its next step.
     fn note_bus_trouble(&mut self, detail: &str) {
         self.bus_alarm.get_or_insert_with(|| Alarm::bus(detail));
     }
@@ -410,7 +410,7 @@ impl Cycle {
         self.traffic.measuring_lines().contains(&line)
     }
 
-    /// Sets and writes the outputs of the job with those of the turn; queues its readings.
+    /// Starts a measuring job: writes its outputs together with those of the turn, and queues its readings.
     fn start(&mut self, job: Job) {
         self.traffic.begin_job();
         let commands = match job {
@@ -437,13 +437,13 @@ impl Cycle {
         }
     }
 
-    /// Returns the instant at which the state of the emergency-stop contact expires.
+    /// Returns the first instant at which the state of the emergency-stop contact is too old to be known.
     fn contact_unknown(&self, now: RigTime) -> Option<RigTime> {
         let until = self.image.emergency_stop_known_until()?;
         (until >= now).then_some(until + Span(1))
     }
 
-    /// Waits for an answer, the station's own deadline or the next scan.
+    /// Waits for an answer, for `wake_at`, or for the next scan, whichever comes first.
     async fn wait(&mut self, now: RigTime, wake_at: Option<RigTime>) {
         assert!(wake_at.is_none_or(|at| at > now), "a deadline in the past");
         let until = wake_at

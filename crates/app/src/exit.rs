@@ -1,4 +1,13 @@
-//! Reasons why a command ends, with their exit status.
+//! Reasons why a command ends, with their exit status, and the cause of exit status 3.
+//!
+//! The cause of a run travels through these files:
+//!
+//! - chosen in `lot/mod.rs` (lost history, failed assertion), `lot/progress.rs` (the alarm, or an abort), `lib.rs` (the
+//!   rig refuses the lot before it begins) and `calibration/mod.rs` (reference parts without a calibration);
+//! - made into a row in `lot/journal.rs`;
+//! - written by `history/src/run_end.rs`.
+//!
+//! `story/mod.rs` chooses the cause of a story whose player failed; no row keeps that one.
 
 use machine::station::trouble::Alarm;
 use serde::Serialize;
@@ -7,9 +16,10 @@ use texts::Lang;
 /// Reason why a command ends.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Exit {
-    /// Everything finished, whatever the verdicts.
+    /// The command finished, whatever the verdicts about parts.
     Done,
-    /// Everything finished, and the answer is no: a move is blocked, a verification failed, a bar is missed.
+    /// The command finished, and the answer is no: a move is blocked, a verification failed, or a figure misses its
+    /// bar.
     AnswerIsNo,
     /// Bad input or configuration.
     BadInput,
@@ -45,7 +55,7 @@ const ASSERTION: &str = "assertion";
 /// Code of [`Cause::history_lost`].
 const HISTORY_LOST: &str = "history_lost";
 
-/// Cause of exit status 3.
+/// Trouble that ended a command; its exit status is 3.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Cause {
     /// Code of an alarm, or of one of the constructors below; stable over versions.
@@ -85,12 +95,12 @@ impl Cause {
         Self::new(HISTORY_LOST, why)
     }
 
-    /// `calibration_invalid`: the rig takes no lot before a new calibration.
+    /// `calibration_invalid`: the rig runs no lot until it is calibrated again; `why` is the reason.
     pub fn calibration_invalid(why: &str) -> Self {
         Self::new("calibration_invalid", why)
     }
 
-    /// `not_calibrated`: the reference parts ended without a calibration.
+    /// `not_calibrated`: the run of the reference parts ended without a calibration.
     pub fn not_calibrated() -> Self {
         let text = "the reference parts ended without a calibration";
         Self::new("not_calibrated", text)

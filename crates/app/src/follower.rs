@@ -13,16 +13,16 @@ use thiserror::Error;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 
-/// Time between two polls: a line at 115200 baud carries some 130 messages meanwhile, and the server keeps a thousand.
+/// Time between two polls: a line at 115200 baud carries some 130 messages in it, and the server keeps a thousand.
 const POLL_INTERVAL: Duration = Duration::from_millis(200);
 /// Longest wait for an answer of the server.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// Host and port of a page at `http://HOST:PORT`.
+/// Host and port of a page, from the address `http://HOST:PORT`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Page(String);
 
-/// Error: the text is no address of a page.
+/// Error: the text is not the address of a page.
 #[derive(Debug, PartialEq, Eq, Error)]
 #[error("found \"{0}\", expected http://HOST:PORT")]
 pub struct InvalidPage(String);
@@ -44,7 +44,7 @@ pub fn page(text: &str) -> Result<Page, InvalidPage> {
     }
 }
 
-/// A line of the rig in `/api/trace`.
+/// One line of the rig with its messages, as `/api/trace` gives them.
 #[derive(Debug, Clone, Deserialize)]
 struct Line {
     line: String,
@@ -64,7 +64,7 @@ pub struct Message {
     pub meaning: String,
 }
 
-/// An entry to print.
+/// One entry that the follower reports.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Update {
     /// Instant of the entry, microseconds of rig time.
@@ -84,7 +84,7 @@ pub enum UpdateContent {
     Message(Message),
 }
 
-/// Last message reported, by line.
+/// Last message reported, by name of the line.
 #[derive(Debug, Default)]
 struct Delivered(BTreeMap<String, Message>);
 
@@ -117,7 +117,7 @@ impl Delivered {
     }
 }
 
-/// Reports new messages to `report` until the controller ends.
+/// Reports each new message to `report` until the controller ends.
 pub async fn follow(
     page: &Page,
     mut report: impl FnMut(&Update) -> anyhow::Result<()>,
@@ -151,7 +151,7 @@ async fn poll(page: &Page) -> anyhow::Result<Vec<Line>> {
         .with_context(|| format!("--from http://{host}: expected the traffic of a relayrig"))
 }
 
-/// Returns the body of a GET request; fails on a status other than 200.
+/// Returns the body of the answer to a GET request; fails on a status other than 200.
 async fn get(host: &str, path: &str) -> anyhow::Result<Vec<u8>> {
     let mut stream = TcpStream::connect(host).await?;
     let request = format!("GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n");

@@ -1,9 +1,9 @@
-//! Gauge repeatability and reproducibility of the rig itself, on parts that it measures several times.
+//! Gauge repeatability and reproducibility (AIAG) of the rig itself, on parts that it measures several times.
 //!
-//! Ten parts go three times through each of three rigs: each "operator" is a rig with errors of its own, calibrated by
-//! its reference parts as before any lot. The parts are the same (fault `parts_seed` of the simulated rig), come in the
-//! same order (`refeed`), and operate a little differently each time, as real ones do. The history keeps each rig's
-//! readings as a lot of its own.
+//! Three simulated rigs stand for the operators: each has errors of its own and is calibrated by its reference parts,
+//! as before any lot. Each measures the same ten parts three times. The parts are the same (fault `parts_seed` of the
+//! simulated rig), come in the same order (fault `refeed`), and operate a little differently each time, as real ones
+//! do. The history keeps the readings of each rig as one lot.
 
 use super::exit::Exit;
 use super::lot::{Purpose, Subscriber};
@@ -16,25 +16,25 @@ use machine::dut::Characteristic;
 use quality::average_range::average_and_range;
 use quality::gauge_rr::{GaugeRr, GaugeRrError, Reading, anova};
 
-/// Number of rigs, which take the place of operators; AIAG's customary number, like the two below.
+/// Number of rigs, which take the place of operators; AIAG's usual number, as are the two below.
 const OPERATORS: u64 = 3;
 /// Number of times that each rig measures each part.
 const TRIALS: u64 = 3;
 /// Number of parts unless `--count` gives another.
 const PARTS: u64 = 10;
 
-/// Measurement-system figures of one characteristic.
+/// Result of the study for one characteristic.
 #[derive(Debug)]
 pub struct Figure {
     /// The characteristic.
     pub characteristic: Characteristic,
-    /// Result of the analysis of variance, or why it fails.
+    /// Result of the analysis of variance, or the reason why there is none.
     pub anova: Result<GaugeRr, GaugeRrError>,
-    /// Result of the average and range method; `None` where it fails.
+    /// Result of the average and range method; `None` when the method fails.
     pub by_range: Option<GaugeRr>,
 }
 
-/// Returns the rig of one operator: errors of its own, the same parts fed repeatedly.
+/// Returns the rig that stands for one operator: it has errors of its own and feeds the same parts again and again.
 fn refed(source: &RigSource, operator: u64, parts: u64) -> RigSource {
     let _ = (operator, parts);
     match source.clone() {
@@ -49,8 +49,8 @@ fn refed(source: &RigSource, operator: u64, parts: u64) -> RigSource {
     }
 }
 
-/// Runs one lot per operator, named after `order`; returns the figures of every characteristic, or the end of the first
-/// lot that did not complete.
+/// Runs one lot per rig, named after `order`; returns the figures of every characteristic, or how the first lot that
+/// did not complete ended.
 ///
 /// # Errors
 /// Fails on bad input, as any lot does.
@@ -94,7 +94,7 @@ fn name(order: &LotOrder, operator: u64) -> String {
     format!("{}/{operator}", order.lot)
 }
 
-/// Returns the readings of one characteristic; a part without a value leaves the study incomplete.
+/// Returns the readings of one characteristic; a part without a value leaves a gap, which the analysis refuses.
 fn readings(
     archive: &Archive,
     order: &LotOrder,
@@ -129,10 +129,10 @@ fn of(lot: &str) -> Filter {
     }
 }
 
-/// Reads a study from CSV with the columns part, operator, trial and value.
+/// Reads the readings of a study from CSV with the columns part, operator, trial and value.
 ///
 /// # Errors
-/// Names the line of a missing column or of a value that is no finite number.
+/// Fails when a column is missing or a value is not a finite number; the error names the line.
 pub fn read_csv(text: &str) -> anyhow::Result<Vec<Reading>> {
     let records = csv::read(text)?;
     let (header, rows) = records.split_first().context("line 1: expected a header")?;

@@ -87,7 +87,7 @@ pub fn run_lot(
     })
 }
 
-/// Runs `work` on a runtime of one thread, whose clock is the rig's in virtual time.
+/// Runs `work` on a runtime of one thread; in virtual time the runtime's clock is that of the rig.
 ///
 /// # Errors
 /// Fails as `work` does, or when the runtime cannot start.
@@ -101,7 +101,7 @@ pub fn block_on<T>(
     done
 }
 
-/// Creates a runtime of one thread for runs on `source`.
+/// Creates a runtime of one thread for runs on `source`; its clock is paused when rig time is virtual.
 ///
 /// # Errors
 /// Fails when the operating system refuses it.

@@ -13,17 +13,17 @@ use machine::rig::wiring::LineId;
 use rigsim::{SharedRig, pty, wire};
 use tokio::sync::mpsc;
 
-/// Grace for a late reply of a measuring line, ms. A silent module gets three requests for its name; with this grace
-/// they take 0.65 s, so the host watchdogs of the line's other modules receive their next sign of life in time.
+/// How long a measuring line waits for a late reply, ms. A silent module is asked for its name three times; with this
+/// wait that takes 0.65 s, so the host watchdogs of the line's other modules still receive their heartbeat in time.
 const LATE_REPLY_MS: u64 = 180;
 
-/// Returns the EEPROM writes of all modules so far; `None` on a real rig, whose modules keep no count.
+/// Returns how many EEPROM writes all modules have made so far; `None` on a real rig, whose modules do not count them.
 pub type EepromCount = Box<dyn Fn() -> Option<u64> + Send>;
 
 /// Open lines, ready for the cycle.
 #[derive(Default)]
 pub struct Lines {
-    /// The cycle's queue ends, in the order of the wiring.
+    /// Queue ends that the cycle holds, in the order of the wiring.
     pub ends: Vec<LineEnds>,
     /// Trace and health of each line, with its name.
     pub logs: Vec<(String, LineLog)>,
@@ -75,7 +75,7 @@ impl Lines {
         self.open(plant, line, bus::serial_port(path, baud), pace);
     }
 
-    /// Starts the task of a line over the ports that `open` gives.
+    /// Starts the task of a line; `open` opens its port, again after every failure.
     fn open(&mut self, plant: &Plant, line: LineId, open: OpenPort, pace: &Pace) {
         let settings = settings(plant, line);
         self.logs
@@ -103,7 +103,7 @@ fn settings(plant: &Plant, line: LineId) -> LineSettings {
             .module(plant.wiring.emergency_stop_module())
             .line
     {
-        // The line with the emergency stop keeps the shorter grace that its reaction bound assumes.
+        // The line with the emergency stop keeps the shorter wait, on which its guaranteed reaction time depends.
         settings.late_reply_ms = LATE_REPLY_MS;
     }
     settings.log = LineLog::with_trace(4096);
@@ -113,7 +113,7 @@ fn settings(plant: &Plant, line: LineId) -> LineSettings {
 /// Opens every line of the plant.
 ///
 /// # Errors
-/// Fails on a line without wiring, or a simulated rig that cannot be built.
+/// Fails when `--line` names a line that the wiring lacks, or when the simulated rig cannot be built.
 pub fn open(context: &LotContext, pace: &Pace) -> anyhow::Result<Lines> {
     match context.source {
         RigSource::Serial(given) => serial(context.plant, given, pace),
@@ -143,7 +143,7 @@ fn serial(plant: &Plant, given: &[LinePort], pace: &Pace) -> anyhow::Result<Line
 /// Checks that the wiring has every line that `--line` names.
 ///
 /// # Errors
-/// Fails on the first line without wiring.
+/// Fails on the first named line that the wiring lacks.
 pub fn check(plant: &Plant, given: &[LinePort]) -> anyhow::Result<()> {
     let wired = plant.wiring.lines.iter().map(|line| line.name.as_str());
     let known: Vec<&str> = wired.collect();

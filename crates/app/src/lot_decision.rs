@@ -9,7 +9,7 @@ use serde_json::json;
 use std::path::Path;
 use texts::Message;
 
-/// Writes an order about a lot, and the state that it gives the lot.
+/// Writes an order about a lot, and the state that the order gives the lot.
 ///
 /// # Errors
 /// Fails with the refusal for an unknown lot, a state of the lot that forbids the decision, a missing reason, or a history
@@ -34,7 +34,7 @@ pub fn write(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<()
         .map_err(trouble)
 }
 
-/// Returns the audit row of an order outside a run.
+/// Returns the audit row of an order that is given while no run of its lot is under way.
 pub fn audit(order: &Order, by: &By) -> Row {
     Row::Order(OrderRecord {
         lot: None,

@@ -1,4 +1,4 @@
-//! Orders of a person or a program: a lot, and the paths of its files.
+//! What a person or a program orders: a lot, and the paths of its files.
 
 use std::path::PathBuf;
 
@@ -9,9 +9,10 @@ pub struct LotOrder {
     pub lot: String,
     /// Name of a recipe in `recipes/` of the configuration.
     pub recipe: String,
-    /// Number of parts; `None`: the lot continues until a stop.
+    /// Number of parts; `None`: the lot continues until it is stopped.
     pub count: Option<u64>,
-    /// Name of the person who agreed to a retest of the lot's parts; the history keeps the first results.
+    /// Name of the person who agreed to test the lot's parts again; the history keeps the first results too. `None`: no
+    /// retest.
     pub retest: Option<String>,
 }
 

@@ -3,10 +3,10 @@
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 
-/// Template of the bar of work that counts pieces.
+/// Template of a progress bar that counts pieces.
 pub const PIECES: &str = "{bar:40} {pos}/{len} {per_sec} {eta}";
 
-/// Returns the bar of work with `length` pieces; without a length the bar has no end.
+/// Returns a progress bar for `length` pieces; without a length the bar has no end.
 pub fn progress(length: Option<u64>, template: &str) -> ProgressBar {
     let target = match std::io::stderr().is_terminal() {
         true => ProgressDrawTarget::stderr(),

@@ -9,7 +9,7 @@ use rigsim::{Options, SharedRig};
 /// A simulated rig that exists before and after the run.
 #[derive(Debug, Clone)]
 pub struct LiveRig {
-    /// The rig; the run's rig time begins at its present time.
+    /// The rig; rig time of a run begins at the time that the rig has reached.
     pub rig: SharedRig,
     /// Wall clock at rig time zero of the run, microseconds since 1970 UTC.
     pub epoch_us: i64,
@@ -28,7 +28,7 @@ impl LiveRig {
     }
 }
 
-/// Returns the source's faults, and the one that loads reference parts as often as the lot's checks need them.
+/// Returns the faults of the source, and one more that loads reference parts as often as the lot's checks need them.
 fn faults(plant: &Plant, source: &Simulated) -> Vec<String> {
     let mut faults = source.faults.clone();
     let asked = faults.iter().any(|it| it.starts_with("golden_every"));
@@ -37,7 +37,7 @@ fn faults(plant: &Plant, source: &Simulated) -> Vec<String> {
     faults
 }
 
-/// Returns the options that put reference parts and the lot into the magazine.
+/// Returns the options that fill the magazine with reference parts and the parts of the lot.
 fn loaded(plant: &Plant, source: &Simulated, order: &LotOrder) -> Options {
     Options {
         config_dir: plant.dir.clone(),

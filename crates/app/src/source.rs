@@ -8,7 +8,7 @@ use std::path::PathBuf;
 /// Rig of a run.
 #[derive(Debug, Clone)]
 pub enum RigSource {
-    /// Serial ports of `rig.toml`, except for the lines listed here.
+    /// The rig at the serial ports of `rig.toml`; lines listed here have another port.
     Serial(Vec<LinePort>),
     /// The simulated rig.
     #[cfg(feature = "sim")]
@@ -28,7 +28,7 @@ pub struct LinePort {
 #[cfg(feature = "sim")]
 #[derive(Debug, Clone)]
 pub struct Simulated {
-    /// Speed of rig time.
+    /// How fast rig time runs.
     pub pace: SimulatedPace,
     /// Seed of the rig's errors and of its parts.
     pub seed: u64,
@@ -36,27 +36,27 @@ pub struct Simulated {
     pub world: Option<PathBuf>,
     /// Faults, `NAME[=VALUE[@FROM[..UNTIL]]]`.
     pub faults: Vec<String>,
-    /// File for the true values of every specimen.
+    /// File for the true values of every part; `None`: none is written.
     pub truth: Option<PathBuf>,
     /// A rig that exists before and after the run; `None`: the run builds one.
     pub live: Option<Box<LiveRig>>,
 }
 
-/// Speed of time on the simulated rig.
+/// Pace of rig time on the simulated rig.
 #[cfg(feature = "sim")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SimulatedPace {
-    /// As fast as the computer allows, in-process.
+    /// In one process, as fast as the computer allows.
     Virtual,
-    /// In-process, at most this many times as fast as the wall clock.
+    /// In one process, at most this many times as fast as the wall clock.
     Held(f64),
-    /// Wall-clock time, through pseudo-terminals.
+    /// At the pace of the wall clock, through pseudo-terminals.
     Real,
 }
 
 #[cfg(feature = "sim")]
 impl Simulated {
-    /// Returns the default world in virtual time.
+    /// Returns options with this seed: the default world, virtual time, no faults.
     pub fn with_seed(seed: u64) -> Self {
         Self {
             pace: SimulatedPace::Virtual,
@@ -119,7 +119,7 @@ impl RigSource {
         }
     }
 
-    /// Returns the largest ratio of virtual time to wall time; `None`: unlimited, or not virtual.
+    /// Returns the largest ratio of rig time to wall time in virtual time; `None`: unlimited, or not virtual.
     pub fn speed(&self) -> Option<f64> {
         match self {
             Self::Serial(_) => None,

@@ -1,11 +1,11 @@
-//! Writes the last traffic of every line to files when an alarm comes; reports the health of the modules.
+//! Writes the last traffic of every line to files when an alarm occurs; reports the health of the modules.
 
 use bus::{LineLog, Meaning, Recorded, arrow, escaped};
 use config::Plant;
 use machine::view::{LineTraffic, LineView, Message, ModuleView};
 use std::path::{Path, PathBuf};
 
-/// Most traces per line and run: the first alarms are the informative ones.
+/// Most traces per line and run; the first alarms tell the most.
 const MAX_TRACES: usize = 8;
 
 #[derive(Debug, Clone)]
@@ -26,7 +26,7 @@ pub struct Traces {
 }
 
 impl Traces {
-    /// Collects the lines in `logs`; trace files go beside `db`.
+    /// Collects the logs of the lines; trace files are written beside `db`.
     pub fn new(db: &Path, plant: &Plant, logs: &[(String, LineLog)]) -> Self {
         let sources = logs.iter().filter_map(|(name, log)| {
             let line = plant.wiring.line(plant.wiring.line_named(name)?);
@@ -65,7 +65,7 @@ impl Traces {
         written
     }
 
-    /// Returns the last `last` messages of every line, with their meaning.
+    /// Returns the last messages of every line, at most `last` each, with their meaning.
     pub fn messages(&self, last: usize) -> Vec<LineTraffic> {
         let sources = self.sources.iter();
         sources.map(|source| messages(source, last)).collect()

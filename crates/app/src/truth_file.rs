@@ -8,7 +8,7 @@ use std::fs::File;
 use std::io::Write;
 use std::path::Path;
 
-/// A row per part, in the order of landing. Each write leaves whole rows.
+/// File with one JSON object per part, in the order of landing. After each write the file holds whole lines only.
 pub struct TruthFile<'a> {
     path: &'a Path,
     file: File,
@@ -38,7 +38,7 @@ impl<'a> TruthFile<'a> {
         self.write(rig, |part| !part["landed_in"].is_null())
     }
 
-    /// Adds all other parts, those still inside too.
+    /// Adds all parts that are not in the file yet, also those still inside the rig.
     ///
     /// # Errors
     /// Fails when the file cannot be written.

@@ -1,8 +1,8 @@
-//! The storm of line faults in full: `cargo bench -p bus --bench line_storm [-- TRANSACTIONS [SEED] [FAULT=VALUE]...]`.
+//! The full storm of line faults: `cargo bench -p bus --bench line_storm [-- TRANSACTIONS [SEED] [FAULT=VALUE]...]`.
 //!
-//! Prints the counts of the judge and the expected number of wrong readings: two modules that reply at once produce, with
-//! a small probability, a frame whose checksum is right. Ends with status 1 when the line accepts a wrong reading.
-//! Without faults by name every fault has a probability of 1 %.
+//! Counts the readings that the line accepts and that are wrong; ends with status 1 when there is one. Prints, beside
+//! the counts, how many wrong readings to expect: two modules that reply at once produce, with a small probability, a
+//! frame whose checksum is right. When no fault is named, every fault has a probability of 1 %.
 
 #[path = "../../../tests/line/storm/rage.rs"]
 mod rage;
@@ -12,14 +12,14 @@ use rage::{EVERY_FAULT, Weather, rage};
 use rigsim::fault::LineFaults;
 use std::process::ExitCode;
 
-/// Transactions that must pass without a wrong reading.
+/// Number of transactions, none of which may give a wrong reading.
 const TRANSACTIONS: u64 = 1_000_000;
-/// Draws of two replies at once, for the share that passes for one reply.
+/// Number of times that two simultaneous replies are drawn, to find how often they pass for one reply.
 const CLASHES: u32 = 4_000_000;
-/// Share of the transactions that read all inputs at once.
+/// Share of the transactions, 0 to 1, that read all inputs at once.
 const LISTS: f64 = 1.0 / 20.0;
 const FORM: InputForm = InputForm::eight(DataFormat::Hex, TypeCode(0x08));
-/// Faults whose damage a host detects.
+/// Faults whose damage a host can detect.
 const SEEN: [&str; 5] = ["truncate", "flip", "noise", "garble", "clash"];
 
 fn main() -> ExitCode {
@@ -60,9 +60,9 @@ fn print_counts(weather: &Weather) {
     );
 }
 
-/// Prints the number of wrong readings that no host can detect, among n transactions. c: share of two replies at once; p:
-/// share of these that passes for another value; d: share of damage that the host detects; q: share of reads of all
-/// inputs at once that passes within the noise of the reads before and after.
+/// Prints how many wrong readings among n transactions no host can detect. Shares, 0 to 1: c of transactions with two
+/// replies at once; p of these that pass for another value; d of damage that the host detects; q of reads of all inputs
+/// at once that pass within the noise of the reads before and after.
 fn print_expected(n: f64, faults: &[&str]) {
     let channel = Channel::new(0).expect("0 is a channel");
     let (p, _) = passing(
@@ -105,7 +105,7 @@ fn print_expected(n: f64, faults: &[&str]) {
     println!("  to be expected in all {times:.4}");
 }
 
-/// Returns the probability of a fault in the list; 0 for a fault that the list lacks.
+/// Returns the probability of the fault `name`; 0 when the list lacks this fault.
 fn chance(faults: &[&str], name: &str) -> f64 {
     let values = faults.iter().filter_map(|fault| fault.split_once('='));
     let mut own = values.filter(|(known, _)| *known == name);
@@ -113,8 +113,8 @@ fn chance(faults: &[&str], name: &str) -> f64 {
     value.unwrap_or(0.0)
 }
 
-/// Returns two shares of the replies of `digits` digits that overlap with a second one: those that decode as another
-/// value, and those among them that the line accepts between two intact replies.
+/// Draws replies of `digits` digits that overlap with a second reply. Returns two shares of them: those that decode as
+/// another value, and those that moreover lie so near to two intact replies that the line accepts them.
 fn passing(read: AnalogIn, digits: usize) -> (f64, f64) {
     let command = read.to(Address(1));
     let mut faults = LineFaults::none(1);

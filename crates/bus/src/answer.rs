@@ -1,4 +1,4 @@
-//! The request that a line takes, the answer that it returns, and the reasons why there is no reply.
+//! The request that a line takes, the answer that it returns, and the reasons why it has no reply.
 
 use super::PortError;
 use dcon::{Command, Reply, ReplyError};
@@ -12,7 +12,7 @@ pub struct Request {
     pub ticket: u64,
     /// The command to send.
     pub command: Command,
-    /// Most tries, the first included, at least 1. A command that changes something is sent once, whatever this says.
+    /// Most tries, the first one included; at least 1. A command that changes something is sent only once.
     pub tries: u8,
 }
 
@@ -23,19 +23,19 @@ pub struct Answer {
     pub ticket: u64,
     /// Command of the request.
     pub command: Command,
-    /// The decoded reply, or why there is none.
+    /// The decoded reply, or the reason why there is none.
     pub outcome: Result<Reply, LineError>,
-    /// Characters received, without CR; empty when none came.
+    /// Characters received, without the CR; empty when none came.
     pub raw: String,
     /// Time at which the first character of the last try was sent.
     pub requested_at: RigTime,
-    /// Time at which the reply was complete, or the line gave it up.
+    /// Time at which the reply was complete, or at which the line gave up.
     pub answered_at: RigTime,
     /// Number of tries, at least 1.
     pub tries_used: u8,
 }
 
-/// Why a transaction brought no valid reply. Each message names line, module, command and cause in one sentence,
+/// Reason why a transaction brought no valid reply. Each message names line, module, command and cause in one sentence,
 /// because alarms and pages show only the message.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum LineError {
@@ -49,14 +49,14 @@ pub enum LineError {
         /// Time allowed for the reply.
         limit: Span,
     },
-    /// The module declined, or the bytes are no reply to this command.
+    /// The module refused the command, or the bytes received are not a reply to it.
     #[error("line {line}, {command}: {reason}")]
     Reply {
         /// Name of the line.
         line: String,
         /// Command that was sent.
         command: Command,
-        /// Defect of the reply, or the module's refusal.
+        /// What is wrong with the reply, or the refusal of the module.
         reason: ReplyError,
     },
     /// The line received its own request: the converter does not mute its receiver while it sends.
@@ -67,8 +67,8 @@ pub enum LineError {
         /// Command that was sent.
         command: Command,
     },
-    /// Characters followed the reply: two modules share the address, or another module replied late. The line rejects
-    /// both.
+    /// Characters followed the reply. Two modules share the address, or another module replied late; the line rejects
+    /// the reply either way.
     #[error("line {line}, {command}: more characters follow the reply")]
     SecondReply {
         /// Name of the line.
@@ -76,7 +76,7 @@ pub enum LineError {
         /// Command that was sent.
         command: Command,
     },
-    /// An earlier, timed-out request may have caused this reply, and the module did not confirm it.
+    /// The reply may belong to an earlier request that timed out, and the module did not confirm it.
     #[error("line {line}, {command}: reply rejected, it may be a late reply to an earlier request")]
     OutOfStep {
         /// Name of the line.
@@ -95,7 +95,7 @@ pub enum LineError {
         /// Command that was sent.
         command: Command,
     },
-    /// A module sends without a request and does not stop; the line sent nothing.
+    /// A module sent without a request, so the line had not fallen silent since earlier trouble; nothing was sent.
     #[error("line {line}, {command}: not sent, the line never falls silent")]
     NeverSilent {
         /// Name of the line.
@@ -103,14 +103,14 @@ pub enum LineError {
         /// Command that was not sent.
         command: Command,
     },
-    /// The port is lost or never opened.
+    /// The port was lost, or could not be opened.
     #[error("line {line}, {command}: port lost: {reason}")]
     PortLost {
         /// Name of the line.
         line: String,
         /// Command that was sent, or was to be sent.
         command: Command,
-        /// Why the port is unusable; names its path.
+        /// Reason why the port is unusable; its text names the path.
         reason: PortError,
     },
 }

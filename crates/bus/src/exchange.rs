@@ -1,4 +1,4 @@
-//! The bytes of one exchange: write, read until CR or the deadline, wait for silence.
+//! Bytes of one exchange: writes a request, reads until CR or the deadline, waits for silence.
 
 use super::trace::Direction;
 use super::{LineLog, Pace, Port};
@@ -11,7 +11,7 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt, ReadBuf};
 use tokio::time::Sleep;
 use units::{RigTime, Span};
 
-/// A frame, received in one or several pieces.
+/// Buffer for a frame, which may arrive in several pieces.
 #[derive(Debug)]
 pub(super) struct Frame {
     bytes: [u8; FRAME_LIMIT],
@@ -25,9 +25,9 @@ pub(super) enum FrameEnd {
     Whole,
     /// The frame ended with CR, and more bytes followed.
     More,
-    /// More characters arrived than any frame has.
+    /// More characters arrived than any frame of the protocol has.
     TooLong,
-    /// The deadline passed first.
+    /// The deadline passed before the frame ended.
     TimedOut,
 }
 
@@ -51,7 +51,7 @@ impl Frame {
         &self.bytes[..self.length]
     }
 
-    /// Appends `piece`; returns `None` while the frame is incomplete.
+    /// Appends `piece`; returns how the frame ended, or `None` while it is incomplete.
     fn push(&mut self, piece: &[u8]) -> Option<FrameEnd> {
         for (at, byte) in piece.iter().enumerate() {
             let Some(slot) = self.bytes.get_mut(self.length) else {
@@ -71,14 +71,14 @@ impl Frame {
     }
 }
 
-/// The outcome of a request for a module's name.
+/// What came back when the line asked a module for its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Identification {
-    /// The module answered.
+    /// True when the module answered.
     pub(super) by_module: bool,
-    /// Bytes other than the module's answer arrived.
+    /// True when bytes arrived that are not the module's answer.
     pub(super) strays: bool,
-    /// Time of the last character received; of the request if none came.
+    /// Time of the last character received, or of the request when none came.
     pub(super) last_heard: RigTime,
 }
 
@@ -87,13 +87,13 @@ pub(super) struct Identification {
 pub(super) enum SilenceEnd {
     /// The line was silent for long enough.
     Silent,
-    /// The module answered with its name, which accounts for everything received before.
+    /// The module answered with its name, so whatever arrived before needs no further wait.
     Named,
-    /// Bytes kept arriving until the limit.
+    /// Bytes kept arriving until the time limit.
     Noisy,
 }
 
-/// A port with the clock and the log that go with it.
+/// A port, with the clock and the log of its line.
 pub(super) struct Exchange<'a> {
     pub(super) port: &'a mut dyn Port,
     pub(super) pace: Pace,
@@ -101,7 +101,8 @@ pub(super) struct Exchange<'a> {
 }
 
 impl Exchange<'_> {
-    /// Writes `request` and reads until a frame is complete or `deadline` passes; `frame` holds the bytes received.
+    /// Writes `request` and reads until a frame is complete or `deadline` has passed; `frame` then holds the bytes
+    /// received.
     pub(super) async fn ask(
         &mut self,
         request: &[u8],
@@ -129,7 +130,7 @@ impl Exchange<'_> {
         Ok(heard)
     }
 
-    /// Sends an identification request and reads until `in_step` accepts a frame or `deadline` passes.
+    /// Asks a module for its name and reads until `in_step` accepts a frame or `deadline` has passed.
     pub(super) async fn name(
         &mut self,
         identification: &Command,
@@ -188,7 +189,7 @@ impl Exchange<'_> {
         self.write(request, timer).await.map(|_| ())
     }
 
-    /// Writes `bytes`; returns false when the port does not take them in time.
+    /// Writes `bytes`; returns false when the port has not taken them by the time `timer` fires.
     async fn write(&mut self, bytes: &[u8], timer: Pin<&mut Sleep>) -> io::Result<bool> {
         self.note(Direction::Sent, bytes);
         tokio::select! {
@@ -200,8 +201,8 @@ impl Exchange<'_> {
 
     /// Reads the next bytes; returns `None` when `timer` has fired and no byte is waiting.
     ///
-    /// A host that the scheduler kept from running wakes with its timer fired *and* the reply in the buffer of the
-    /// port. The module was not silent, so this polls the reactor once more before giving up, which takes no time.
+    /// A busy host may wake late and then find the timer fired *and* the reply in the buffer of the port. The module
+    /// was not silent, so this function polls the reactor once more before it gives up; that poll takes no time.
     async fn piece(
         &mut self,
         piece: &mut [u8],
@@ -233,7 +234,7 @@ impl Exchange<'_> {
     pub(super) async fn discard(&mut self) -> io::Result<usize> {
         let mut piece = [0; 2 * FRAME_LIMIT];
         let mut total = 0;
-        // A module that sends without pause could fill the buffer as fast as this empties it.
+        // Bounded, because a module that sends without pause could fill the buffer as fast as this loop empties it.
         for _ in 0..FRAME_LIMIT {
             let count = match self.read_now(&mut piece).await? {
                 None => break,
@@ -246,7 +247,7 @@ impl Exchange<'_> {
         Ok(total)
     }
 
-    /// Returns `None` when no byte is waiting.
+    /// Reads the bytes that are waiting; returns `None` when there are none.
     async fn read_now(&mut self, piece: &mut [u8]) -> io::Result<Option<usize>> {
         let port = &mut *self.port;
         let read = poll_fn(|context| {
@@ -257,12 +258,12 @@ impl Exchange<'_> {
                 Poll::Pending => Ok(None),
             })
         });
-        // Outside tokio's cooperative budget: within it, `Pending` may only mean that other tasks run first.
+        // Outside tokio's cooperative budget, because within it `Pending` may only mean that other tasks run first.
         tokio::task::unconstrained(read).await
     }
 
-    /// Waits until nothing has arrived for `silence` since `last_heard`, or `in_step` accepts a frame; gives up at
-    /// `limit`.
+    /// Waits until nothing has arrived for the time `silence` after `last_heard`, or until `in_step` accepts a frame;
+    /// gives up at `limit`.
     pub(super) async fn silence(
         &mut self,
         silence: Span,

@@ -1,11 +1,11 @@
-//! Transaction counts and latencies of each module since the start.
+//! Counts of transactions and latencies of each module, since the start of the line's task.
 
 use super::LineError;
 use dcon::{Address, Reply, ReplyError};
 use std::collections::BTreeMap;
 use units::Span;
 
-/// Latencies in classes of a quarter octave: a percentile is at most 19 % too high.
+/// Counts of latencies in classes a quarter of an octave wide, so a percentile is at most 19 % too high.
 #[derive(Debug, Clone)]
 pub struct Histogram {
     classes: [u32; Histogram::CLASSES],
@@ -22,7 +22,7 @@ impl Default for Histogram {
 }
 
 impl Histogram {
-    /// Covers 2^24 us (16 s); the last class also holds longer ones.
+    /// Number of classes: they cover 2^24 us (16 s), and the last one also holds longer latencies.
     const CLASSES: usize = 96;
 
     pub(super) fn add(&mut self, latency: Span) {
@@ -32,8 +32,8 @@ impl Histogram {
         self.total += 1;
     }
 
-    /// Returns the upper edge of the class that contains the percentile `share` (0 to 1); `None` while the histogram
-    /// is empty.
+    /// Returns the upper edge of the class that contains the percentile `share` (0 to 1); `None` when nothing was
+    /// counted.
     pub fn percentile(&self, share: f64) -> Option<Span> {
         assert!(
             (0.0..=1.0).contains(&share),
@@ -52,19 +52,19 @@ impl Histogram {
 /// Counts and latencies of one module.
 #[derive(Debug, Clone, Default)]
 pub struct ModuleHealth {
-    /// Tries, repetitions included.
+    /// Number of tries, repetitions included.
     pub transactions: u64,
-    /// Tries without a complete reply in time.
+    /// Number of tries without a complete reply in time.
     pub time_outs: u64,
-    /// Replies with a wrong checksum.
+    /// Number of replies with a wrong checksum.
     pub checksum_errors: u64,
-    /// Replies with any other defect.
+    /// Number of replies with any other defect.
     pub other_errors: u64,
-    /// Replies in which the module refused the command.
+    /// Number of replies in which the module refused the command.
     pub refusals: u64,
-    /// Times that the reset status was set: power-on, or reset by the module's own watchdog.
+    /// Number of reads that found the reset status set: the module was powered on, or reset by its own watchdog.
     pub resets: u64,
-    /// Time from the end of the request to the start of the reply, without wire time.
+    /// Times from the end of the request to the start of the reply, computed without the time on the wire.
     pub latency: Histogram,
 }
 
@@ -72,7 +72,7 @@ pub struct ModuleHealth {
 #[derive(Debug, Clone, Default)]
 pub struct Health {
     modules: BTreeMap<Address, ModuleHealth>,
-    /// Times that the line lost its port.
+    /// Number of times that the line lost its port.
     pub ports_lost: u64,
 }
 
@@ -84,7 +84,7 @@ impl Health {
             .map(|(address, health)| (*address, health))
     }
 
-    /// Returns `None` when the module never received a request.
+    /// Returns the health of one module; `None` when it never received a request.
     pub fn module(&self, address: Address) -> Option<&ModuleHealth> {
         self.modules.get(&address)
     }

@@ -34,32 +34,33 @@
 //!
 //! # A transaction
 //!
-//! 1. The line discards the bytes that wait in the input, since they belong to no request.
+//! 1. The line discards the bytes that wait in the input, because they belong to no request.
 //! 2. It writes the request. The reply must be complete within wire(request) + wire(longest reply) + allowance.
-//! 3. It rests for the turnaround (two characters). A byte during the rest shows a second sender: the line rejects the
-//!    reply.
-//! 4. After a time-out or damage it resynchronises. It asks the module for its name: the `!AA` reply proves that no
-//!    older reply is on its way. Without it the line must fall silent for the longest reply time and the grace for
-//!    late replies, and for a second every reply that fits an outstanding one needs a confirmation: `>` replies carry
-//!    no address, and a late one looks like the next.
-//! 5. It reads twice from an address on probation, whose replies were damaged: a checksum misses one error in 256.
+//! 3. It rests for the turnaround (two characters). A byte during the rest reveals a second sender: the line rejects
+//!    the reply.
+//! 4. After a time-out or damage it resynchronises: it asks the module for its name, and the `!AA` reply proves that no
+//!    older reply is on its way. When the module does not answer, the line must fall silent for the longest reply time
+//!    plus the grace for late replies; for one second after that, every reply that an earlier request could have caused
+//!    needs a confirmation, because `>` replies carry no address and a late one looks like the next.
+//! 5. It reads twice from an address on probation, that is, one whose replies were damaged: a checksum misses one error
+//!    in 256.
 //! 6. It repeats only commands that change nothing, at most as often as the request allows.
-//! 7. Before it writes a setting to an EEPROM it reads it, and skips the write if the module has it already.
+//! 7. Before it writes a setting to an EEPROM, it reads the setting and skips the write if the value is there already.
 //!
-//! A line that never falls silent answers [`LineError::NeverSilent`]. A lost port answers [`LineError::PortLost`] after
-//! the time of a silent module, and is reopened with back-off.
+//! A line that does not fall silent answers [`LineError::NeverSilent`]. A line whose port is lost answers
+//! [`LineError::PortLost`], after the time that a silent module would take, and reopens the port at growing intervals.
 //!
-//! # Map
+//! # Files
 //!
-//! | file | idea |
+//! | file | what it does |
 //! |---|---|
-//! | `line.rs` | the task: tries, repetitions, reopening |
-//! | `transaction.rs`, `exchange.rs` | one transaction, which drops late replies; its bytes |
-//! | `outstanding.rs` | late replies: those that may still arrive |
-//! | `probation.rs` | addresses whose replies need confirmation |
+//! | `line.rs` | the task of a line: tries, repetitions, reopening |
+//! | `transaction.rs`, `exchange.rs` | one transaction, which drops late replies; the bytes of it |
+//! | `outstanding.rs` | remembers replies that may still arrive late |
+//! | `probation.rs` | remembers addresses whose replies need confirmation |
 //! | `pace.rs` | rig time on tokio's timers, real or virtual |
-//! | `settings.rs`, `wire.rs` | time-outs and the time of characters |
-//! | `trace.rs`, `recorded.rs`, `health.rs`, `log.rs` | the last bytes, their text format, counts by module |
+//! | `settings.rs`, `wire.rs` | time-outs, and the time that characters take |
+//! | `trace.rs`, `recorded.rs`, `health.rs`, `log.rs` | the last bytes, their text format, counts by module, shared log |
 //! | `port.rs`, `raw.rs` | serial ports; single frames for tools |
 
 mod answer;

@@ -1,4 +1,4 @@
-//! The task of a line: takes requests and returns answers, one at a time and in order.
+//! The task of a line: takes one request at a time and returns the answers in the same order.
 
 use super::exchange::{Exchange, Frame};
 use super::from_streams;
@@ -23,8 +23,8 @@ pub async fn run(
     run_reopening(once, settings, pace, requests, answers).await;
 }
 
-/// Serves requests as [`run`] does, over ports that it opens itself: the first at the first request, the next at most once
-/// per back-off time after a loss.
+/// Serves requests as [`run`] does, over ports that it opens itself: one at the first request, and after a loss another
+/// one, at most once per back-off time.
 pub async fn run_reopening(
     open: OpenPort,
     settings: LineSettings,
@@ -79,7 +79,7 @@ struct Line {
     lost_because: PortError,
 }
 
-/// One try: start, end and outcome.
+/// One try: when it began and ended, and its outcome.
 struct Try {
     requested_at: RigTime,
     answered_at: RigTime,
@@ -87,8 +87,8 @@ struct Try {
 }
 
 impl Line {
-    /// Writes a setting only if the module does not have it already, because the EEPROM of a module wears. Writes it
-    /// too if the module cannot report it.
+    /// Serves a request. Writes a setting only if the module does not have this value already, because EEPROMs wear;
+    /// writes it too if the module cannot report the value.
     async fn serve(&mut self, request: Request) -> Answer {
         let Some(setting) = request.command.setting() else {
             return self.carry_out(request).await;
@@ -202,8 +202,8 @@ impl Line {
             .await
     }
 
-    /// Opens the port if there is none. Without a port a request takes as long as with a silent module, so that no
-    /// caller spins.
+    /// Opens the port if none is open. Without a port a request takes as long as with a silent module, so that a caller
+    /// that repeats requests does not spin.
     async fn reopened(&mut self, command: &Command) -> Result<(), Trouble> {
         if self.port.is_some() {
             return Ok(());
@@ -224,7 +224,7 @@ impl Line {
         Err(Trouble::NoPort)
     }
 
-    /// Drops the port. The line reopens it after the back-off, which doubles until a transaction succeeds.
+    /// Drops the port. The line reopens it after the back-off time, which doubles until a transaction succeeds.
     fn lost(&mut self, reason: PortError) {
         self.port = None;
         self.lost_because = reason;
@@ -279,7 +279,7 @@ impl Line {
     }
 }
 
-/// Returns true for a read whose failure a repetition may cure.
+/// Returns true when the command only reads and a repetition may cure its failure.
 fn may_repeat(command: &Command, outcome: &Result<Reply, LineError>) -> bool {
     command.repeatable()
         && match outcome {

@@ -1,9 +1,9 @@
-//! Trace and health of a line, shared between the line's task and its readers.
+//! Trace and health of a line; the task of the line writes them and others read them.
 
 use super::{Health, Trace};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A shared handle: clones refer to the same records. Holds its lock for one entry, never across an await.
+/// A shared handle: all clones refer to the same records. The lock is held for one entry, never across an await.
 #[derive(Debug, Clone, Default)]
 pub struct LineLog(Arc<Mutex<Records>>);
 
@@ -14,7 +14,7 @@ pub(super) struct Records {
 }
 
 impl LineLog {
-    /// Makes a log that keeps the last `entries` pieces of traffic.
+    /// Creates a log whose trace keeps the last `entries` pieces of traffic.
     pub fn with_trace(entries: usize) -> Self {
         Self(Arc::new(Mutex::new(Records {
             trace: Trace::with_capacity(entries),
@@ -22,7 +22,7 @@ impl LineLog {
         })))
     }
 
-    /// Returns a copy of the last traffic.
+    /// Returns a copy of the trace: the last traffic.
     pub fn trace(&self) -> Trace {
         self.records().trace.clone()
     }
@@ -32,13 +32,13 @@ impl LineLog {
         self.records().trace.fingerprint()
     }
 
-    /// Returns a copy of the counts.
+    /// Returns a copy of the counts of each module.
     pub fn health(&self) -> Health {
         self.records().health.clone()
     }
 
     pub(super) fn records(&self) -> MutexGuard<'_, Records> {
-        // Records are plain counts, valid even after the holder of the lock panicked.
+        // The records are plain counts, which stay valid even if the holder of the lock panicked.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

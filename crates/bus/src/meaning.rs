@@ -1,8 +1,8 @@
-//! Decodes replies; the meaning of a reply depends on its request.
+//! Puts replies into words; what a reply means depends on its request.
 
 use super::{Direction, Entry};
 
-/// Decodes replies into words; keeps the last request.
+/// Puts replies into words; remembers the last request for that.
 #[derive(Debug)]
 pub struct Meaning {
     checksum: bool,
@@ -10,7 +10,7 @@ pub struct Meaning {
 }
 
 impl Meaning {
-    /// Starts without a request; `checksum`: frames of the line carry one.
+    /// Creates a decoder that has seen no request; `checksum` says whether frames of the line carry one.
     pub fn new(checksum: bool) -> Self {
         Self {
             checksum,
@@ -18,7 +18,7 @@ impl Meaning {
         }
     }
 
-    /// Returns the meaning of a reply; empty for a request.
+    /// Returns the meaning of a reply in words; an empty text for a request.
     pub fn of(&mut self, entry: &Entry) -> String {
         match entry.direction {
             Direction::Sent => {

@@ -1,42 +1,42 @@
-//! Replies that may still be on their way.
+//! Remembers replies that may still be on their way.
 //!
-//! A `>` reply and the bits of a digital module carry no address. After a time-out one of them may arrive late and
-//! look like the answer to the next request. The line excludes this in two ways:
+//! A `>` reply and the bits of a digital module carry no address. After a time-out such a reply may arrive late and
+//! look like the answer to the next request. The line prevents that in two ways:
 //!
-//! 1. It sends the silent module an identification request ([`OutstandingReplies::identification`]), whose reply names
-//!    the module. A module serves its requests in order, so this reply proves that nothing older is on its way. An
-//!    identification request without an answer in time is outstanding too: its reply may arrive after a later request
-//!    timed out, and proves nothing about that one. So the line attributes a reply to the oldest request that it fits,
-//!    and prefers an identification request that is not outstanding.
+//! 1. It asks the silent module for its name ([`OutstandingReplies::identification`]). A module serves its requests in
+//!    order, so the reply, which names the module, proves that nothing older is on its way. A request for the name that
+//!    is not answered in time is outstanding too: its reply may arrive after a later request timed out, and then proves
+//!    nothing about that later one. So the line attributes a reply to the oldest request that it fits, and prefers a
+//!    request for the name that is not outstanding.
 //! 2. If the module does not name itself, its reply stays outstanding for [`HORIZON`]. During that time the line
-//!    accepts a reply of the same form only when the module repeats it and then names itself, with no other bytes
-//!    between. A write must not be repeated, so the line rejects its reply.
+//!    accepts a reply of the same form only when the module repeats this reply and then names itself, with no other
+//!    bytes in between. A write must not be repeated, so the line rejects the reply to a write.
 
 use dcon::{Address, Command, Common};
 use units::{RigTime, Span};
 
-/// How late after its time-out a reply may arrive. Clients of these modules allow one second at most, and no module is
-/// known to need it.
+/// Longest time after its time-out at which a reply may still arrive. Clients of these modules allow at most one
+/// second, and no module is known to need that.
 const HORIZON: Span = Span::ms(1_000);
 
-/// Bound on the outstanding replies: each costs a time-out, and expires after the horizon.
+/// Most outstanding replies. The number stays small, because each costs a time-out and is dropped after [`HORIZON`].
 const MOST_OUTSTANDING: usize = 10_000;
 
-/// Identification requests: every module has them, they change nothing, their replies name the module and differ in
-/// form: three bytes in hex, a product, a version.
+/// Commands that ask a module for its identity. Every module has them, and they change nothing. Their replies name the
+/// module and differ in form: three bytes in hexadecimal, a version, a product name.
 const IDENTIFICATIONS: [Common; 3] = [Common::ReadConfig, Common::ReadFirmware, Common::ReadName];
 
-/// Returns the first identification request; its time-out applies to the others too.
+/// Returns the first of these commands; its time-out applies to the others too.
 pub(super) fn identification(to: Address) -> Command {
     IDENTIFICATIONS[0].to(to)
 }
 
-/// Requests without an answer, each with its expiry, oldest first; few, because each costs a time-out.
+/// Requests without an answer, oldest first, each with the time at which it is dropped.
 #[derive(Debug, Default)]
 pub(super) struct OutstandingReplies(Vec<(Command, RigTime)>);
 
 impl OutstandingReplies {
-    /// Adds `command`, unanswered at `now`.
+    /// Adds `command`, which has no answer at the time `now`.
     pub(super) fn add(&mut self, command: Command, now: RigTime) {
         self.0.retain(|(_, until)| *until > now);
         let latest = self.0.last().map(|(_, until)| *until);
@@ -48,7 +48,7 @@ impl OutstandingReplies {
         self.0.push((command, now + HORIZON));
     }
 
-    /// Returns an identification request, if possible one that is not outstanding.
+    /// Returns a command that asks the module for its identity; if possible, one that is not outstanding.
     pub(super) fn identification(&self, to: Address) -> Command {
         let mut requests = IDENTIFICATIONS.into_iter().map(|request| request.to(to));
         requests
@@ -61,8 +61,9 @@ impl OutstandingReplies {
         self.0.iter().any(|(request, _)| request == command)
     }
 
-    /// Removes the requests that `frame` proves answered: if it names `module`, the oldest that it fits and all older
-    /// ones of that module. Returns false when it names another module or fits no outstanding request.
+    /// Removes the requests that `frame` proves to be answered: if the frame names `module`, the oldest request that it
+    /// fits and all older ones to this module. Returns false when it names another module, or fits no outstanding
+    /// request.
     pub(super) fn settle(&mut self, module: Address, frame: &[u8], with_checksum: bool) -> bool {
         let to_it = |request: &Command| request.address() == Some(module);
         let answered = |request: &Command| to_it(request) && fits(request, frame, with_checksum);
@@ -81,14 +82,14 @@ impl OutstandingReplies {
         true
     }
 
-    /// Returns true when `frame` fits an outstanding reply.
+    /// Returns true when `frame` may be the late reply to an outstanding request.
     pub(super) fn could_be(&self, frame: &[u8], with_checksum: bool, now: RigTime) -> bool {
         let mut open = self.0.iter().filter(|(_, until)| *until > now);
         open.any(|(request, _)| fits(request, frame, with_checksum))
     }
 }
 
-/// Returns true when `frame` is a reply to `request` or its refusal.
+/// Returns true when `frame` is a reply to `request`, or the refusal of it.
 fn fits(request: &Command, frame: &[u8], with_checksum: bool) -> bool {
     match request.decode(frame, with_checksum) {
         Ok(_) => true,
@@ -96,7 +97,7 @@ fn fits(request: &Command, frame: &[u8], with_checksum: bool) -> bool {
     }
 }
 
-/// Returns true for `!AA` and `?AA` frames, which name their module.
+/// Returns true for a frame that begins with `!AA` or `?AA`, where AA is the address of this module.
 fn names(Address(module): Address, frame: &[u8]) -> bool {
     let lead = matches!(frame.first(), Some(b'!' | b'?'));
     lead && frame.get(1..3) == Some(format!("{module:02X}").as_bytes())

@@ -1,8 +1,9 @@
-//! Rig time and the timers below it.
+//! Rig time, and the timers on which it runs.
 //!
-//! Real pace follows the wall clock. Virtual pace runs under tokio's paused clock: time jumps to the next deadline as
-//! soon as every task waits. Tokio's timers have a grain of one millisecond, too coarse for characters of 87 us; so in
-//! virtual pace *one microsecond of the rig is one millisecond of tokio*. Only this file knows the factor.
+//! At real pace, rig time follows the wall clock. At virtual pace it follows tokio's paused clock, which jumps to the
+//! next deadline as soon as every task waits. Tokio's timers have steps of one millisecond, too coarse for characters
+//! of 87 us; so at virtual pace *one microsecond of the rig is one millisecond of tokio*. Only this file knows this
+//! factor.
 
 use std::time::Duration;
 use tokio::time::{Instant, Sleep};
@@ -15,13 +16,13 @@ pub struct Pace {
     is_virtual: bool,
 }
 
-/// The last part of a real rest sleeps on the thread, because tokio's timer may be this late.
+/// How much earlier a wait at real pace wakes, to sleep the rest on the thread: tokio's timer may be this late.
 const FINE: Span = Span(2_000);
-/// Rig time between two pauses of a virtual clock that is held to the wall clock: half a frame of a screen.
+/// Rig time from one pause to the next when virtual time is slowed to the wall clock: half the time of a screen frame.
 const HOLD: Span = Span(10_000);
 
 impl Pace {
-    /// Returns a clock that follows the wall clock; its time 0 is now.
+    /// Returns a clock at real pace; its time 0 is now.
     pub fn real() -> Self {
         Self {
             began: Instant::now(),
@@ -29,7 +30,7 @@ impl Pace {
         }
     }
 
-    /// Returns a virtual clock; its time 0 is now. Needs a current-thread runtime with a paused clock.
+    /// Returns a clock at virtual pace; its time 0 is now. Needs a current-thread runtime whose clock is paused.
     pub fn virtual_time() -> Self {
         Self {
             began: Instant::now(),
@@ -37,12 +38,12 @@ impl Pace {
         }
     }
 
-    /// Returns true for virtual pace.
+    /// Returns true at virtual pace.
     pub fn is_virtual(&self) -> bool {
         self.is_virtual
     }
 
-    /// Returns the microseconds since the clock was made.
+    /// Returns the rig time: microseconds since the clock was created.
     pub fn now(&self) -> RigTime {
         let elapsed = self.began.elapsed();
         RigTime(if self.is_virtual {
@@ -52,7 +53,7 @@ impl Pace {
         } as u64)
     }
 
-    /// Returns a timer that fires at `until` or, in real pace, up to two milliseconds later; never earlier.
+    /// Returns a timer that fires at `until`; at real pace up to two milliseconds later, never earlier.
     pub fn sleep(&self, until: RigTime) -> Sleep {
         let since_began = if self.is_virtual {
             Duration::from_millis(until.0)
@@ -62,15 +63,15 @@ impl Pace {
         tokio::time::sleep_until(self.began + since_began)
     }
 
-    /// Waits until `until`; returns at once if it has passed.
+    /// Waits until `until`; returns at once if that time has passed.
     pub async fn sleep_until(&self, until: RigTime) {
         if self.now() < until {
             self.sleep(until).await;
         }
     }
 
-    /// Waits as [`Pace::sleep_until`] does, in real pace accurate to about 0.1 ms because the last two milliseconds
-    /// block the thread. For turnarounds.
+    /// Waits as [`Pace::sleep_until`] does, but at real pace to about 0.1 ms, because the last two milliseconds block
+    /// the thread. Serves for turnarounds.
     pub async fn rest_until(&self, until: RigTime) {
         if self.is_virtual {
             return self.sleep_until(until).await;
@@ -84,8 +85,8 @@ impl Pace {
         }
     }
 
-    /// Keeps virtual time from passing faster than `speed` times the wall clock; never returns. A busy machine slows
-    /// the rig down, and the clock does not catch up afterwards.
+    /// Slows virtual time to at most `speed` times the wall clock; never returns. When a busy machine slows the rig
+    /// down further, virtual time does not catch up afterwards.
     pub async fn limit_speed(self, speed: f64) {
         assert!(
             speed > 0.0 && speed.is_finite(),

@@ -1,4 +1,4 @@
-//! The port of a line, and serial ports with errors that name the remedy.
+//! The port of a line, and serial ports whose errors tell the remedy.
 
 use std::io;
 use std::path::Path;
@@ -8,15 +8,15 @@ use tokio_serial::{
     DataBits, ErrorKind, FlowControl, Parity, SerialPortBuilderExt, SerialStream, StopBits,
 };
 
-/// Byte stream to the modules of a line.
+/// Stream of bytes to and from the modules of a line.
 pub trait Port: AsyncRead + AsyncWrite + Unpin + Send {}
 
 impl<P: AsyncRead + AsyncWrite + Unpin + Send> Port for P {}
 
-/// Opens the port of a line, at the start and after a loss.
+/// Function that opens the port of a line, at the start and again after a loss.
 pub type OpenPort = Box<dyn FnMut() -> Result<Box<dyn Port>, PortError> + Send>;
 
-/// Returns a port from a source of ready-made streams; the port is gone when the source has none.
+/// Returns a function that opens the streams of `next` one after another; it fails once `next` has no more.
 pub fn from_streams<P: Port + 'static>(
     mut next: impl FnMut() -> Option<P> + Send + 'static,
 ) -> OpenPort {
@@ -26,7 +26,7 @@ pub fn from_streams<P: Port + 'static>(
     })
 }
 
-/// Why the line has no usable port.
+/// Reason why the line has no usable port.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum PortError {
     /// The device does not exist.
@@ -47,7 +47,8 @@ pub enum PortError {
         /// Path as configured.
         path: String,
     },
-    /// The device exists but is no serial port, or refuses 8N1 at this rate.
+    /// The device exists but is not a serial port, or refuses this rate with 8 data bits, no parity and 1 stop bit
+    /// (8N1).
     #[error("serial port {path} cannot be used at {baud} baud: {reason}")]
     Unusable {
         /// Path as configured.
@@ -57,18 +58,18 @@ pub enum PortError {
         /// Reason from the operating system.
         reason: String,
     },
-    /// The port was open and failed.
+    /// The port was open and then failed.
     #[error("the port went away: {kind}")]
     Broken {
-        /// Error from the operating system; `UnexpectedEof` when the other side closed the port.
+        /// Kind of error from the operating system; `UnexpectedEof` when the other side closed the port.
         kind: io::ErrorKind,
     },
-    /// A ready-made stream ended; it cannot be opened a second time.
+    /// A ready-made stream ended; there is no further one to open.
     #[error("the stream ended and cannot be opened again")]
     Gone,
 }
 
-/// Opens `path` as 8N1 without flow control, for this program alone. Panics outside a tokio runtime with I/O.
+/// Opens `path` for this program alone: 8N1, no flow control. Panics outside a tokio runtime with I/O.
 pub fn open_serial(path: &str, baud: u32) -> Result<SerialStream, PortError> {
     tokio_serial::new(path, baud)
         .data_bits(DataBits::Eight)
@@ -86,7 +87,7 @@ fn port_error(path: &str, baud: u32, error: &tokio_serial::Error) -> PortError {
     match error.kind {
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => PortError::Denied { path },
         _ if !exists => PortError::Missing { path },
-        // The system reports both the terminal's exclusive mode and the file lock as this.
+        // The system reports this kind for the exclusive mode of a terminal and for a file lock alike.
         ErrorKind::NoDevice => PortError::Taken { path },
         ErrorKind::InvalidInput | ErrorKind::Unknown | ErrorKind::Io(_) => PortError::Unusable {
             path,
@@ -96,7 +97,7 @@ fn port_error(path: &str, baud: u32, error: &tokio_serial::Error) -> PortError {
     }
 }
 
-/// Returns what opens the serial port at `path`, a device or a link to one, at `baud` bits per second.
+/// Returns a function that opens the serial port at `path` (a device or a link to one) at `baud` bits per second.
 pub fn serial_port(path: String, baud: u32) -> OpenPort {
     Box::new(move || Ok(Box::new(open_serial(&path, baud)?)))
 }

@@ -1,4 +1,4 @@
-//! Sends one raw frame, for tools: the line does not know the command, so it repeats and checks nothing.
+//! Sends one raw frame, for tools. The command is not known here, so nothing is repeated or checked.
 
 use super::exchange::{Exchange, Frame, FrameEnd};
 use super::{LineSettings, Pace, Port};
@@ -6,21 +6,21 @@ use dcon::FRAME_LIMIT;
 use std::io;
 use units::Span;
 
-/// The bytes received.
+/// The bytes received in reply.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RawReply {
     /// Bytes of the frame, CR included; empty when none came in time.
     pub bytes: Vec<u8>,
     /// True when more bytes followed the frame.
     pub more: bool,
-    /// Time from the first character sent to the last received, or to the time-out.
+    /// Time from the first character sent to the last one received, or to the time-out.
     pub taken: Span,
 }
 
-/// Sends `request`, which includes its CR, and waits for a frame as long as the slowest module may take.
+/// Sends `request`, which must include its CR, and waits for a frame as long as the slowest module may take.
 ///
 /// # Errors
-/// Returns the error of the port.
+/// Fails when the port does.
 pub async fn send_raw(
     port: &mut dyn Port,
     settings: &LineSettings,

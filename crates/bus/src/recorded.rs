@@ -1,4 +1,4 @@
-//! A trace as text: a file stored with an alarm, which `bus monitor` and tests read back.
+//! A trace as text: the file that is stored with an alarm. `bus monitor` and tests read it back.
 //!
 //! ```text
 //! # line motion 115200 checksum
@@ -6,15 +6,15 @@
 //! 1207904 < >0F0034\r
 //! 1207990 ~ \x00U
 //! ```
-//! Each row starts with the rig time in microseconds; `>` marks bytes sent, `<` a reply, `~` discarded bytes.
-//! Non-printable bytes are written as `\r` or `\xNN`, the backslash as `\\`.
+//! Each row begins with the rig time in microseconds; `>` marks bytes sent, `<` a reply, `~` bytes that were discarded.
+//! Non-printable bytes are written as `\r` or `\xNN`, a backslash as `\\`.
 
 use super::trace::{Direction, Entry, Trace};
 use std::fmt::Write;
 use thiserror::Error;
 use units::RigTime;
 
-/// Traffic of a line with the settings needed to decode it.
+/// Traffic of a line, with the settings needed to decode it.
 #[derive(Debug, Clone)]
 pub struct Recorded {
     /// Name of the line, one word.
@@ -27,20 +27,20 @@ pub struct Recorded {
     pub entries: Vec<Entry>,
 }
 
-/// Why a text is no trace.
+/// Error: a text is not a trace.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("line {row}: found \"{found}\", expected {expected}")]
 pub struct RecordedError {
-    /// Row of the text, from 1.
+    /// Number of the faulty row, from 1.
     pub row: usize,
-    /// Text of the row.
+    /// Text of this row.
     pub found: String,
     /// Format that the row should have.
     pub expected: &'static str,
 }
 
 impl Recorded {
-    /// Copies the entries of `trace`.
+    /// Takes the entries of `trace`, and stores these settings with them.
     pub fn of(trace: &Trace, line: &str, baud: u32, checksum: bool) -> Self {
         Self {
             line: line.to_owned(),
@@ -50,7 +50,7 @@ impl Recorded {
         }
     }
 
-    /// Writes the text format of this module.
+    /// Returns the traffic in the text format above.
     pub fn text(&self) -> String {
         let checksum = if self.checksum { "checksum" } else { "plain" };
         let mut out = format!("# line {} {} {checksum}\n", self.line, self.baud);
@@ -61,7 +61,7 @@ impl Recorded {
         out
     }
 
-    /// Reads the text format of this module.
+    /// Reads a text in the format above.
     pub fn parse(text: &str) -> Result<Self, RecordedError> {
         let mut rows = text.lines().enumerate();
         let head = rows.next().map_or("", |(_, row)| row);
@@ -115,7 +115,7 @@ fn entry(row: &str) -> Option<Entry> {
     Entry::new(RigTime(at.parse().ok()?), direction, &unescaped(bytes)?)
 }
 
-/// Returns the sign of a direction in the text format.
+/// Returns the character that marks a direction in the text format.
 pub fn arrow(direction: Direction) -> char {
     match direction {
         Direction::Sent => '>',

@@ -1,39 +1,39 @@
-//! Settings of a line, and the time-outs that follow from them.
+//! Settings of a line, and the time-outs computed from them.
 
 use super::outstanding::identification;
 use super::{LineLog, Wire};
 use dcon::{Address, Command, Common};
 use units::Span;
 
-/// Settings of one line. A field that is a time has its unit as suffix.
+/// Settings of one line. The name of a time ends with its unit.
 #[derive(Debug, Clone)]
 pub struct LineSettings {
-    /// Name of the line, as in the wiring.
+    /// Name of the line, as the wiring gives it.
     pub name: String,
-    /// Bits per second, 8N1.
+    /// Bits per second (8 data bits, no parity, 1 stop bit).
     pub baud: u32,
-    /// True when frames carry checksums. Without them a damaged digit passes unnoticed.
+    /// True when frames carry checksums. Without them a damaged digit goes unnoticed.
     pub checksum: bool,
-    /// Time a digital module may take to start its reply; modules take 2 ms, for `~AARD` up to 30.
+    /// Longest time for which a digital module may delay its reply. Modules take 2 ms, for `~AARD` up to 30 ms.
     pub digital_allowance_ms: u64,
-    /// Time an analog input may take, as it may be in the middle of a conversion.
+    /// Longest time for which an analog input may delay its reply; it may be in the middle of a conversion.
     pub analog_allowance_ms: u64,
-    /// Time a module may take that writes its EEPROM or changes its configuration.
+    /// Longest time for which a module may delay its reply while it writes its EEPROM or changes its configuration.
     pub store_allowance_ms: u64,
-    /// Time after the time-out in which a late reply may still begin; part of the silence required after trouble.
+    /// Time after the time-out during which a late reply may still begin; part of the silence required after trouble.
     pub late_reply_ms: u64,
-    /// Rest between a reply and the next request, in characters.
+    /// Rest between a reply and the next request, in times of one character.
     pub turnaround_characters: u8,
-    /// Wait before the first attempt to reopen a lost port; doubles with each failure.
+    /// Wait before the first attempt to reopen a lost port; it doubles with each failure.
     pub reopen_first_ms: u64,
     /// Longest wait between two attempts to reopen the port.
     pub reopen_longest_ms: u64,
-    /// Trace and counts of the line, shared with their readers.
+    /// Log of the line: its trace and counts, which others may read.
     pub log: LineLog,
 }
 
 impl LineSettings {
-    /// Returns the usual times, 8N1 with checksum.
+    /// Returns settings with checksum and the usual times.
     pub fn new(name: &str, baud: u32) -> Self {
         Self {
             name: name.to_owned(),
@@ -50,7 +50,7 @@ impl LineSettings {
         }
     }
 
-    /// Returns the speed of the line.
+    /// Returns the speed of the line, which gives the time of characters.
     pub fn wire(&self) -> Wire {
         Wire { baud: self.baud }
     }
@@ -60,12 +60,12 @@ impl LineSettings {
         self.wire().time(usize::from(self.turnaround_characters))
     }
 
-    /// Returns the time from the first character of the request to the latest end of the reply.
+    /// Returns the longest time from the first character of the request to the end of the reply.
     pub fn time_out(&self, command: &Command) -> Span {
         self.request_time(command) + self.reply_limit(command)
     }
 
-    /// Returns the time-out for a request of known length.
+    /// Returns the same time for a request whose number of characters is known.
     pub(super) fn time_out_of(&self, command: &Command, request_characters: usize) -> Span {
         self.wire().time(request_characters) + self.reply_limit(command)
     }
@@ -74,19 +74,19 @@ impl LineSettings {
         self.longest_reply_time(command) + Span::ms(self.allowance_ms(command))
     }
 
-    /// Returns the silence that the line requires after trouble with `command`.
+    /// Returns how long the line must be silent after trouble with `command`.
     pub fn silence(&self, command: &Command) -> Span {
         self.longest_reply_time(command) + Span::ms(self.late_reply_ms)
     }
 
-    /// Returns how long the line asks a module for its name after trouble with `command`: as long as the required
+    /// Returns for how long the line asks a module for its name after trouble with `command`: as long as the required
     /// silence, and at least one time-out.
     pub(super) fn resynchronisation_limit(&self, command: &Command, address: Address) -> Span {
         self.silence(command)
             .max(self.time_out(&identification(address)))
     }
 
-    /// Returns the time of the request on the wire.
+    /// Returns how long the request takes on the wire.
     pub fn request_time(&self, command: &Command) -> Span {
         let mut request = Vec::with_capacity(24);
         command.encode(self.checksum, &mut request);
@@ -109,10 +109,10 @@ impl LineSettings {
     }
 }
 
-/// Returns the longest time that one try of any of `commands` can occupy the line; zero for no commands. The worst
-/// case is a reply that needs confirmation: two answers at the last moment (or three prompt ones), then the restart
-/// check and a required silence that is broken once. A command that writes a setting reads it first. A request with
-/// several tries may take this time for each.
+/// Returns the longest time for which one try of any of `commands` can occupy the line; zero without commands. The
+/// worst case is a reply that needs confirmation: two answers at the last moment (or three prompt ones), then the
+/// request for the module's name and a required silence that is broken once. A command that writes a setting also reads
+/// it first. A request with several tries may take this time for each try.
 pub fn longest_transaction(settings: &LineSettings, commands: &[Command]) -> Span {
     let one = |command: &Command| match command.address() {
         Some(address) => {

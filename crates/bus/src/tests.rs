@@ -1,4 +1,4 @@
-//! Runs a line against scripted modules in virtual time.
+//! Tests: a line talks to scripted modules in virtual time.
 
 #![allow(clippy::unwrap_used)]
 
@@ -16,10 +16,10 @@ mod records;
 mod replay;
 mod steps;
 
-/// One piece of a module's reply: microseconds after the request arrived, and the bytes.
+/// One piece of a module's reply: its delay after the request, microseconds, and its bytes.
 type Say = (u64, &'static [u8]);
 
-/// The reply `>0000001E` with its checksum; below, another count.
+/// The reply `>0000001E` with its checksum: the count 30. Below: another count.
 const THIRTY: &[u8] = b">0000001ED4\r";
 const NINE: &[u8] = b">00000009C7\r";
 
@@ -45,8 +45,8 @@ fn in_virtual_time<F: Future>(test: F) -> F::Output {
         .block_on(test)
 }
 
-/// Answers the n-th request with the n-th entry of `script`, and nothing afterwards. Answers a request for its name
-/// after all other bytes; `script` and the returned requests do not contain those.
+/// Answers the n-th request with the n-th entry of `script`; leaves later requests unanswered. A request for its name
+/// it answers after all other bytes; neither `script` nor the returned requests contain those.
 async fn modules(mut stream: DuplexStream, pace: Pace, script: Vec<Vec<Say>>) -> Vec<String> {
     let mut sent = Vec::new();
     let mut script = script.into_iter();
@@ -66,7 +66,7 @@ async fn modules(mut stream: DuplexStream, pace: Pace, script: Vec<Vec<Say>>) ->
     sent
 }
 
-/// Returns the reply to a request for a name, with configuration word, version or name; `None` for other requests.
+/// Returns the reply to a request for configuration, firmware version or name; `None` for any other request.
 fn named(request: &str) -> Option<String> {
     let address = request.strip_prefix('$')?.get(..2)?;
     let told = match (request.len(), request.as_bytes().get(3)?) {
@@ -153,7 +153,7 @@ fn a_reply_may_come_in_pieces() {
 fn a_late_reply_never_counts_for_the_next_request() {
     let limit = settings().time_out(&count()).0;
     let grace = settings().silence(&count()).0;
-    // At every hundredth of the time from the deadline to the end of the required silence.
+    // A reply at each hundredth of the time from the deadline to the end of the required silence.
     for late in (0..100).map(|part| limit + 1 + part * (grace - 2) / 100) {
         let script = vec![vec![(late, THIRTY)], vec![(2_000, NINE)]];
         let (got, sent) =
@@ -312,7 +312,7 @@ fn a_line_that_never_falls_silent_gets_no_request() {
         .iter()
         .filter(|a| matches!(a.outcome, Err(LineError::NeverSilent { .. })))
         .count();
-    // After the babble the line asks each of the others twice.
+    // After the stray bytes the line asks each of the others twice.
     assert!(unsent > 0 && sent.len() < 2 * (10 - unsent), "{sent:?}");
     for pair in got.windows(2) {
         assert!(

@@ -1,4 +1,4 @@
-//! The last bytes of a line, with their times.
+//! The last bytes on a line, with their times.
 
 use dcon::FRAME_LIMIT;
 use std::collections::VecDeque;
@@ -9,7 +9,7 @@ use units::RigTime;
 pub enum Direction {
     /// Sent by the line.
     Sent,
-    /// Received as a reply, or as the start of one.
+    /// Received as a reply, or as the beginning of one.
     Received,
     /// Received without a request, and discarded.
     Stray,
@@ -18,7 +18,7 @@ pub enum Direction {
 /// A piece of traffic, at most one frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Entry {
-    /// Time at which the bytes were sent, or were received.
+    /// Time at which the bytes were sent or received.
     pub at: RigTime,
     /// Direction of the bytes.
     pub direction: Direction,
@@ -27,7 +27,7 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// Returns `None` for more bytes than a frame has.
+    /// Creates an entry; returns `None` for more bytes than a frame has.
     pub fn new(at: RigTime, direction: Direction, bytes: &[u8]) -> Option<Self> {
         let mut entry = Self {
             at,
@@ -45,7 +45,7 @@ impl Entry {
     }
 }
 
-/// A bounded ring of entries, and a fingerprint of all bytes so far.
+/// A ring of the last entries, and a fingerprint of all bytes so far.
 #[derive(Debug, Clone)]
 pub struct Trace {
     ring: VecDeque<Entry>,
@@ -55,7 +55,7 @@ pub struct Trace {
 }
 
 impl Default for Trace {
-    /// Returns a trace of a thousand entries, some seconds of a busy line.
+    /// Returns a trace of the last thousand entries: some seconds of a busy line.
     fn default() -> Self {
         Self::with_capacity(1000)
     }
@@ -73,7 +73,7 @@ impl Trace {
         }
     }
 
-    /// Adds bytes; longer pieces take several entries.
+    /// Adds bytes; more bytes than a frame has become several entries.
     pub(super) fn add(&mut self, at: RigTime, direction: Direction, bytes: &[u8]) {
         for piece in bytes.chunks(FRAME_LIMIT) {
             self.stamp(direction, piece);
@@ -98,12 +98,12 @@ impl Trace {
         self.ring.iter()
     }
 
-    /// Returns a hash of all bytes with their order and direction, without times.
+    /// Returns a hash of all bytes so far, with their order and direction but without their times.
     pub fn fingerprint(&self) -> u64 {
         self.fingerprint
     }
 
-    /// Returns the number of bytes so far.
+    /// Returns the number of bytes added so far.
     pub fn byte_count(&self) -> u64 {
         self.bytes
     }

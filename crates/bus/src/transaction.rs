@@ -1,4 +1,12 @@
 //! One transaction on an open port, with the rest, the confirmation and the resynchronisation that belong to it.
+//!
+//! A late reply (one to an earlier request, which timed out) is dropped in three places:
+//!
+//! 1. before the request: [`Exchange::discard`] empties the input;
+//! 2. after the request: [`OutstandingReplies::could_be`] recognises a reply that may be late, and the transaction
+//!    rejects it unless [`Transaction::confirm`] proves that the module meant it;
+//! 3. while resynchronising: [`Transaction::resynchronise`] discards what arrives before the module names itself, or
+//!    before the line falls silent.
 
 use super::LineSettings;
 use super::exchange::{Exchange, Frame, FrameEnd, SilenceEnd};
@@ -9,7 +17,7 @@ use std::io;
 use std::mem::{replace, take};
 use units::RigTime;
 
-/// Why a try failed; the line adds its name and the command to make a [`super::LineError`].
+/// Reason why a try failed; the line adds its name and the command to make a [`super::LineError`].
 pub(super) enum Trouble {
     Reply(ReplyError),
     TimeOut,
@@ -44,7 +52,7 @@ pub(super) struct Times {
     pub(super) answered_at: Option<RigTime>,
 }
 
-/// A port with the state of the line behind it.
+/// A port, with what the line remembers about its modules.
 pub(super) struct Transaction<'a> {
     pub(super) exchange: Exchange<'a>,
     pub(super) settings: &'a LineSettings,
@@ -55,7 +63,7 @@ pub(super) struct Transaction<'a> {
 }
 
 impl Transaction<'_> {
-    /// Carries out `command`, encoded in `request`; leaves the bytes received in `frame`.
+    /// Carries out `command`, whose bytes are `request`; leaves the bytes received in `frame`.
     pub(super) async fn transact(
         &mut self,
         command: &Command,
@@ -119,8 +127,8 @@ impl Transaction<'_> {
         result
     }
 
-    /// Counts a whole answer towards the end of the address's probation and damage as its start. Silence and an echo
-    /// are no sign of a second module, and count as neither.
+    /// Counts a whole answer towards the end of the address's probation; starts the probation on a damaged one. Silence
+    /// and an echo do not show that a second module exists, so they change nothing.
     fn update_probation(
         &mut self,
         address: Address,
@@ -134,8 +142,8 @@ impl Transaction<'_> {
         }
     }
 
-    /// Repeats the command until one of the answers is plausible beside the others ([`Command::select_answer`]): a second
-    /// time, and a third if the module is prompt enough to answer three times in the time of two late answers.
+    /// Repeats the command until the answers agree well enough to choose one ([`Command::select_answer`]). It repeats
+    /// once, and once more if the module is prompt enough to answer three times within the time of two late answers.
     async fn read_again(
         &mut self,
         command: &Command,
@@ -188,7 +196,7 @@ impl Transaction<'_> {
         Ok(Reply::Sent)
     }
 
-    /// Sends the request, reads the reply, and checks that nothing follows in the rest.
+    /// Sends the request, reads the reply, and checks that nothing follows during the rest.
     async fn ask(
         &mut self,
         command: &Command,
@@ -209,14 +217,14 @@ impl Transaction<'_> {
         Err(Trouble::SecondReply)
     }
 
-    /// Waits for the turnaround; returns false when bytes arrived during it.
+    /// Waits for the turnaround; returns false when bytes arrived during it, and discards them.
     async fn rest(&mut self) -> io::Result<bool> {
         let over = self.now() + self.settings.turnaround();
         self.exchange.pace.rest_until(over).await;
         Ok(self.exchange.discard().await? == 0)
     }
 
-    /// Checks that the module repeats its reply and then names itself, with no other bytes between.
+    /// Returns true when the module repeats its reply and then names itself, with no other bytes in between.
     async fn confirm(
         &mut self,
         command: &Command,
@@ -238,8 +246,8 @@ impl Transaction<'_> {
         Ok(self.resynchronise(command, address).await? && same)
     }
 
-    /// Asks the module for its name until it answers, for as long as a required silence would last. Returns true when
-    /// it answered and no other bytes arrived. Replies of `address` not proved to have arrived stay outstanding.
+    /// Asks the module for its name until it answers, for as long as the required silence would last. Returns true when
+    /// it answered and no other bytes arrived. A reply of `address` that may still arrive stays outstanding.
     async fn resynchronise(
         &mut self,
         command: &Command,
@@ -250,8 +258,8 @@ impl Transaction<'_> {
         let mut alone = true;
         let limit = self.now() + self.settings.resynchronisation_limit(command, address);
         let name_time_out = self.settings.time_out(&identification(address));
-        // At least once: the clock advances between two lines of code. Each round lasts some microseconds or up to its
-        // time-out, so the limit ends the loop.
+        // At least one round, because the clock advances between two lines of code. Each round lasts from some
+        // microseconds to one time-out, so the limit ends the loop.
         let last_heard = loop {
             let ask_name = self.outstanding.identification(address);
             self.outstanding.add(ask_name, self.now());

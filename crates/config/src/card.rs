@@ -1,4 +1,4 @@
-//! Loading of `card.toml`.
+//! Loads `card.toml`.
 
 use super::check::File;
 use super::error::ConfigError;
@@ -6,10 +6,10 @@ use super::keys;
 use machine::dut::card::CardSettings;
 use std::path::Path;
 
-/// Reads and checks the figures of the plant for the process card.
+/// Reads and checks what the plant states for the process card.
 ///
 /// # Errors
-/// As [`super::Plant::load`].
+/// Fails as [`super::Plant::load`] does.
 pub fn load_card(dir: &Path) -> Result<CardSettings, ConfigError> {
     let file = File::read(
         dir.join("card.toml"),

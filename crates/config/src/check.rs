@@ -1,7 +1,7 @@
-//! Checks a file against its [`Form`]: all keys are known and present, all values have their type and range.
+//! Checks a file against its [`Form`]: every key is known and present, every value has its type and range.
 //!
-//! Rules between values (an address used twice, low above high) belong to the module that owns the settings, which reports
-//! a [`Fault`].
+//! Rules between values (an address used twice, low above high) belong to the module that owns the settings; that
+//! module reports a broken rule as a [`Fault`].
 
 use super::error::ConfigError;
 use super::nearest::{nearest, suggestion};
@@ -16,16 +16,16 @@ pub type Faults = Vec<ConfigError>;
 /// A parsed file.
 #[derive(Debug)]
 pub struct File {
-    /// Path in messages.
+    /// Path that messages name.
     pub path: PathBuf,
-    /// The whole text.
+    /// Content of the file.
     pub text: String,
-    /// Parsed text.
+    /// Tree of the parsed content.
     pub root: Node,
 }
 
 impl File {
-    /// Checks every key; fails for the first one that is missing or that `keys` does not allow.
+    /// Checks every key; fails on the first key that is missing or that `keys` does not allow.
     pub fn check(&self, keys: &[Key]) -> Result<(), ConfigError> {
         self.faults(keys).into_iter().next().map_or(Ok(()), Err)
     }
@@ -37,7 +37,7 @@ impl File {
         faults
     }
 
-    /// Adds file and line to a fault that another module has found.
+    /// Turns a fault that another module found into an error with file and line.
     pub fn locate(&self, fault: &Fault) -> ConfigError {
         if let Some((path, name)) = fault
             .key
@@ -72,7 +72,7 @@ impl File {
         }
     }
 
-    /// Returns a path in the notation of the file: `[module.rtd].type`, `golden[1].serial`, `[part].body_mm[2]`.
+    /// Returns a path as the file would write it: `[module.rtd].type`, `golden[1].serial`, `[part].body_mm[2]`.
     pub(super) fn label(&self, path: &str) -> String {
         let names: Vec<&str> = path.split('.').collect();
         let header = header_length(&self.root, &names);
@@ -131,7 +131,7 @@ impl File {
         self.needed(path, entries, &names, needed, faults);
     }
 
-    /// Checks entries of one form: all of `needed` must exist, others may when names are `free`.
+    /// Checks entries that all have one form: those in `needed` must exist; others may exist when names are `free`.
     fn named(
         &self,
         path: &str,

@@ -9,10 +9,10 @@ use serde_json::Value as NewValue;
 use std::collections::BTreeMap;
 use toml_edit::{Array, DocumentMut, Item, Value};
 
-/// Returns the text of a recipe with new `values` by path; null removes a key. The caller checks the new text.
+/// Returns the text of a recipe with new `values`, given by path; null removes a key. The caller checks the new text.
 ///
 /// # Errors
-/// The kind is unknown, the kind has no such path, or TOML has no such value.
+/// Fails when the kind is unknown, when the kind has no such path, or when TOML cannot express the value.
 pub(super) fn edited(
     file: &File,
     values: &BTreeMap<String, NewValue>,
@@ -55,7 +55,7 @@ fn known<'a>(file: &File, fields: &'a [Field], path: &str) -> Result<&'a Field, 
     })
 }
 
-/// Compares values; 9 equals 9.0.
+/// Returns true when both values are equal; 9 equals 9.0.
 fn equal_values(old: &NewValue, wanted: &NewValue) -> bool {
     match (old, wanted) {
         (NewValue::Number(old), NewValue::Number(wanted)) => old.as_f64() == wanted.as_f64(),
@@ -67,7 +67,8 @@ fn equal_values(old: &NewValue, wanted: &NewValue) -> bool {
     }
 }
 
-/// Converts to TOML; numbers become floats unless the entry takes whole numbers. Returns `None` for null and objects.
+/// Converts a value to TOML; numbers become floats unless the key takes whole numbers. Returns `None` for null and
+/// objects.
 fn as_toml(wanted: &NewValue, entry: &Entry) -> Option<Value> {
     match wanted {
         NewValue::String(text) => Some(text.as_str().into()),
@@ -88,7 +89,7 @@ fn as_toml(wanted: &NewValue, entry: &Entry) -> Option<Value> {
     }
 }
 
-/// Sets a value; a comment after the old one stays.
+/// Sets a value; keeps the comment that follows the old value.
 fn set(root: &mut Item, path: &str, mut value: Value) {
     let (tables, key) = split_path(path);
     let table = tables.fold(root, |item, key| &mut item[key]);
@@ -117,13 +118,13 @@ fn remove_key(root: &mut Item, path: &str) {
     }
 }
 
-/// Splits a path into the names of tables and the key in the last one.
+/// Splits a path into the names of its tables and the key in the innermost table.
 fn split_path(path: &str) -> (impl Iterator<Item = &str>, &str) {
     let (tables, key) = path.rsplit_once('.').unwrap_or(("", path));
     (tables.split('.').filter(|it| !it.is_empty()), key)
 }
 
-/// Restores the spaces of an inline table after a key was added or removed.
+/// Formats an inline table again after a key was added or removed.
 fn restore_spacing(table: &mut Item) {
     if let Some(inline) = table.as_inline_table_mut() {
         inline.fmt();
@@ -143,7 +144,7 @@ mod tests {
         edited(&file, &serde_json::from_value(values).unwrap())
     }
 
-    /// Lines that are not in the text before.
+    /// Returns the lines that the change adds to the text.
     fn new_lines(values: NewValue) -> Vec<String> {
         let text = changed(values).unwrap();
         let new = text

@@ -1,9 +1,9 @@
-//! Errors of a configuration: the file, and where known line, key, found, expected.
+//! Errors of a configuration: they name the file and, where known, line, key, what was found and what was expected.
 
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// The first fault that loading finds. Its text is one line for the operator.
+/// First fault that loading finds. Its text is one line, written for the operator.
 #[derive(Debug, Error)]
 pub enum ConfigError {
     /// The file is missing or cannot be read.
@@ -11,12 +11,12 @@ pub enum ConfigError {
     Unreadable {
         /// Path of the file.
         file: PathBuf,
-        /// Expected content of the file.
+        /// What the file should contain.
         expected: &'static str,
         /// Error of the operating system.
         source: std::io::Error,
     },
-    /// Not TOML: a stray character, a key given twice, an unclosed text.
+    /// The text is not TOML: a stray character, a key given twice, a string without end.
     #[error("{}:{line}: {problem}, expected valid TOML", file.display())]
     Syntax {
         /// Path of the file.
@@ -26,51 +26,51 @@ pub enum ConfigError {
         /// Message of the parser, in one line.
         problem: String,
     },
-    /// A key that is missing, unknown, of the wrong type, out of range or at odds with another.
+    /// A key is missing, unknown, of the wrong type, out of range, or contradicts another key.
     #[error("{}:{line}: {key}: found {found}, expected {expected}", file.display())]
     Value {
         /// Path of the file.
         file: PathBuf,
         /// Line of the key, or of the table in which it is missing; from 1.
         line: usize,
-        /// The key with its table, as `[analog_in].coil_voltage.channel`.
+        /// Key with its table, for example `[analog_in].coil_voltage.channel`.
         key: String,
-        /// The value in words.
+        /// Value found, in words.
         found: String,
         /// Accepted values.
         expected: String,
     },
-    /// A file breaks a rule of the module that owns it, for example `scene.toml` one of the guard.
+    /// A file breaks a rule of the module that owns its settings, for example `scene.toml` a rule of the guard.
     #[error("{}:{line}: {problem}", file.display())]
     Rule {
         /// Path of the file.
         file: PathBuf,
-        /// Line of the key; from 1.
+        /// Line of the key, from 1.
         line: usize,
         /// Message of that module: key, found, expected.
         problem: String,
     },
-    /// No recipe of that name.
+    /// No recipe has this name.
     #[error("{}: found no recipe \"{name}\", expected one of {}", dir.display(), list(known))]
     UnknownRecipe {
         /// Folder of the recipes.
         dir: PathBuf,
-        /// The name asked for.
+        /// Name that was asked for.
         name: String,
-        /// Existing recipes.
+        /// Names of the existing recipes.
         known: Vec<String>,
     },
-    /// No revision of that number.
+    /// The recipe has no revision with this number.
     #[error("recipe \"{name}\": found revision {number}, expected 1 to {newest}")]
     UnknownRevision {
         /// Name of the recipe.
         name: String,
-        /// The number asked for.
+        /// Number that was asked for.
         number: u32,
         /// Number of the newest revision.
         newest: u32,
     },
-    /// A change begins from a revision that is no longer the newest.
+    /// A change is based on a revision that is no longer the newest.
     #[error(
         "recipe \"{name}\": the revision that this change begins from is no longer the newest, which is {newest}; nothing was \
          saved"
@@ -87,7 +87,7 @@ pub enum ConfigError {
         /// Path of the file.
         file: PathBuf,
     },
-    /// A revision could not be written.
+    /// A new revision could not be written.
     #[error("{}: the new revision could not be written; the old one stays", file.display())]
     Unwritten {
         /// Path of the file.
@@ -98,7 +98,8 @@ pub enum ConfigError {
 }
 
 impl ConfigError {
-    /// Returns the path of the faulty key, `limits.operate_voltage_v.high`; `None` for faults of a whole file.
+    /// Returns the path of the faulty key, for example `limits.operate_voltage_v.high`; `None` for errors that
+    /// name no key.
     pub fn key(&self) -> Option<String> {
         match self {
             Self::Value { key, .. } => {

@@ -1,19 +1,23 @@
-//! Configuration: reads and checks the files of a plant and returns them as settings of the modules that own them.
+//! Configuration: reads and checks the files of a plant, and returns them as settings of the modules that own these.
 //!
 //! | file | holds | becomes |
 //! |---|---|---|
 //! | `rig.toml` | lines, modules, points, mechanism, references | [`Wiring`], the settings of `gauge` |
 //! | `scene.toml` | the bodies around the nest | `GuardSettings` |
 //! | `golden.toml` (named in `rig.toml`) | reference parts | `ReferenceSet` |
-//! | `card.toml` | figures of the plant for the process card | `CardSettings` |
-//! | `lot.toml`, which may be missing | gates of a lot | `LotSettings` |
-//! | `recipes/NAME.toml` | one kind of part | `Recipe` |
-//! | `recipes/revisions/NAME/N.toml` | earlier revisions of it | [`Revision`] |
+//! | `card.toml` | what the plant states for the process card | `CardSettings` |
+//! | `lot.toml`, which may be missing | gates of a lot: reference checks, reject-rate limit, first articles, wear limits | `LotSettings` |
+//! | `recipes/NAME.toml` | one type of part with its limits | `Recipe` |
+//! | `recipes/revisions/NAME/N.toml` | earlier revisions of that recipe | [`Revision`] |
 //!
-//! Loading has three steps, with messages of the form `file:line: key: found ..., expected ...`: the text must be TOML; every
-//! key must be known, present, of its type and in its range ([`check`], by the tables in [`keys`]); the values must fit
-//! together (an address used once, low not above high), which the module that owns the settings checks. The controller does
-//! not read `sim.toml`, which describes the simulated world.
+//! Loading has three steps, and a fault in any of them gives a message `file:line: key: found ..., expected ...`:
+//!
+//! 1. The text must be TOML.
+//! 2. Every key must be known, present, of its type and in its range ([`check`], by the tables in [`keys`]).
+//! 3. The values must fit together (no address used twice, low not above high); the module that owns the settings
+//!    checks that.
+//!
+//! The controller does not read `sim.toml`, which describes the simulated world.
 
 mod card;
 pub mod check;

@@ -1,4 +1,5 @@
-//! Loading of `lot.toml`. Without the file a lot has no gates.
+//! Loads `lot.toml`, the gates of a lot: reference checks, reject-rate limit, first articles, wear limits. Without the
+//! file a lot has none of them.
 
 use super::check::File;
 use super::error::ConfigError;

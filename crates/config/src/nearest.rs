@@ -1,8 +1,9 @@
-//! Suggestions for mistyped words.
+//! Suggests the known word that a mistyped one resembles.
 
 use strsim::levenshtein;
 
-/// Returns the nearest of `known` within an edit distance of a third of the word, at least 2.
+/// Returns the word in `known` that is nearest to `word`; `None` when that takes more edits than a third of its
+/// characters, or more than 2 in a short word.
 pub fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let reach = (word.chars().count() / 3).max(2);
     known
@@ -13,7 +14,7 @@ pub fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
         .map(|(_, candidate)| candidate)
 }
 
-/// Returns the suggestion of a message: the nearest word as a question.
+/// Returns the suggestion as a message shows it: the nearest word as a question.
 pub(super) fn suggestion(near: &str) -> String {
     format!("\"{near}\"?")
 }

@@ -1,4 +1,4 @@
-//! Loading of everything that does not depend on the recipe.
+//! Loads everything that does not depend on the recipe.
 
 use super::check::File;
 use super::error::ConfigError;
@@ -20,24 +20,24 @@ use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The checked configuration of a plant.
+/// Configuration of a plant, checked.
 #[derive(Debug, Clone)]
 pub struct Plant {
     /// Folder of the configuration.
     pub dir: PathBuf,
-    /// Lines, modules, points, mechanism.
+    /// Serial lines, modules, points and mechanism of the rig.
     pub wiring: Arc<Wiring>,
-    /// The bodies around the nest.
+    /// Bodies around the nest.
     pub scene: GuardSettings,
     /// References on the interface board, if it has any.
     pub reference: Option<ReferenceSettings>,
-    /// Accuracies before calibration.
+    /// Accuracies that hold before the rig is calibrated.
     pub accuracy: AccuracySettings,
-    /// Validity of a calibration.
+    /// How long a calibration stays valid.
     pub calibration: CalibrationSettings,
-    /// Reference parts; none where `rig.toml` names no file of them.
+    /// Reference parts; none when `rig.toml` names no file of them.
     pub reference_parts: ReferenceSet,
-    /// Gates of a lot.
+    /// Gates of a lot: reference checks, reject-rate limit, first articles, wear limits.
     pub lot: LotSettings,
     /// Patience with a history that cannot be written.
     pub history: HistorySettings,
@@ -73,7 +73,7 @@ impl Plant {
     /// Reads and checks the files of `dir`; opens no port and moves no actuator.
     ///
     /// # Errors
-    /// The first fault, with file, line, key, what was found and what was expected.
+    /// Fails on the first fault; the error names file, line, key, what was found and what was expected.
     pub fn load(dir: &Path) -> Result<Self, ConfigError> {
         let rig = File::read(dir.join("rig.toml"), "the wiring of the rig")?;
         let settings: RigSettings = rig.settings(keys::rig::FILE)?;
@@ -100,7 +100,7 @@ impl Plant {
         })
     }
 
-    /// Returns the wiring, references and accuracies that a kind of device measures with.
+    /// Returns wiring, references and accuracies: all of the rig that matters for a measurement.
     pub fn rig(&self) -> Rig<'_> {
         Rig {
             wiring: &self.wiring,
@@ -110,10 +110,10 @@ impl Plant {
         }
     }
 
-    /// Refuses a recipe that this plant lacks references for, or that its modules cannot measure.
+    /// Checks that this plant has the references and the modules that a recipe needs.
     ///
     /// # Errors
-    /// The first of [`infeasible`](Self::infeasible).
+    /// Fails with the first reason that [`infeasible`](Self::infeasible) returns.
     pub fn admit(&self, recipe: &Recipe) -> Result<(), ConfigError> {
         self.infeasible(recipe)
             .into_iter()
@@ -121,7 +121,7 @@ impl Plant {
             .map_or(Ok(()), Err)
     }
 
-    /// Returns every reason why this plant cannot perform a recipe, each with file, line, key and what forbids it.
+    /// Returns every reason why this plant cannot carry out a recipe, each with file, line, key and cause.
     pub fn infeasible(&self, recipe: &Recipe) -> Vec<ConfigError> {
         let faults = recipe.infeasible(&self.rig());
         let path = self
@@ -136,7 +136,7 @@ impl Plant {
 }
 
 impl File {
-    /// Reads and parses a file; `expected` names its content in the message for a missing file.
+    /// Reads and parses a file; when the file is missing, the message says that `expected` should be in it.
     pub fn read(path: PathBuf, expected: &'static str) -> Result<Self, ConfigError> {
         match std::fs::read_to_string(&path) {
             Ok(text) => Self::parse(path, text),
@@ -148,7 +148,7 @@ impl File {
         }
     }
 
-    /// Parses a text; messages name `path`.
+    /// Parses a text; messages name it as the file at `path`.
     pub fn parse(path: PathBuf, text: String) -> Result<Self, ConfigError> {
         match Node::parse(&text) {
             Ok(root) => Ok(Self { path, text, root }),
@@ -160,14 +160,14 @@ impl File {
         }
     }
 
-    /// Checks the file against its keys and deserialises it.
+    /// Checks the file against its keys and converts it to settings.
     pub fn settings<T: DeserializeOwned>(&self, keys: &[Key]) -> Result<T, ConfigError> {
         self.check(keys)?;
         toml::from_str(&self.text).map_err(|error| self.type_mismatch(&error))
     }
 }
 
-/// Loads the reference parts; no serial number may appear twice.
+/// Loads the reference parts; fails when a serial number appears twice.
 fn load_reference_parts(path: &Path) -> Result<ReferenceSet, ConfigError> {
     let file = File::read(path.to_owned(), "the reference parts")?;
     let set: ReferenceSet = file.settings(keys::golden::FILE)?;
@@ -198,7 +198,7 @@ pub(super) fn load_scene(path: &Path) -> Result<GuardSettings, ConfigError> {
     Ok(settings)
 }
 
-/// Checks that every place of the sort axis lies within its stroke in the scene.
+/// Checks that the scene allows the sort axis to reach each of its places.
 fn check_axis(wiring: &Wiring, scene: &GuardSettings, rig: &File) -> Result<(), ConfigError> {
     let Some(slide) = scene
         .actuator
@@ -228,7 +228,7 @@ fn check_axis(wiring: &Wiring, scene: &GuardSettings, rig: &File) -> Result<(), 
 }
 
 impl File {
-    /// Makes the error of a text that does not fit its settings type.
+    /// Makes the error for a text that does not fit its type of settings.
     fn type_mismatch(&self, error: &toml::de::Error) -> ConfigError {
         let fault = not_toml(&self.text, error);
         let key = self.label(&self.root.path_at(fault.line));
@@ -243,7 +243,7 @@ impl File {
         }
     }
 
-    /// Makes the error of a broken rule of the scene; its text begins with the path of the field.
+    /// Makes the error for a broken rule of the scene; the text of `error` begins with the path of the field.
     fn broken_rule(&self, error: &dyn std::error::Error) -> ConfigError {
         let mut problem = error.to_string();
         let path = problem

@@ -1,9 +1,9 @@
-//! Tables of `config/README.md`, generated from [`keys`](super::keys) for a test.
+//! Generates the tables of `config/README.md` from [`keys`](super::keys); a test compares them with the file.
 
 use machine::form::{Form, Key, Points};
 use std::fmt::Write;
 
-/// Returns a table row for each key of a file, parents first.
+/// Returns one table row for each key of a file; a table comes before its keys.
 pub fn rows(keys: &[Key]) -> String {
     let mut text = "| key | what it may be | read by | meaning |\n|---|---|---|---|\n".to_owned();
     write_rows("", keys, &mut text);
@@ -14,7 +14,7 @@ fn write_rows(path: &str, keys: &[Key], text: &mut String) {
     for key in keys {
         let own = format!("{path}{}", key.name);
         let left_out = if key.optional { ", or left out" } else { "" };
-        // Writing to a string cannot fail.
+        // Writing to a string always succeeds.
         let _ = writeln!(
             text,
             "| `{own}` | {}{left_out} | {} | {} |",

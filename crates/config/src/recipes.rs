@@ -1,4 +1,4 @@
-//! Loading of recipes: `recipes/NAME.toml`.
+//! Loads recipes: `recipes/NAME.toml`.
 
 use super::check::File;
 use super::error::ConfigError;
@@ -13,13 +13,13 @@ use std::path::{Path, PathBuf};
 /// Reads and checks the recipe `name` of the configuration in `dir`.
 ///
 /// # Errors
-/// The name is unknown, or a fault as of [`super::Plant::load`].
+/// Fails when no recipe has this name, or as [`super::Plant::load`] does.
 pub fn load_recipe(dir: &Path, name: &str) -> Result<Recipe, ConfigError> {
     let file = File::read(recipe_path(dir, name)?, "a recipe")?;
     parse_recipe(file, name)
 }
 
-/// Returns the path of an existing recipe. Only names of recipes become paths, so that `../rig` is refused.
+/// Returns the path of an existing recipe. Only the name of a recipe becomes a path, so `../rig` is refused.
 pub(super) fn recipe_path(dir: &Path, name: &str) -> Result<PathBuf, ConfigError> {
     let folder = dir.join("recipes");
     let known = recipe_names(dir);
@@ -33,7 +33,7 @@ pub(super) fn recipe_path(dir: &Path, name: &str) -> Result<PathBuf, ConfigError
     Ok(folder.join(format!("{name}.toml")))
 }
 
-/// Returns the sorted names of all recipes; empty when the folder cannot be read.
+/// Returns the names of all recipes, sorted; none when the folder cannot be read.
 pub fn recipe_names(dir: &Path) -> Vec<String> {
     let Ok(entries) = std::fs::read_dir(dir.join("recipes")) else {
         return Vec::new();
@@ -62,10 +62,10 @@ pub(super) fn parse_recipe(file: File, name: &str) -> Result<Recipe, ConfigError
     Ok(recipe)
 }
 
-/// Reads the kind of part, on which the other keys of a recipe depend.
+/// Reads the kind of device, which decides which other keys a recipe has.
 ///
 /// # Errors
-/// The key is missing or its value is not a kind.
+/// Fails when the key is missing or its value is not a kind.
 pub(super) fn kind_of(file: &File) -> Result<Kind, ConfigError> {
     let node = file.root.get("kind");
     let kind = match node.map(|it| &it.value) {

@@ -1,14 +1,15 @@
-//! Revisions of a recipe: the newest in `recipes/NAME.toml`, earlier ones in `recipes/revisions/NAME/`, numbered from 1.
+//! Revisions of a recipe: the newest is `recipes/NAME.toml`, earlier ones lie in `recipes/revisions/NAME/`, numbered
+//! from 1.
 //!
 //! - A revision changes values of the newest text; comments and order of the file stay.
-//! - It passes the same checks as a recipe before a run, including what the modules of the plant can measure. A refused
-//!   revision changes no file.
-//! - A change names by hash the text that it begins from. It is refused when another revision came in between.
-//! - The old text is stored first, then a rename puts the new one in place. After a crash in between the newest text is stored
-//!   twice, under one number.
-//! - The folder is locked while files change, so that two programs do not interleave.
+//! - A revision passes the same checks as a recipe before a run; these include what the modules of the plant can
+//!   measure. A refused revision changes no file.
+//! - A change names, by hash, the text that it is based on. It is refused when another revision has come in between.
+//! - The old text is stored first, then a rename puts the new one in its place. After a crash between these two steps
+//!   the newest text is stored twice, under one number.
+//! - The folder is locked while files change, so that two programs cannot interfere.
 //!
-//! A run reads its recipe once, before it begins: a revision never changes a lot under way.
+//! A run reads its recipe once, before it begins, so a revision never changes a lot under way.
 
 use super::check::File;
 use super::edit::edited;
@@ -27,15 +28,15 @@ use std::time::UNIX_EPOCH;
 pub struct Revision {
     /// Name of the recipe.
     pub name: String,
-    /// Number, from 1.
+    /// Number of the revision, from 1.
     pub number: u32,
-    /// Number of the newest revision.
+    /// Number of the newest revision of the recipe.
     pub newest: u32,
-    /// SHA-256 of the text, as runs store it.
+    /// SHA-256 of the text; runs store the same hash.
     pub hash: String,
-    /// Time of writing, microseconds since 1970 UTC; `None` when the file system has none.
+    /// Time at which the file was written, microseconds since 1970 UTC; `None` when the file system does not keep it.
     pub saved_at_us: Option<i64>,
-    /// Keys with their values.
+    /// All keys with their values.
     pub fields: Vec<Field>,
 }
 
@@ -45,16 +46,16 @@ pub struct Revision {
 pub struct Change {
     /// Name of the recipe.
     pub name: String,
-    /// Hash of the text that the change begins from.
+    /// Hash of the text that the change is based on.
     pub from: String,
-    /// New values by path of their key; null leaves the key out.
+    /// New values, each by the path of its key; null removes the key.
     pub values: BTreeMap<String, serde_json::Value>,
 }
 
-/// Returns the revision `number` of the recipe `name`, the newest without a number.
+/// Returns revision `number` of recipe `name`; without a number, the newest.
 ///
 /// # Errors
-/// As [`super::load_recipe`]; or there is no revision of this number.
+/// Fails when the recipe has no revision with this number, or as [`super::load_recipe`] does.
 pub fn revision(dir: &Path, name: &str, number: Option<u32>) -> Result<Revision, ConfigError> {
     let file = File::read(recipe_path(dir, name)?, "a recipe")?;
     let kept = earlier_revisions(dir, name);
@@ -84,7 +85,7 @@ pub fn revision(dir: &Path, name: &str, number: Option<u32>) -> Result<Revision,
 /// Writes the next revision of a recipe of `plant`.
 ///
 /// # Errors
-/// A value is refused, the change does not begin from the newest text, or a file cannot be written.
+/// Fails when a value is refused, when `change` is not based on the newest revision, or when a file cannot be written.
 pub fn revise(plant: &Plant, change: &Change) -> Result<Revision, ConfigError> {
     let (dir, name) = (&plant.dir, &change.name);
     let path = recipe_path(dir, name)?;
@@ -105,7 +106,7 @@ pub fn revise(plant: &Plant, change: &Change) -> Result<Revision, ConfigError> {
     revision(dir, name, None)
 }
 
-/// Applies `change` to the newest text `old` and checks the result.
+/// Applies `change` to `old`, the newest text, and checks the result.
 fn next_text(
     plant: &Plant,
     change: &Change,
@@ -129,7 +130,7 @@ fn next_text(
     Ok(text)
 }
 
-/// Returns the numbers of the earlier revisions, ascending.
+/// Returns the numbers of the earlier revisions in ascending order.
 fn earlier_revisions(dir: &Path, name: &str) -> Vec<u32> {
     let files = std::fs::read_dir(revision_folder(dir, name));
     let number = |file: std::fs::DirEntry| {
@@ -142,7 +143,7 @@ fn earlier_revisions(dir: &Path, name: &str) -> Vec<u32> {
     numbers
 }
 
-/// Returns the number of the newest text.
+/// Returns the number of the newest revision, whose text is `text`; `kept` are the numbers of the earlier ones.
 fn number_of(dir: &Path, name: &str, kept: &[u32], text: &str) -> u32 {
     let Some(last) = kept.last() else {
         return 1;
@@ -161,7 +162,7 @@ fn revision_path(dir: &Path, name: &str, number: u32) -> PathBuf {
     revision_folder(dir, name).join(format!("{number}.toml"))
 }
 
-/// Replaces a file atomically: after a crash it holds `text` or its old content.
+/// Replaces a file atomically: after a crash the file holds either `text` or its old content.
 fn replace_file(path: &Path, text: &str) -> std::io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder)?;

@@ -1,14 +1,14 @@
-//! JSON schema (draft 2020-12) of a configuration file, from the tables that loading uses.
+//! JSON schema (draft 2020-12) of a configuration file, made from the tables that loading uses.
 
 use super::keys;
 use machine::dut::Kind;
 use machine::form::{Form, Key, Range};
 use serde_json::{Map, Value, json};
 
-/// Files with a schema, by name without ending.
+/// Files that have a schema, by name without extension.
 pub const FILES: [&str; 5] = ["rig", "golden", "recipe", "card", "lot"];
 
-/// Returns the schema of a file of [`FILES`]; `None` for another name.
+/// Returns the schema of a file in [`FILES`]; `None` for any other name.
 pub fn of_file(name: &str) -> Option<Value> {
     let keys = match name {
         "rig" => keys::rig::FILE,

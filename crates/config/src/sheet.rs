@@ -1,4 +1,4 @@
-//! A recipe as a form: every key with unit, range and value.
+//! A recipe as a form to fill in: every key with unit, range and value.
 
 use super::check::File;
 use super::error::ConfigError;
@@ -9,25 +9,25 @@ use machine::form::{Form, Key, Range};
 use serde::Serialize;
 use serde_json::json;
 
-/// A key of a recipe with its value.
+/// One key of a recipe, with its value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Field {
-    /// Path of the key: `limits.operate_voltage_v.high`.
+    /// Path of the key, for example `limits.operate_voltage_v.high`.
     pub path: String,
-    /// Accepted values.
+    /// Values that the key accepts.
     #[serde(flatten)]
     pub entry: Entry,
-    /// True when it may be left out.
+    /// True when the key may be left out.
     pub optional: bool,
-    /// Value in the file; null when left out.
+    /// Value in the file; null when the key is left out.
     pub value: serde_json::Value,
 }
 
-/// Accepted values of a field.
+/// Values that a key accepts.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "form", rename_all = "snake_case")]
 pub enum Entry {
-    /// Text that is not empty.
+    /// A text that is not empty.
     Text,
     /// One of these words.
     Choice {
@@ -38,7 +38,7 @@ pub enum Entry {
     Number(Bounds),
     /// A list of numbers.
     Numbers {
-        /// Length of the list.
+        /// Number of items in the list.
         count: usize,
         /// Range of each number.
         #[serde(flatten)]
@@ -46,7 +46,7 @@ pub enum Entry {
     },
     /// A whole number.
     Whole(Bounds),
-    /// Yes or no.
+    /// `true` or `false`.
     Flag,
 }
 
@@ -55,11 +55,11 @@ pub enum Entry {
 pub struct Bounds {
     /// Unit; empty for a pure number.
     pub unit: &'static str,
-    /// Lower end.
+    /// Lower end of the range.
     pub low: f64,
-    /// True when the lower end is allowed; the upper end always is.
+    /// True when the lower end itself is allowed; the upper end always is.
     pub low_allowed: bool,
-    /// Upper end.
+    /// Upper end of the range.
     pub high: f64,
 }
 
@@ -74,10 +74,11 @@ impl From<&Range> for Bounds {
     }
 }
 
-/// Returns every key of a recipe of its kind, in the order of `config/README.md`, with the value in the file.
+/// Returns every key that a recipe of this kind may have, in the order of `config/README.md`, with the value in the
+/// file.
 ///
 /// # Errors
-/// The kind is missing or unknown.
+/// Fails when the kind is missing or unknown.
 pub fn fields(file: &File) -> Result<Vec<Field>, ConfigError> {
     let mut found = Vec::new();
     let keys = keys::recipe::of(kind_of(file)?);
@@ -105,7 +106,7 @@ fn gather(path: &str, keys: &[Key], root: &Node, found: &mut Vec<Field>) {
     }
 }
 
-/// Returns `None` for forms that no recipe has.
+/// Converts the form of a key; `None` for forms that no key of a recipe has.
 fn entry(form: &Form) -> Option<Entry> {
     match form {
         Form::Text => Some(Entry::Text),
@@ -150,7 +151,7 @@ mod tests {
     use super::*;
     use machine::dut::Kind;
 
-    /// Paths of all keys that are no tables, by another way.
+    /// Returns the paths of all keys that are not tables, computed without the code under test.
     fn leaves(path: &str, keys: &[Key]) -> Vec<String> {
         let of = |key: &Key| match &key.form {
             Form::Table(inner) => leaves(&format!("{path}{}.", key.name), inner),

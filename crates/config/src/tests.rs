@@ -1,4 +1,5 @@
-//! Wrong files and what the operator reads. Each case changes one thing in the files of `config/`.
+//! Tests of wrong files and of the messages that the operator reads. Each case changes one place in the files of
+//! `config/`.
 #![allow(clippy::unwrap_used)]
 
 mod fixture;
@@ -36,7 +37,7 @@ fn recipe(text: &str) -> Result<Recipe, ConfigError> {
     parse_recipe(file, "jzc-22f-012")
 }
 
-/// The text with the one place changed; a case that changes nothing is a slip in the table.
+/// Returns the text with one place changed; panics when `from` does not occur exactly once.
 fn changed(text: &str, from: &str, to: &str) -> String {
     assert_eq!(
         text.matches(from).count(),
@@ -50,7 +51,8 @@ fn line_of(text: &str, part: &str) -> usize {
     text[..text.find(part).unwrap()].matches('\n').count() + 1
 }
 
-/// One change to `rig.toml` and the rest of the message after `config/rig.toml:LINE: `, LINE being that of `at`.
+/// Asserts that one change to `rig.toml` is refused with `config/rig.toml:LINE: message`; LINE is the line that holds
+/// `at`.
 fn refused(from: &str, to: &str, at: &str, message: &str) {
     let text = changed(RIG, from, to);
     let expected = format!("config/rig.toml:{}: {message}", line_of(&text, at));
@@ -321,7 +323,7 @@ fn two_bins_at_one_axis_point_are_refused() {
     );
 }
 
-/// The default rig without a bin and without the beam of its chute.
+/// Returns the default `rig.toml` without one bin and without the beam of its chute.
 fn without_bin(name: &str) -> String {
     let beam = format!("beam_{name} ");
     let gone =

@@ -1,15 +1,15 @@
-//! A TOML text as a tree whose values have line numbers.
+//! A TOML text as a tree whose values know their line numbers.
 //!
-//! Tables keep the order of the file. A path leads from the root to a value: `module.rtd.type`, or `golden.1.serial` with
-//! list items numbered from 0.
+//! Tables keep the order of the file. A path leads from the root to a value: `module.rtd.type`, or `golden.1.serial`,
+//! where the number is the place in a list, from 0.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A value with its line.
+/// A value with its line number.
 #[derive(Debug, Clone)]
 pub struct Node {
-    /// Line of the value, or of the header of a table; from 1.
+    /// Line of the value, or of the header if the value is a table; from 1.
     pub line: usize,
     /// The value.
     pub value: Value,
@@ -22,19 +22,19 @@ pub enum Value {
     Text(String),
     /// A whole number.
     Whole(i64),
-    /// A number with a point or exponent; may be NaN or infinite.
+    /// A number with a decimal point or an exponent; may be NaN or infinite.
     Number(f64),
     /// `true` or `false`.
     Flag(bool),
     /// A date or time, as written.
     Date(String),
-    /// A list, or an array of tables.
+    /// An array, or an array of tables.
     List(Vec<Node>),
-    /// A table: keys in the order of the file.
+    /// A table: its keys and values, in the order of the file.
     Table(Vec<(String, Node)>),
 }
 
-/// A text that is not TOML.
+/// Error: a text is not TOML.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NotToml {
     /// Line of the fault, from 1.
@@ -44,7 +44,7 @@ pub struct NotToml {
 }
 
 impl Node {
-    /// Parses a text.
+    /// Parses a text; returns the root of the tree.
     pub fn parse(text: &str) -> Result<Node, NotToml> {
         let table = DeTable::parse(text).map_err(|error| not_toml(text, &error))?;
         let lines = LineTable::new(text);
@@ -54,7 +54,7 @@ impl Node {
         })
     }
 
-    /// Returns the value under a key of a table, or an item of a list.
+    /// Returns the value of a key in a table, or the item at a place in a list.
     pub fn get(&self, key: &str) -> Option<&Node> {
         match &self.value {
             Value::Table(entries) => entries
@@ -70,7 +70,7 @@ impl Node {
         }
     }
 
-    /// Follows a dotted path as far as it exists. Returns the deepest node, and true when the whole path exists.
+    /// Follows a dotted path as far as it exists. Returns the last node reached, and true when the whole path exists.
     pub fn find(&self, path: &str) -> (&Node, bool) {
         let mut node = self;
         for key in path.split('.').filter(|key| !key.is_empty()) {
@@ -82,7 +82,7 @@ impl Node {
         (node, true)
     }
 
-    /// Returns the path of the last value that begins at or before `line`; empty for the root.
+    /// Returns the path of the last value that begins in `line` or before it; empty for the root.
     pub fn path_at(&self, line: usize) -> String {
         let found = match &self.value {
             Value::Table(entries) => {
@@ -114,7 +114,7 @@ impl Node {
         matches!(self.value, Value::Table(_))
     }
 
-    /// Returns the value in words, for messages.
+    /// Returns the value in words, as messages show it.
     pub fn describe(&self) -> String {
         match &self.value {
             Value::Text(text) => format!("\"{text}\""),
@@ -128,7 +128,7 @@ impl Node {
     }
 }
 
-/// Returns the message of a parser of `text` with its line.
+/// Converts an error of the TOML parser of `text`: its message, with the line number.
 pub fn not_toml(text: &str, error: &toml::de::Error) -> NotToml {
     let at = error.span().map_or(0, |span| span.start);
     let problem = error.message().lines().collect::<Vec<_>>().join(", ");
@@ -138,7 +138,7 @@ pub fn not_toml(text: &str, error: &toml::de::Error) -> NotToml {
     }
 }
 
-/// Byte offsets at which lines begin.
+/// Byte offset at which each line begins.
 struct LineTable(Vec<usize>);
 
 impl LineTable {
@@ -200,7 +200,7 @@ impl LineTable {
     }
 }
 
-/// Reads a whole number; one beyond 64 bits becomes infinite, so that a range check refuses it.
+/// Reads a whole number; one that needs more than 64 bits becomes infinite, so that a range check refuses it.
 fn parse_whole(digits: &str, radix: u32) -> Value {
     match i64::from_str_radix(digits, radix) {
         Ok(number) => Value::Whole(number),

@@ -1,21 +1,21 @@
-//! Selects one of several answers to one request, some milliseconds apart, of which one may be
-//! damaged.
+//! Selects one of several answers to the same request, given some milliseconds apart, of which one may be damaged.
 //!
 //! An eight-bit checksum lets one damaged reply in 256 pass. Damage rarely repeats identically, so two consecutive
-//! equal answers are both taken as true. Moving or noisy quantities differ between answers; they are read a third time and
-//! the answer between the other two is selected: one damaged answer of three cannot push it beyond the two intact ones.
+//! answers that are equal are both taken as true. A quantity that moves or is noisy gives different answers; it is read
+//! a third time, and the answer between the other two is selected: one damaged answer of three cannot push the selected
+//! value beyond the two intact ones.
 //!
 //! | three answers, no two consecutive ones equal | selected |
 //! |---|---|
-//! | analog reading, level, frequency | the middle value |
-//! | all analog inputs at once | the second, if each input lies between its first and third reading, or beyond by 1/1024 of its range: noise of the coarsest converter, twelve bits |
-//! | count | the second, if the counts rise by at most 100 kHz, more than any input of a 7080 accepts |
-//! | event counter | the second, if the counts rise by at most 100 Hz |
+//! | analog reading, level, frequency | the answer with the middle value |
+//! | all analog inputs at once | the second, if each input lies between its first and its third reading, or outside by at most 1/1024 of its range: the noise of the coarsest converter (twelve bits) |
+//! | count | the second, if the counts rise, by at most 100 kHz, which is more than any input of a 7080 accepts |
+//! | event counter | the second, if the counts rise, by at most 100 Hz |
 //! | everything else | none |
 
 use super::{Command, Reading, Reply, TypeCode};
 
-/// How far one of many inputs may lie beyond its first and third reading, as a fraction of the range.
+/// How far an input, read with others at once, may lie outside its first and third reading; fraction of the range.
 const NOISE_SHARE: f64 = 1.0 / 1024.0;
 /// Most counts per millisecond.
 const COUNTS_PER_MS: u64 = 100;
@@ -23,8 +23,8 @@ const COUNTS_PER_MS: u64 = 100;
 const MS_PER_EVENT: u64 = 10;
 
 impl Command {
-    /// Returns the index of the answer to accept among two or three. `apart_ms` is the time between first and last
-    /// request, rounded up. Returns `None` when another answer is needed, or when three do not suffice.
+    /// Returns the index of the answer to accept among two or three. `apart_ms` is the time from the first to the last
+    /// request, milliseconds, rounded up. Returns `None` when a third answer is needed, or when three do not suffice.
     pub fn select_answer(&self, answers: &[Reply], apart_ms: u64) -> Option<usize> {
         let alike = answers.windows(2).position(|pair| pair[0] == pair[1]);
         let [first, second, third] = answers else {
@@ -61,7 +61,7 @@ impl Command {
         }
     }
 
-    /// Value by which single quantities are compared; `None` for quantities without order.
+    /// Returns the number by which answers are compared; `None` for answers without an order.
     fn size(&self, answer: &Reply) -> Option<f64> {
         match answer {
             Reply::Reading(reading) => reading.value.in_units(self.range()?),
@@ -71,8 +71,8 @@ impl Command {
         }
     }
 
-    /// Whether a reading lies between its neighbours in time, allowing for noise; a state that is not a number must
-    /// stay the same.
+    /// Returns true when a reading lies between those before and after it, allowing for noise. A reading without a
+    /// number, for example over range, must be the same in all three.
     fn lies_between(&self, before: &Reading, it: &Reading, after: &Reading) -> bool {
         let scale = self.range().and_then(TypeCode::full_scale);
         let noise = scale.map_or(0.0, |scale| (scale.high - scale.low) * NOISE_SHARE);
@@ -86,7 +86,7 @@ impl Command {
         }
     }
 
-    /// Range of the analog inputs that the command reads.
+    /// Returns the range of the analog inputs that the command reads; `None` for other commands.
     fn range(&self) -> Option<TypeCode> {
         match self {
             Self::AnalogIn(_, ask) => ask.range(),
@@ -108,7 +108,7 @@ mod tests {
         UpTo,
     };
 
-    /// Returns the index of the selected answer, with 3 ms between first and last.
+    /// Returns the index of the selected answer, with 3 ms from the first to the last.
     fn select(command: Command, said: &[&str]) -> Option<usize> {
         let answers: Vec<_> = said
             .iter()

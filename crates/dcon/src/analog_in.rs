@@ -6,8 +6,8 @@ use super::shape::Shape;
 use super::{Address, Channel, DataFormat, TypeCode};
 use std::fmt;
 
-/// Notation, range and channel count of an input module, which decoding its readings needs; to be verified once
-/// against its configuration word.
+/// Notation, range and channel count of an input module; decoding its readings needs all three. The host should once
+/// compare them with the module's configuration word.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct InputForm {
     channels: u8,
@@ -18,7 +18,7 @@ pub struct InputForm {
 }
 
 impl InputForm {
-    /// Form of a module with `channels` inputs; `None` outside 1 to 8, the most in these families.
+    /// Returns the form of a module with `channels` inputs; `None` outside 1 to 8, the most that these families have.
     pub const fn new(channels: u8, format: DataFormat, range: TypeCode) -> Option<Self> {
         if channels >= 1 && channels <= 8 {
             Some(Self {
@@ -31,7 +31,7 @@ impl InputForm {
         }
     }
 
-    /// Form of a 7017, 7017F, 7017R or 7018: eight inputs.
+    /// Returns the form of a 7017, 7017F, 7017R or 7018: eight inputs.
     pub const fn eight(format: DataFormat, range: TypeCode) -> Self {
         Self {
             channels: 8,
@@ -40,7 +40,7 @@ impl InputForm {
         }
     }
 
-    /// Form of a 7033: three inputs.
+    /// Returns the form of a 7033: three inputs.
     pub const fn three(format: DataFormat, range: TypeCode) -> Self {
         Self {
             channels: 3,
@@ -49,7 +49,7 @@ impl InputForm {
         }
     }
 
-    /// Number of inputs, 1 to 8.
+    /// Returns the number of inputs, 1 to 8.
     pub const fn channels(self) -> u8 {
         self.channels
     }
@@ -64,20 +64,21 @@ impl fmt::Debug for InputForm {
 /// Commands of analog input modules.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AnalogIn {
-    /// `#AA`: reads all channels; disabled ones are blank.
+    /// `#AA`: reads all channels; a disabled channel reads blank.
     ReadAll(InputForm),
     /// `#AAN`: reads one channel.
     ReadOne {
         /// Number of the input.
         channel: Channel,
-        /// Form in which the module sends the reading.
+        /// Notation, range and channel count of the module.
         form: InputForm,
     },
     /// `$AAA`: reads all channels in hex, whatever the configured notation.
     ReadAllHex(InputForm),
     /// `$AA6`: reads the enabled channels, bit n = channel n.
     ReadMask,
-    /// `$AA5VV`: enables channels, bit n = channel n. Only its length distinguishes it from the reset status.
+    /// `$AA5VV`: enables channels, bit n = channel n. Only its length distinguishes it from `$AA5`, which reads the
+    /// reset status.
     WriteMask(u8),
     /// `$AA3` of thermocouple modules: reads the cold junction, degrees Celsius.
     ReadColdJunction,
@@ -142,7 +143,7 @@ impl AnalogIn {
         }
     }
 
-    /// Range of the terminals, for commands that return readings.
+    /// Returns the range of the inputs, for commands that return readings.
     pub(super) fn range(&self) -> Option<TypeCode> {
         let (_, shape) = self.table();
         let (Shape::Reading(form) | Shape::Readings(form)) = shape else {

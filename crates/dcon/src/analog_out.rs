@@ -9,7 +9,7 @@ use super::{Address, Channel, Level, OutputForm, SlewCode, TypeCode, UpTo};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AnalogOut {
     /// `#AA[N](data)`: drives the output to a level at the configured slew rate. The module refuses a level out of
-    /// range, but drives to the nearest limit.
+    /// range, and still drives the output to the nearest limit.
     Write {
         /// Number of the output.
         channel: Option<Channel>,
@@ -112,7 +112,7 @@ impl AnalogOut {
     }
 }
 
-/// Returns the range of a 7022 channel from the last digit of its type code.
+/// Returns the type code of a 7022 channel from its last digit.
 pub(super) fn output_range(digit: u8) -> TypeCode {
     TypeCode(0x30 | digit)
 }

@@ -1,18 +1,18 @@
-//! Bits of digital modules, as read and as written.
+//! Bits of digital modules, as a host reads and writes them.
 
 use super::request::Request;
 
 /// Two bytes as a digital module sends them; their meaning depends on the module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bits {
-    /// Outputs of a module that has both; the high byte (8..15) of a 16-bit module.
+    /// Outputs of a module that has outputs and inputs; high byte (8..15) of a 16-bit module.
     pub first: u8,
-    /// Inputs of a module that has both; the low byte (0..7) of a 16-bit module.
+    /// Inputs of a module that has outputs and inputs; low byte (0..7) of a 16-bit module.
     pub second: u8,
 }
 
 impl Bits {
-    /// Combines both bytes with channel 0 in bit 0, for modules with up to 16 inputs or 16 outputs: 7041, 7043,
+    /// Returns both bytes as one word, bit n = channel n; for modules with up to 16 inputs or 16 outputs: 7041, 7043,
     /// 7045, 7051.
     pub fn word(self) -> u16 {
         u16::from(self.first) << 8 | u16::from(self.second)
@@ -48,7 +48,7 @@ pub struct OutputWord {
 }
 
 impl OutputWord {
-    /// Returns `None` when a bit lies beyond the width.
+    /// Creates a word; returns `None` when a bit lies beyond the width.
     pub const fn new(width: Width, bits: u16) -> Option<Self> {
         if (bits as u32) >> (4 * width.digits()) == 0 {
             Some(Self { width, bits })
@@ -57,7 +57,7 @@ impl OutputWord {
         }
     }
 
-    /// Makes a word for the 16 outputs of a 7043 or 7045, where every word is valid.
+    /// Creates a word for the 16 outputs of a 7043 or 7045, for which every word is valid.
     pub const fn sixteen(bits: u16) -> Self {
         Self {
             width: Width::Four,

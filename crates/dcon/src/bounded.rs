@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// Address of a module on its line, `00` to `FF`. Factory setting is `01`; in INIT* mode a module answers at `00`.
+/// Address of a module on its line, `00` to `FF`. The factory sets `01`; in INIT* mode a module answers at `00`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Address(pub u8);
 
@@ -17,7 +17,7 @@ impl fmt::Display for Address {
 pub struct UpTo<const MAX: u8>(u8);
 
 impl<const MAX: u8> UpTo<MAX> {
-    /// Returns `None` above `MAX`.
+    /// Creates a number; returns `None` above `MAX`.
     pub const fn new(value: u8) -> Option<Self> {
         if value <= MAX {
             Some(Self(value))

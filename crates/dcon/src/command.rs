@@ -1,4 +1,4 @@
-//! The closed set of requests, and the decoding of their replies.
+//! All requests of the protocol as one closed enum, and the decoding of their replies.
 
 use super::request::Request;
 use super::shape::Shape;
@@ -6,12 +6,12 @@ use super::{
     Address, AnalogIn, AnalogOut, Common, Counter, Digital, Reply, ReplyError, frame, shape,
 };
 
-/// A request on a line. Shortest way to build one: `Common::ReadConfig.to(Address(1))`.
+/// A request on a line. The shortest way to build one: `Common::ReadConfig.to(Address(1))`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Command {
-    /// `~**` to all modules: the host is alive. Restarts the host watchdog of every module; has no reply.
+    /// `~**` to all modules: the host is alive. Restarts the host watchdog of every module; no module replies.
     HostOk,
-    /// `#**` to all modules: sample the inputs now, for [`Digital::ReadSampled`]. Has no reply.
+    /// `#**` to all modules: sample the inputs now, for [`Digital::ReadSampled`]. No module replies.
     SampleAll,
     /// A command of every module type.
     Common(Address, Common),
@@ -25,16 +25,16 @@ pub enum Command {
     Counter(Address, Counter),
 }
 
-/// Effect of a command on the module.
+/// What a command does to the module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effect {
     /// Changes nothing; may be repeated.
     Read,
-    /// Reading clears something (such as a flag), so a repeat gives another answer.
+    /// Clears what it reads (such as a flag), so a repetition gives another answer.
     ReadOnce,
-    /// Drives outputs. A module with a tripped host watchdog ignores it.
+    /// Drives outputs. A module whose host watchdog has tripped ignores it.
     Output,
-    /// Changes a state that a power cycle loses.
+    /// Changes a state that is lost at power-off.
     Act,
     /// Writes, or may write, the module's EEPROM, which endures a limited number of writes.
     Store,
@@ -43,7 +43,7 @@ pub enum Effect {
 macro_rules! family {
     ($($name:ident),*) => {$(
         impl $name {
-            /// Addresses the command to one module.
+            /// Makes a request of this command to one module.
             pub const fn to(self, address: Address) -> Command {
                 Command::$name(address, self)
             }
@@ -74,9 +74,9 @@ impl Command {
 
     /// Decodes `frame` as the reply to this command.
     ///
-    /// The CR may be missing, except where only the CR proves that the reply is complete: replies of variable
-    /// length on a line without checksum. Returns a [`ReplyError`] for everything unexpected; its variants
-    /// `Refused` and `Ignored` are answers of the module.
+    /// The CR may be missing, unless only the CR can prove that the reply is complete: a reply of variable length on a
+    /// line without checksum. Returns a [`ReplyError`] for everything unexpected; two of its variants, `Refused` and
+    /// `Ignored`, are answers that the module gave.
     pub fn decode(&self, frame: &[u8], checksum: bool) -> Result<Reply, ReplyError> {
         let (Some(address), Some((effect, shape))) = (self.address(), self.table()) else {
             return Err(ReplyError::Broadcast);
@@ -89,30 +89,32 @@ impl Command {
         shape.decode(text, address)
     }
 
-    /// Whether repeating the command after a lost reply is harmless and gives the same information.
+    /// Returns true when the command may be repeated after a lost reply, without harm and with the same result.
     pub fn repeatable(&self) -> bool {
         self.effect() == Effect::Read
     }
 
-    /// Whether the module writes, or may write, its EEPROM. Such a command must not be sent cyclically or during a lot.
+    /// Returns true when the module writes, or may write, its EEPROM. Such a command must not be sent cyclically or
+    /// during a lot.
     pub fn writes_eeprom(&self) -> bool {
         self.effect() == Effect::Store
     }
 
-    /// Length of the longest reply from lead to CR, characters; a checksum adds two. Zero for broadcasts.
+    /// Returns the length of the longest reply from its first character to its CR; a checksum adds two. Zero for
+    /// broadcasts.
     pub fn longest_reply(&self) -> usize {
-        /// `?AA` and CR: any command may be refused.
+        /// Length of `?AA` and CR: any command may be refused.
         const REFUSAL: usize = 4;
         self.table()
             .map_or(0, |(_, shape)| REFUSAL.max(shape.longest() + 1))
     }
 
-    /// Whether the command has a reply; false for broadcasts.
+    /// Returns true when the command has a reply, that is, when it is not a broadcast.
     pub fn has_reply(&self) -> bool {
         self.address().is_some()
     }
 
-    /// Address of the module; `None` for broadcasts.
+    /// Returns the address of the module; `None` for broadcasts.
     pub fn address(&self) -> Option<Address> {
         match *self {
             Self::HostOk | Self::SampleAll => None,
@@ -124,13 +126,13 @@ impl Command {
         }
     }
 
-    /// Whether the module may be busy converting, so that its reply gets the longer timeout.
+    /// Returns true when the module may be busy with a conversion, so that its reply needs the longer time-out.
     pub fn is_analog_input(&self) -> bool {
         matches!(self, Self::AnalogIn(..))
     }
 
-    /// Effect of the command on the module. Broadcasts count as [`Effect::Act`]: they restart watchdogs and take
-    /// samples.
+    /// Returns what the command does to the module. Broadcasts count as [`Effect::Act`], because they restart watchdogs
+    /// and take samples.
     pub fn effect(&self) -> Effect {
         self.table().map_or(Effect::Act, |(effect, _)| effect)
     }

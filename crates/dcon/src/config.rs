@@ -1,4 +1,4 @@
-//! The configuration word `TT CC FF` that every module keeps in its EEPROM, and the module's name.
+//! The configuration word `TT CC FF`, which every module keeps in its EEPROM, and the name of a module.
 //!
 //! A host should compare the reply to `$AA2` with the wanted configuration and write only a difference, because
 //! each write wears the EEPROM.
@@ -8,15 +8,15 @@ use super::{TypeCode, UpTo};
 /// Type, baud and format of a module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Config {
-    /// Field TT.
+    /// Field TT: range of an analog module, or type of another one.
     pub type_code: TypeCode,
-    /// Field CC.
+    /// Field CC: baud rate.
     pub baud: BaudCode,
-    /// Field FF.
+    /// Field FF: notation, checksum and more, by family.
     pub format: FormatByte,
 }
 
-/// Baud code CC: bits 5..0 the rate; newer firmware has parity and stop bits in bits 7..6.
+/// Field CC: bits 5..0 give the baud rate; newer firmware has parity and stop bits in bits 7..6.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BaudCode(pub u8);
 
@@ -32,7 +32,8 @@ impl BaudCode {
         (0x0A, 115_200),
     ];
 
-    /// Returns the code of a rate (bit/s) with 8N1; `None` for a rate that no module has.
+    /// Returns the code of a baud rate with 8 data bits, no parity and 1 stop bit; `None` for a rate that no module
+    /// has.
     pub fn of(baud: u32) -> Option<Self> {
         Self::RATES
             .iter()
@@ -40,7 +41,7 @@ impl BaudCode {
             .map(|(code, _)| Self(*code))
     }
 
-    /// Returns the rate, bit/s; `None` for an unknown code.
+    /// Returns the baud rate, bit/s; `None` for an unknown code.
     pub fn rate(self) -> Option<u32> {
         Self::RATES
             .iter()
@@ -49,28 +50,28 @@ impl BaudCode {
     }
 }
 
-/// Notation of analog values (FF bits 1..0).
+/// Notation of analog values (bits 1..0 of FF).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum DataFormat {
-    /// Unit of the range: `+05.123`.
+    /// In the unit of the range: `+05.123`.
     Engineering,
-    /// Per cent of full scale: `+051.23`.
+    /// In per cent of full scale: `+051.23`.
     Percent,
-    /// Two's complement: `4193`.
+    /// As two's complement in hex: `4193`.
     Hex,
 }
 
-/// Format byte FF. Its bits have a different meaning in each family.
+/// Field FF. Its bits have a different meaning in each family.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FormatByte(pub u8);
 
 impl FormatByte {
-    /// Bit 6: whether frames carry a checksum. Takes effect after a power cycle.
+    /// Returns true when frames carry a checksum (bit 6). A change takes effect after a power cycle.
     pub fn checksum(self) -> bool {
         self.0 & 0x40 != 0
     }
 
-    /// Notation of an analog module; `None` for the code that no module has.
+    /// Returns the notation of an analog module; `None` for the code that no module has.
     pub fn data_format(self) -> Option<DataFormat> {
         match self.0 & 0x03 {
             0 => Some(DataFormat::Engineering),
@@ -80,22 +81,22 @@ impl FormatByte {
         }
     }
 
-    /// Analog input, bit 5: whether the module converts faster with fewer bits.
+    /// Returns true when an analog input converts faster and with fewer bits (bit 5).
     pub fn fast(self) -> bool {
         self.0 & 0x20 != 0
     }
 
-    /// Analog input, bit 7: whether the filter rejects 50 Hz instead of 60 Hz.
+    /// Returns true when the filter of an analog input rejects 50 Hz instead of 60 Hz (bit 7).
     pub fn rejects_50_hz(self) -> bool {
         self.0 & 0x80 != 0
     }
 
-    /// Analog output, bits 5..2: slew rate.
+    /// Returns the slew rate of an analog output (bits 5..2).
     pub fn slew(self) -> SlewCode {
         SlewCode(UpTo::new(self.0 >> 2 & 0x0F).unwrap_or(SlewCode::IMMEDIATE.0))
     }
 
-    /// Counter, bit 2: whether the frequency gate is 1.0 s instead of 0.1 s.
+    /// Returns true when the frequency gate of a counter lasts 1.0 s instead of 0.1 s (bit 2).
     pub fn long_gate(self) -> bool {
         self.0 & 0x04 != 0
     }
@@ -106,14 +107,14 @@ impl FormatByte {
 pub struct SlewCode(pub UpTo<15>);
 
 impl SlewCode {
-    /// The output steps at once.
+    /// Code for no slew rate: the output steps at once.
     pub const IMMEDIATE: Self = match UpTo::new(0) {
         Some(zero) => Self(zero),
         None => unreachable!(),
     };
 
-    /// Returns the slew rate in V/s; `None` when immediate. Code 1 is 1/16 V/s, and each further code doubles it.
-    /// For current outputs the rate in mA/s is twice the figure.
+    /// Returns the slew rate in V/s; `None` when the output steps at once. Code 1 is 1/16 V/s, and each further code
+    /// doubles it. For current outputs, the rate in mA/s is twice this number.
     pub fn volt_per_second(self) -> Option<f64> {
         match self.0.get() {
             0 => None,
@@ -130,7 +131,8 @@ pub struct ModuleName {
 }
 
 impl ModuleName {
-    /// Returns `None` for a name that is empty, longer than six characters, or has characters that cannot be sent.
+    /// Creates a name; returns `None` when it is empty, longer than six characters, or has characters that cannot be
+    /// sent.
     pub fn new(name: &str) -> Option<Self> {
         let fits =
             (1..=6).contains(&name.len()) && name.bytes().all(|byte| byte.is_ascii_graphic());

@@ -5,18 +5,18 @@ use super::request::Request;
 use super::shape::Shape;
 use super::{Address, Channel, UpTo};
 
-/// Gate level at which the counters count; one setting for both channels.
+/// Gate level at which the counters count; both counters share the setting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GateMode {
-    /// Count while the gate is low.
+    /// Counts while the gate is low.
     Low,
-    /// Count while the gate is high.
+    /// Counts while the gate is high.
     High,
-    /// Count always.
+    /// Counts always.
     None,
 }
 
-/// Input types of the two counters.
+/// Input circuits of the two counters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InputMode {
     /// Both counters TTL, not isolated.
@@ -29,7 +29,7 @@ pub enum InputMode {
     Isolated0,
 }
 
-/// High or low side of the digital filter or of the TTL threshold.
+/// Which side of the digital filter or of the TTL threshold is meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Edge {
     /// `H`.
@@ -47,68 +47,71 @@ impl Edge {
     }
 }
 
-/// Behaviour of an alarm on both limits (alarm mode 1).
+/// How an alarm on both limits behaves (alarm mode 1).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AlarmKind {
-    /// `L`: stays until cleared.
+    /// `L`: the alarm stays until it is cleared.
     Latched,
-    /// `M`: ends with its cause.
+    /// `M`: the alarm ends with its cause.
     Momentary,
 }
 
-/// Reply to `@AADI`.
+/// Reply to `@AADI`: alarms of the counters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AlarmState {
-    /// 0 = alarms off; 1, 2 = on (momentary, latched).
+    /// 0 = alarms are off; 1 = on, momentary; 2 = on, latched.
     pub state: u8,
-    /// States of the two open-collector outputs.
+    /// States of the two open-collector outputs, bit n = output n.
     pub outputs: u8,
 }
 
-/// Commands of the 7080. A reply with a count carries no address, so only lead, length and hex digits can be checked.
+/// Commands of the 7080. A reply with a count carries no address, so only first character, length and hex digits can be
+/// checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Counter {
-    /// `#AAN` for type code 50: the count.
+    /// `#AAN` of a module with type code 50: reads the count.
     Read(UpTo<1>),
-    /// `#AAN` for type code 51: frequency in Hz, updated once per gate time of 0.1 or 1 s.
+    /// `#AAN` of a module with type code 51: reads the frequency, Hz, which the module updates once per gate time (0.1
+    /// or 1 s).
     ReadFrequency(UpTo<1>),
-    /// `$AA6N`: returns the count to the preset and clears the overflow.
+    /// `$AA6N`: sets the count to the preset and clears the overflow.
     Reset(UpTo<1>),
-    /// `$AA7N`: whether the counter has passed its maximum.
+    /// `$AA7N`: reads whether the counter has passed its maximum.
     ReadOverflow(UpTo<1>),
-    /// `$AA5N`: whether the counter is running.
+    /// `$AA5N`: reads whether the counter is running.
     ReadRunning(UpTo<1>),
-    /// `$AA5NS`: starts (true) or stops a counter.
+    /// `$AA5NS`: starts (true) or stops (false) a counter.
     Run(UpTo<1>, bool),
-    /// `@AAGN`: preset of a counter.
+    /// `@AAGN`: reads the preset of a counter.
     ReadPreset(UpTo<1>),
     /// `@AAPN(data)`: sets the preset of a counter.
     WritePreset(UpTo<1>, u32),
-    /// `$AA3N`: maximum of a counter.
+    /// `$AA3N`: reads the maximum of a counter.
     ReadMaximum(UpTo<1>),
     /// `$AA3N(data)`: sets the maximum of a counter.
     WriteMaximum(UpTo<1>, u32),
-    /// `$AAA`: gate mode.
+    /// `$AAA`: reads the gate mode.
     ReadGate,
     /// `$AAAG`: sets the gate mode.
     WriteGate(GateMode),
-    /// `$AAB`: input mode.
+    /// `$AAB`: reads the input mode.
     ReadInputs,
     /// `$AABS`: sets the input mode.
     WriteInputs(InputMode),
-    /// `$AA4`: whether the digital filter is on.
+    /// `$AA4`: reads whether the digital filter is on.
     ReadFilter,
-    /// `$AA4S`: switches the digital filter.
+    /// `$AA4S`: switches the digital filter on (true) or off.
     WriteFilter(bool),
-    /// `$AA0H`, `$AA0L`: least pulse width that passes the filter, microseconds.
+    /// `$AA0H`, `$AA0L`: reads the least pulse width that passes the filter, microseconds.
     ReadFilterWidth(Edge),
     /// `$AA0H(data)`, `$AA0L(data)`: sets the least pulse width, 2 to 65535 microseconds.
     WriteFilterWidth(Edge, u16),
-    /// `$AA1H`, `$AA1L`: TTL threshold, tenths of a volt.
+    /// `$AA1H`, `$AA1L`: reads the TTL threshold, tenths of a volt.
     ReadThreshold(Edge),
-    /// `$AA1H(data)`, `$AA1L(data)`: sets the TTL threshold, tenths of a volt; high must stay above low.
+    /// `$AA1H(data)`, `$AA1L(data)`: sets the TTL threshold, tenths of a volt; the high one must stay above the low
+    /// one.
     WriteThreshold(Edge, UpTo<50>),
-    /// `@AADI`: alarm state and outputs.
+    /// `@AADI`: reads the state of the alarm and of the outputs.
     ReadAlarm,
     /// `~AAAS`: sets the alarm mode; true = both limits on counter 0 (mode 1), false = one limit per counter (mode 0).
     WriteAlarmMode(bool),
@@ -122,17 +125,19 @@ pub enum Counter {
     EnableAlarmOf(UpTo<1>),
     /// `@AADAN`, mode 0: disables the alarm of one counter.
     DisableAlarmOf(UpTo<1>),
-    /// `@AARP`, `@AARA`: alarm limit of counter 0 and 1; in mode 1 the high and the high-high limit of counter 0.
+    /// `@AARP`, `@AARA`: reads an alarm limit. 0 and 1 are the limits of counter 0 and 1; in mode 1 the high and the
+    /// high-high limit of counter 0.
     ReadLimit(UpTo<1>),
     /// `@AAPA(data)`, `@AASA(data)`: sets an alarm limit, numbered as in [`Counter::ReadLimit`].
     WriteLimit(UpTo<1>, u32),
     /// `@AADO0D`: sets the two outputs; refused while an alarm controls them.
     WriteOutputs(UpTo<3>),
-    /// `$AA8` of the 7080D: source of the displayed number.
+    /// `$AA8` of the 7080D: reads the source of the displayed number.
     ReadDisplay,
-    /// `$AA8V` of the 7080D: selects the source of the display; 0 or 1 a counter, 2 the host's number.
+    /// `$AA8V` of the 7080D: selects the source of the displayed number: 0 or 1 a counter, 2 the number that the host
+    /// sets.
     WriteDisplay(Channel),
-    /// `$AA9(data)` of the 7080D: sets the host's number, five digits.
+    /// `$AA9(data)` of the 7080D: sets the number for the display, five digits.
     WriteDisplayed(u16),
 }
 

@@ -1,8 +1,8 @@
-//! Parses a request as it appeared on the wire, from lead to last character, back into commands.
+//! Parses a request back into commands; the request is as on the wire, from first to last character.
 //!
-//! The same characters mean different things to different modules (`$016` is a channel mask, a level or sixteen
-//! bits), so a text may fit several commands; each family has its own list. Ranges are not on the wire, so numbers
-//! stay in their notation.
+//! The same characters mean different things to different modules (`$016` reads a channel mask, a level or sixteen
+//! bits), so one request may fit several commands; each family has its own list. A request does not tell the range, so
+//! numbers stay in their notation.
 
 use super::frame::{hex_digit, hex_number};
 use super::{
@@ -11,10 +11,10 @@ use super::{
     ModuleName, OutputForm, OutputWord, SlewCode, Stored, TypeCode, UpTo, Width,
 };
 
-/// A type code that no module has: it imposes no range on a reading.
+/// A type code that no module has; with it, a reading is checked against no range.
 const UNKNOWN: TypeCode = TypeCode(0xFF);
 
-/// Notations and channel counts that an unknown input module may have.
+/// Notations and channel counts that an input module may have when nothing is known about it.
 const INPUT_FORMS: [InputForm; 6] = [
     InputForm::eight(DataFormat::Engineering, UNKNOWN),
     InputForm::eight(DataFormat::Percent, UNKNOWN),
@@ -32,7 +32,7 @@ const OUTPUT_FORMS: [OutputForm; 5] = [
     OutputForm::Hex16,
 ];
 
-/// Returns every command that is written as `request`, from lead to last character without checksum and CR.
+/// Returns every command that encodes to `request`, which has neither checksum nor CR.
 pub fn decode_request(request: &[u8]) -> Vec<Command> {
     let canonical = canonical(request);
     let request = canonical.as_deref().unwrap_or(request);
@@ -51,7 +51,7 @@ pub fn decode_request(request: &[u8]) -> Vec<Command> {
     found.extend(analog_out(rest).into_iter().map(|ask| ask.to(to)));
     found.extend(digital(rest).into_iter().map(|ask| ask.to(to)));
     found.extend(counter(rest).into_iter().map(|ask| ask.to(to)));
-    // Encoding each candidate again checks the lead and everything that the lists above accept too freely.
+    // Each candidate is encoded again: this checks the first character and whatever the lists above accept too freely.
     let mut encoded = Vec::with_capacity(24);
     found.retain(|command| {
         encoded.clear();
@@ -61,7 +61,8 @@ pub fn decode_request(request: &[u8]) -> Vec<Command> {
     found
 }
 
-/// Rewrites `#AABBDD` in its canonical spelling: 0A (first group) as 00, Ac (one output of it) as 1c.
+/// Rewrites `#AABBDD` in the spelling that [`Command::encode`] uses: 0A (first group) as 00, Ac (one output of it) as
+/// 1c.
 fn canonical(request: &[u8]) -> Option<Vec<u8>> {
     let (place, digit) = match request {
         [b'#', _, _, b'0', b'A', _, _] => (4, b'0'),

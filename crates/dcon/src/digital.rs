@@ -5,7 +5,7 @@ use super::request::Request;
 use super::shape::Shape;
 use super::{Address, Channel, OutputWord, UpTo};
 
-/// One of the two stored output patterns.
+/// Which of the two stored output patterns is meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stored {
     /// Pattern applied at power-on.
@@ -28,16 +28,16 @@ impl Stored {
 pub enum GroupWrite {
     /// BB = 00: outputs 0..7, bit n = output n.
     GroupA(u8),
-    /// BB = 0B: outputs 8..15 of 16-output modules.
+    /// BB = 0B: outputs 8..15 of a module with 16 outputs, bit n = output 8 + n.
     GroupB(u8),
-    /// BB = 1c: one output of the first group.
+    /// BB = 1c: output c of the first group.
     OneOfA {
         /// Number of the output, 0 to 7.
         output: UpTo<7>,
         /// New state of the output.
         on: bool,
     },
-    /// BB = Bc: one output of the second group.
+    /// BB = Bc: output c of the second group.
     OneOfB {
         /// Number of the output within the group, 0 to 7.
         output: UpTo<7>,
@@ -51,14 +51,14 @@ pub enum GroupWrite {
 pub enum Digital {
     /// `$AA6`: reads inputs and outputs, outputs first.
     ReadAll,
-    /// `@AA`: reads the same, with a `>` reply.
+    /// `@AA`: reads the same; the reply begins with `>`.
     ReadPort,
     /// `@AA(data)`: sets all outputs.
     Write(OutputWord),
     /// `#AABBDD`: sets some outputs.
     WriteGroup(GroupWrite),
-    /// `#AAN`: reads the number of events on an input since the last clear, modulo 65536. Counts pulses of 5 ms and
-    /// longer.
+    /// `#AAN`: reads the number of events on an input since it was last cleared, modulo 65536. Pulses of 5 ms and
+    /// longer count.
     ReadEvents {
         /// Number of the input.
         channel: Channel,
@@ -68,14 +68,14 @@ pub enum Digital {
         /// Number of the input.
         channel: Channel,
     },
-    /// `$AALS`: reads the inputs that have been high (or low) since the last clear.
+    /// `$AALS`: reads which inputs have been high (or low) since the latches were last cleared.
     ReadLatched {
         /// True for latched high, false for latched low.
         high: bool,
     },
     /// `$AAC`: clears all latches.
     ClearLatched,
-    /// `$AA4`: reads the sample of [`super::Command::SampleAll`]. Refused when there is none.
+    /// `$AA4`: reads the sample that [`super::Command::SampleAll`] took. The module refuses when there is none.
     ReadSampled,
     /// `~AA4V`: reads a stored pattern.
     ReadStored(Stored),

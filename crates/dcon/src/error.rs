@@ -1,16 +1,17 @@
-//! Reasons for refusing a reply.
+//! Reasons why a reply is not accepted.
 
 use super::Address;
 use thiserror::Error;
 
-/// Reason for refusing a reply. [`ReplyError::is_answer`] separates a module that declines from a damaged reply.
+/// Reason why a reply is not accepted. [`ReplyError::is_answer`] distinguishes a refusal by the module from a damaged
+/// reply.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum ReplyError {
     /// `?AA`: the module understood the command but refused it (no such channel, out of range, needs INIT*, an
     /// alarm controls the output).
     #[error("the module refused the command")]
     Refused,
-    /// Bare `!`: the host watchdog has tripped; outputs keep their safe values until the status is cleared.
+    /// `!` alone: the host watchdog has tripped; outputs keep their safe values until its status is cleared.
     #[error("the module ignored the output: its host watchdog has tripped")]
     Ignored,
     /// The command is a broadcast, which has no reply.
@@ -19,7 +20,7 @@ pub enum ReplyError {
     /// The frame has no characters before its end.
     #[error("empty reply")]
     Empty,
-    /// The frame does not end in CR although only the CR can prove it complete.
+    /// The frame does not end in CR, and only the CR could prove it complete.
     #[error("the reply does not end in CR")]
     NotEnded,
     /// The frame is longer than any reply of the protocol.
@@ -31,9 +32,9 @@ pub enum ReplyError {
     /// A byte is not printable ASCII.
     #[error("byte {byte:#04x} at position {at} is not a printable ASCII character")]
     NotText {
-        /// Position from the lead.
+        /// Position of the byte in the reply, from 0.
         at: usize,
-        /// The byte.
+        /// Value of the byte.
         byte: u8,
     },
     /// The frame is too short for a checksum, or does not end in two upper-case hex digits.
@@ -47,12 +48,12 @@ pub enum ReplyError {
         /// Checksum computed.
         expected: u8,
     },
-    /// The lead is that of another kind of reply.
+    /// The first character (lead) is that of another kind of reply.
     #[error("lead `{}` received, `{}` expected", *found as char, *expected as char)]
     WrongLead {
-        /// Lead received.
+        /// First character received.
         found: u8,
-        /// Lead of a valid reply.
+        /// First character of a valid reply.
         expected: u8,
     },
     /// Another module answered.
@@ -66,34 +67,34 @@ pub enum ReplyError {
     /// The reply has more or fewer characters than this command allows.
     #[error("{found} characters before the checksum, not a valid length of this reply")]
     WrongLength {
-        /// Number of characters from the lead, without checksum and CR.
+        /// Number of characters received, without checksum and CR.
         found: usize,
     },
-    /// A field violates its grammar.
+    /// A field does not have the form that the protocol prescribes.
     #[error("no {expected} at position {at}")]
     BadField {
-        /// Position from the lead.
+        /// Position of the field in the reply, from 0.
         at: usize,
-        /// Field expected.
+        /// Name of the expected field.
         expected: &'static str,
     },
-    /// A field is well formed, but beyond what the module can send.
+    /// A field has the right form, but a value that the module cannot send.
     #[error("{what} out of range at position {at}")]
     OutOfRange {
-        /// Position from the lead.
+        /// Position of the field in the reply, from 0.
         at: usize,
-        /// Quantity in the field.
+        /// Quantity that the field holds.
         what: &'static str,
     },
 }
 
 impl ReplyError {
-    /// Whether the module understood and declined: the line works and repeating the command changes nothing.
+    /// Returns true when the module understood and refused: the line works, and a repetition changes nothing.
     pub fn is_answer(self) -> bool {
         matches!(self, Self::Refused | Self::Ignored)
     }
 
-    /// Whether the characters themselves were damaged.
+    /// Returns true when the checksum shows that characters were damaged.
     pub fn is_checksum(self) -> bool {
         matches!(self, Self::ChecksumMissing | Self::ChecksumWrong { .. })
     }

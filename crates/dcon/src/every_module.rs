@@ -1,4 +1,4 @@
-//! Commands of (almost) every module type: configuration, identity, host watchdog, INIT*.
+//! Commands of every module type, with few exceptions: configuration, identity, host watchdog, INIT*.
 
 use super::command::Effect::{self, Act, Read, ReadOnce, Store};
 use super::request::Request;
@@ -8,59 +8,61 @@ use super::{Address, Config, ModuleName, UpTo};
 /// Commands common to all families.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Common {
-    /// `$AA2`. A module in INIT* mode (addressed as 00) answers with its stored address.
+    /// `$AA2`: reads the configuration. A module in INIT* mode (addressed as 00) answers with its stored address.
     ReadConfig,
-    /// `%AANNTTCCFF`. The reply comes from the new address. Outside INIT* the module refuses to change baud and
-    /// checksum.
+    /// `%AANNTTCCFF`: writes the configuration. The reply comes from the new address. Outside INIT* the module refuses
+    /// to change baud rate and checksum.
     WriteConfig {
         /// New address of the module.
         address: Address,
         /// New type, baud and format.
         config: Config,
     },
-    /// `$AA5`: true on the first read after a reset, then false. Counters lack this command.
+    /// `$AA5`: reads the reset status, which is true at the first read after a reset, then false. Counters lack this
+    /// command.
     ReadResetStatus,
-    /// `$AAF`: firmware version.
+    /// `$AAF`: reads the firmware version.
     ReadFirmware,
-    /// `$AAM`: module name. The name can be rewritten, so it does not prove the type.
+    /// `$AAM`: reads the module name. The name can be rewritten, so it does not prove the type of the module.
     ReadName,
     /// `~AAO(name)`: sets the module name.
     WriteName(ModuleName),
-    /// `$AAI`: state of the INIT* terminal, 0 when grounded.
+    /// `$AAI`: reads the INIT* terminal: 0 when it is grounded.
     ReadInitPin,
-    /// `~AA0`: bit 2 set = the host watchdog has tripped. Newer firmware sets bit 7 while it is enabled.
+    /// `~AA0`: reads the status of the host watchdog. Bit 2: it has tripped. Bit 7, in newer firmware: it is enabled.
     ReadWatchdogStatus,
-    /// `~AA1`: clears the tripped watchdog, so that outputs obey again. The flag is in EEPROM.
+    /// `~AA1`: clears the status of a tripped watchdog, so that outputs can be written again. The module keeps it in
+    /// EEPROM.
     ClearWatchdogStatus,
-    /// `~AA2`: host watchdog settings.
+    /// `~AA2`: reads the settings of the host watchdog.
     ReadWatchdog,
     /// `~AA3EVV`: sets the host watchdog.
     WriteWatchdog {
-        /// Whether the watchdog is active.
+        /// True switches the watchdog on.
         enabled: bool,
-        /// Time without a host message until the watchdog trips, tenths of a second, from 1.
+        /// Time without a message from the host after which the watchdog trips, tenths of a second, from 1.
         timeout_tenths: u8,
     },
-    /// `~AARD`, newer firmware: configured delay before a reply, ms.
+    /// `~AARD`, newer firmware: reads the configured delay before a reply, ms.
     ReadResponseDelay,
     /// `~AARDVV`, newer firmware: sets the delay before a reply.
     WriteResponseDelay {
         /// Delay, ms.
         delay_ms: UpTo<30>,
     },
-    /// `$AAP`, newer firmware: 0 DCON, 1 Modbus RTU.
+    /// `$AAP`, newer firmware: reads the protocol: 0 DCON, 1 Modbus RTU.
     ReadProtocol,
-    /// `$AAPN`, newer firmware, within INIT*: selects the protocol after the next power-on. A module set to Modbus
+    /// `$AAPN`, newer firmware, in INIT* mode only: selects the protocol from the next power-on. A module set to Modbus
     /// RTU no longer answers to DCON.
     WriteProtocol {
         /// True for Modbus RTU, false for DCON.
         modbus: bool,
     },
-    /// `~AAI`: enters soft INIT; valid only within the window that [`Common::OpenSoftInit`] opens.
+    /// `~AAI`: enters soft INIT; the module accepts it only for the time that [`Common::OpenSoftInit`] sets.
     EnterSoftInit,
-    /// `~AATnn`: opens the window for soft INIT.
+    /// `~AATnn`: permits soft INIT for some time.
     OpenSoftInit {
-        /// Length of the window, seconds.
+        /// How long soft INIT is permitted, seconds.
         seconds: UpTo<60>,
     },
 }

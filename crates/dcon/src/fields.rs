@@ -1,11 +1,11 @@
-//! Reads the fields of a reply by width. Each step consumes exactly what the grammar demands, or returns an error
-//! that names the missing field.
+//! Reads the fields of a reply one after another. Each step consumes exactly the characters that the protocol
+//! prescribes, or returns an error that names the missing field.
 
 use super::frame::hex_number;
 use super::{Address, ReplyError};
 use std::ops::RangeInclusive;
 
-/// The characters of a reply and the position of the next one.
+/// Characters of a reply, and the position of the next one to read.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fields<'a> {
     text: &'a [u8],
@@ -31,12 +31,12 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// Returns the first character without consuming it.
+    /// Returns the first character (the lead) without consuming it.
     pub(super) fn lead(&self) -> Option<u8> {
         self.text.first().copied()
     }
 
-    /// Consumes the lead and checks the length of the whole reply, before any field is read.
+    /// Consumes the lead; checks the length of the whole reply before any field is read.
     pub(super) fn start(
         &mut self,
         expected: u8,
@@ -64,7 +64,7 @@ impl<'a> Fields<'a> {
         Ok(field)
     }
 
-    /// Fails when characters are left.
+    /// Fails when there are characters left.
     pub(super) fn end(&self) -> Result<(), ReplyError> {
         if self.at == self.text.len() {
             Ok(())
@@ -92,7 +92,7 @@ impl<'a> Fields<'a> {
         Ok(self.hex(2)? as u8)
     }
 
-    /// Reads decimal digits with a value up to `max`.
+    /// Reads decimal digits; fails on a value above `max`.
     pub(super) fn decimal(&mut self, width: usize, max: u32) -> Result<u32, ReplyError> {
         let at = self.at;
         let value = self

@@ -2,19 +2,18 @@
 
 use super::ReplyError;
 
-/// Longest frame that a parser must hold, CR included. The longest reply of the protocol has 60 characters.
+/// Longest frame that is accepted, CR included, characters. The longest reply of the protocol has 60.
 pub const FRAME_LIMIT: usize = 64;
 
-/// Carriage return: the only end of a frame.
+/// Carriage return: the only character that ends a frame.
 pub(super) const CR: u8 = 0x0D;
 
-/// Sum of all characters from the lead on, modulo 256.
+/// Returns the checksum: the sum of all characters from the lead on, modulo 256.
 pub fn checksum(text: &[u8]) -> u8 {
     text.iter().fold(0, |sum: u8, byte| sum.wrapping_add(*byte))
 }
 
-/// Removes the framing. Returns the characters from the lead to the last before the checksum, and whether the frame
-/// is proven complete.
+/// Removes checksum and CR. Returns the characters before them, and true when the frame is proved complete.
 pub(super) fn open(frame: &[u8], with_checksum: bool) -> Result<(&[u8], bool), ReplyError> {
     if frame.len() > FRAME_LIMIT {
         return Err(ReplyError::TooLong {
@@ -33,7 +32,7 @@ pub(super) fn open(frame: &[u8], with_checksum: bool) -> Result<(&[u8], bool), R
     if text.is_empty() {
         return Err(ReplyError::Empty);
     }
-    // A correct checksum proves the end as well as a CR does.
+    // A correct checksum proves the end of the frame as well as a CR does.
     Ok((text, ended || with_checksum))
 }
 
@@ -51,7 +50,7 @@ fn verified(text: &[u8]) -> Result<&[u8], ReplyError> {
     }
 }
 
-/// Value of upper-case hex digits, at most eight; `None` for anything else.
+/// Returns the value of one to eight upper-case hex digits; `None` for anything else.
 pub(super) fn hex_number(text: &[u8]) -> Option<u32> {
     if text.is_empty() || text.len() > 8 {
         return None;
@@ -61,7 +60,7 @@ pub(super) fn hex_number(text: &[u8]) -> Option<u32> {
     })
 }
 
-/// Value of an upper-case hex digit; `None` for any other byte, lower case included.
+/// Returns the value of an upper-case hex digit; `None` for any other byte, lower-case digits included.
 pub(super) fn hex_digit(byte: u8) -> Option<u8> {
     match byte {
         b'0'..=b'9' => Some(byte - b'0'),

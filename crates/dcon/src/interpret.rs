@@ -1,27 +1,28 @@
-//! Interprets line traffic, for traces and commands typed by hand: which commands a module family has, which
-//! requests must never be sent, and what a request and its reply mean together.
+//! Interprets the traffic of a line, for traces and for commands typed by hand: which commands a family of modules has,
+//! which requests must never be sent, and what a request and its reply mean together.
 //!
-//! A request may fit several commands ([`decode_request`]). The reply shows which one the host sent: [`interpret`] returns
-//! those that the reply fits.
+//! A request may fit several commands ([`decode_request`]). Its reply shows which of them the host meant: [`interpret`]
+//! returns those that the reply fits.
 
 use super::frame::{self, hex_digit};
 use super::{Command, Reply, ReplyError, decode_request};
 
-/// Family of a module, which determines its commands.
+/// Family of a module, which decides what commands it has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Family {
     /// 7017, 7018, 7033.
     AnalogIn,
     /// 7021, 7022, 7024.
     AnalogOut,
-    /// 7041 to 7067, except the analog models.
+    /// 7041 to 7067, except analog modules.
     Digital,
     /// 7080.
     Counter,
 }
 
 impl Family {
-    /// Derives the family from a model or a module's own name (`7017F`, `I-7043`); `None` for an unknown name.
+    /// Returns the family of a model or of a name that a module reports (`7017F`, `I-7043`); `None` for an unknown
+    /// name.
     pub fn of_name(name: &str) -> Option<Self> {
         let digits = &name[name.find('7')?..];
         match digits.get(..4)? {
@@ -35,7 +36,7 @@ impl Family {
         }
     }
 
-    /// Whether modules of this family have this command.
+    /// Returns true when modules of this family have this command.
     pub fn has_command(self, command: &Command) -> bool {
         match command {
             Command::HostOk | Command::SampleAll | Command::Common(..) => true,
@@ -47,8 +48,8 @@ impl Family {
     }
 }
 
-/// Returns the reason why a request must never be sent; `None` when it may be. Factory calibration and trim need
-/// instruments that a rig does not have, and can spoil a module for good.
+/// Returns why a request must never be sent; `None` when it may be. Factory calibration and trim need instruments that
+/// a rig does not have, and can spoil a module for good.
 pub fn factory_command(request: &[u8]) -> Option<&'static str> {
     let [lead, _, _, rest @ ..] = request else {
         return None;
@@ -71,8 +72,8 @@ pub fn factory_command(request: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// Returns the commands of `request` that `reply` fits, both as on the wire; if it fits none, returns each command
-/// with its error.
+/// Returns the commands of `request` that `reply` fits; both are as on the wire. If the reply fits no command, returns
+/// each command with its error.
 pub fn interpret(
     request: &[u8],
     reply: &[u8],

@@ -1,16 +1,16 @@
-//! Values for analog outputs, in whole steps of the configured notation.
+//! Levels of analog outputs, in whole steps of the configured notation.
 
 use super::fields::Fields;
 use super::request::Request;
 use super::{ReplyError, TypeCode};
 use thiserror::Error;
 
-/// Notation of the output levels of a module, determined by model and configuration word.
+/// Notation of the output levels of a module; model and configuration word decide it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OutputForm {
-    /// 7021, 7021P, 7022: `05.000`, steps of 0.001 V or mA, no sign.
+    /// 7021, 7021P, 7022: `05.000`, steps of 0.001 V or 0.001 mA, without sign.
     Engineering,
-    /// 7024: `+05.000`.
+    /// 7024: `+05.000`, steps of 0.001 V or 0.001 mA, with sign.
     EngineeringSigned,
     /// `+050.00`, steps of 0.01 %.
     Percent,
@@ -20,7 +20,7 @@ pub enum OutputForm {
     Hex16,
 }
 
-/// Reason why a value has no level.
+/// Reason why no level expresses a value.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum LevelError {
     /// The range has no scale, or the value is NaN.
@@ -51,7 +51,7 @@ pub struct Level {
 }
 
 impl OutputForm {
-    /// Least and greatest number of steps that the notation can write.
+    /// Returns the least and the greatest number of steps that the notation can write.
     fn limits(self) -> (i32, i32) {
         match self {
             Self::Engineering => (0, 99_999),
@@ -62,7 +62,7 @@ impl OutputForm {
         }
     }
 
-    /// Length of a value, characters.
+    /// Returns the number of characters of a level in a request.
     pub(super) fn width(self) -> usize {
         match self {
             Self::Engineering => 6,
@@ -74,7 +74,7 @@ impl OutputForm {
 }
 
 impl Level {
-    /// Makes a level from steps; `None` beyond what the notation can write.
+    /// Creates a level from steps; returns `None` for a number of steps that the notation cannot write.
     pub fn from_steps(form: OutputForm, steps: i32) -> Option<Self> {
         let (least, greatest) = form.limits();
         (least..=greatest)
@@ -82,7 +82,7 @@ impl Level {
             .then_some(Self { form, steps })
     }
 
-    /// Returns the level nearest to `value`, given in the unit of `range`. The range includes its ends.
+    /// Returns the level nearest to `value`, which is in the unit of `range`. Both ends of the range are allowed.
     pub fn nearest(form: OutputForm, range: TypeCode, value: f64) -> Result<Self, LevelError> {
         let scale = range.full_scale().filter(|_| value.is_finite());
         let scale = scale.ok_or(LevelError::NoScale {
@@ -108,12 +108,12 @@ impl Level {
         self.form
     }
 
-    /// Returns the number of steps of 0.001 unit, 0.01 %, or one bit.
+    /// Returns the number of steps; a step is 0.001 of the unit, 0.01 % or one bit.
     pub fn steps(self) -> i32 {
         self.steps
     }
 
-    /// Converts to the unit of `range`; `None` when it has no scale.
+    /// Converts the level to the unit of `range`; `None` when the range has no scale.
     pub fn in_units(self, range: TypeCode) -> Option<f64> {
         let scale = range.full_scale()?;
         let (low, span) = (scale.low, scale.high - scale.low);
@@ -138,7 +138,7 @@ impl Level {
         };
     }
 
-    /// Reads a level from a request; `None` unless all of `text` is one level.
+    /// Reads a level from a request; `None` unless `text` is exactly one level.
     pub(super) fn read(form: OutputForm, text: &[u8]) -> Option<Self> {
         let mut fields = Fields::new(text);
         let level = Self::decode(form, &mut fields).ok()?;
@@ -161,7 +161,7 @@ impl Level {
     }
 }
 
-/// Fraction of full scale: of the span for one-sided ranges, of the upper end for two-sided ones.
+/// Returns `value` as a fraction of full scale: of the span for one-sided ranges, of the upper end for two-sided ones.
 fn share(value: f64, low: f64, high: f64) -> f64 {
     if low < 0.0 {
         value / high

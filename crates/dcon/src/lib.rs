@@ -1,10 +1,11 @@
-//! The DCON protocol of I-7000 modules, for the one master of a line. Pure: bytes in, values out.
+//! The DCON protocol of I-7000 modules, for the one master of a line: bytes in, values out, no input or output of its
+//! own.
 //!
-//! A request is `LEAD address command [checksum] CR`, a reply `LEAD [address] data [checksum] CR`, upper-case ASCII
-//! throughout. The meaning of a reply depends on its command: `>` replies carry no address, and the reply to `$AA6`
-//! is a channel mask, a level or sixteen bits, depending on the module. So the *command* decodes the reply
-//! ([`Command::decode`]) by lead, exact length, grammar and range. Anything that does not fit is a [`ReplyError`]
-//! with its reason, never a value.
+//! A request is `LEAD address command [checksum] CR`, a reply is `LEAD [address] data [checksum] CR`, all in upper-case
+//! ASCII; the lead is the first character and tells the kind of message. The meaning of a reply depends on its command:
+//! `>` replies carry no address, and the reply to `$AA6` is a channel mask, a level or sixteen bits, depending on the
+//! module. So the *command* decodes the reply ([`Command::decode`]) by lead, exact length, form and range. Anything
+//! that does not fit is a [`ReplyError`] with its reason, never a value.
 //!
 //! ```
 //! use dcon::{Address, Command, Common, Reply, ReplyError};
@@ -17,9 +18,9 @@
 //! assert_eq!(command.decode(b"?01\r", false), Err(ReplyError::Refused));
 //! ```
 //!
-//! # Map of the modules
-//! Commands are grouped by module family, because the same letters mean different things in each. Each family has
-//! one table: the effect of a command on the module ([`Effect`]) and the form of its reply.
+//! # Files
+//! Commands are grouped by family of modules, because the same letters mean different things in each. Each family has
+//! one table: the effect of each command on the module ([`Effect`]) and the form of its reply.
 //!
 //! | family | modules | file |
 //! |---|---|---|
@@ -31,12 +32,12 @@
 //!
 //! | file | contents |
 //! |---|---|
-//! | `command.rs`, `request.rs`, `frame.rs` | requests: the closed set, their fields, checksum and CR |
-//! | `reply.rs`, `shape.rs`, `fields.rs`, `error.rs` | replies: meanings, forms, fields, reasons for refusal |
-//! | `reading.rs`, `level.rs`, `bits.rs`, `bounded.rs`, `type_code.rs`, `config.rs` | values, ranges and configuration words |
-//! | `setting.rs` | whether a setting is already in effect, since writing wears the EEPROM |
-//! | `agreement.rs` | selection among several answers to one request |
-//! | `decode_request.rs`, `interpret.rs`, `words.rs` | text of a request to commands, their meaning with a reply, both in words |
+//! | `command.rs`, `request.rs`, `frame.rs` | requests: all of them as one enum, their fields, checksum and CR |
+//! | `reply.rs`, `shape.rs`, `fields.rs`, `error.rs` | replies: meanings, forms, fields, reasons why one is not accepted |
+//! | `reading.rs`, `level.rs`, `bits.rs`, `bounded.rs`, `type_code.rs`, `config.rs` | values, ranges, configuration |
+//! | `setting.rs` | whether a module already has a setting, because writing wears the EEPROM |
+//! | `agreement.rs` | selection of one answer among several to the same request |
+//! | `decode_request.rs`, `interpret.rs`, `words.rs` | from a request back to commands, meaning, words |
 //!
 //! # Absent by design
 //! Factory calibration and trim (`$AA0`, `$AA1`, `$AA3` of outputs, `~AAE`) have no representation in these types,
@@ -87,7 +88,7 @@ pub use reading::{Reading, Readings, Value};
 pub use reply::{Reply, Text};
 pub use type_code::{FullScale, TypeCode, Unit};
 
-/// Keeps the example of the README compiling.
+/// Makes `cargo test` compile the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,14 +1,14 @@
 //! Readings of analog inputs: the characters as sent, and their meaning.
 //!
-//! A reading is a number or one of three states that must never become a number: over range, under range, blank
-//! (channel disabled). The end values of the hex notation (7FFF, 8000) count as over and under range, because the true
-//! value may lie anywhere beyond.
+//! A reading is a number, or one of three states that must never become a number: over range, under range, and blank
+//! (the channel is disabled). The end values of the hex notation (7FFF, 8000) count as over and under range, because
+//! the true value may lie anywhere beyond them.
 
 use super::fields::Fields;
 use super::frame::hex_number;
 use super::{DataFormat, InputForm, ReplyError, TypeCode};
 
-/// Value of a channel in its notation.
+/// Value of a channel, in the notation of the module.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Value {
     /// Value in the unit of the range.
@@ -17,7 +17,7 @@ pub enum Value {
     Percent(f64),
     /// Value in two's complement, 32768 = full scale.
     Hex(i16),
-    /// Value of a one-sided range: 0 = lower end, 65535 = upper end.
+    /// Value of a range that begins at zero: 0 = lower end, 65535 = upper end.
     HexUnipolar(u16),
     /// At or above the upper end of the notation.
     OverRange,
@@ -28,7 +28,8 @@ pub enum Value {
 }
 
 impl Value {
-    /// Converts to the unit of `range`; `None` for a state that is not a number and for a range without scale.
+    /// Converts the value to the unit of `range`; `None` for a state that is not a number, and for a range without
+    /// scale.
     pub fn in_units(self, range: TypeCode) -> Option<f64> {
         let scale = range.full_scale()?;
         let span = scale.high - scale.low;
@@ -60,7 +61,7 @@ impl Reading {
         std::str::from_utf8(&self.text[..usize::from(self.length)]).unwrap_or_default()
     }
 
-    /// Decodes the next `width` characters.
+    /// Decodes the characters that come next as one reading.
     pub(super) fn decode(
         form: InputForm,
         width: usize,
@@ -90,7 +91,7 @@ impl Reading {
     }
 }
 
-/// Length of one reading, characters.
+/// Returns the number of characters of one reading.
 pub(super) fn width(format: DataFormat) -> usize {
     match format {
         DataFormat::Engineering | DataFormat::Percent => 7,
@@ -145,7 +146,7 @@ fn engineering(field: &[u8], range: TypeCode, at: usize) -> Result<Value, ReplyE
             });
         }
     };
-    // Inputs saturate slightly above full scale, by less than the quarter of the span allowed here.
+    // Inputs saturate slightly above full scale, by less than the quarter of the span that is allowed here.
     let plausible = range.full_scale().is_none_or(|scale| {
         let slack = (scale.high - scale.low) / 4.0;
         (scale.low - slack..=scale.high + slack).contains(&number)
@@ -185,13 +186,13 @@ fn beyond(negative: bool) -> Value {
 
 enum Decimal {
     Number(f64),
-    /// Only nines: the module's code for over or under range.
+    /// Digits that are all nines: the code of the module for over or under range.
     Nines {
         negative: bool,
     },
 }
 
-/// Parses a sign and five digits with one point among them. The sign may be missing only from an over-range reading.
+/// Parses a sign, and five digits with a decimal point among them. Only an over-range reading may lack the sign.
 fn decimal(field: &[u8]) -> Option<Decimal> {
     let (negative, digits) = match field {
         [b'+', rest @ ..] => (false, rest),

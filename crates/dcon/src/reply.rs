@@ -1,4 +1,4 @@
-//! Replies, decoded according to their command.
+//! Meaning of replies, decoded by the command that asked.
 
 use super::{
     Address, AlarmState, Bits, Channel, Config, GateMode, InputMode, Level, Reading, Readings,
@@ -9,11 +9,11 @@ use std::fmt;
 /// Meaning of a valid reply.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reply {
-    /// A broadcast was sent; no module confirms it.
+    /// A broadcast was sent; no module confirms that it arrived.
     Sent,
     /// `!AA` or `>`: the module did as commanded.
     Accepted,
-    /// `!AATTCCFF`.
+    /// `!AATTCCFF`: the configuration.
     Config {
         /// Stored address; differs from the address of the request when the module is in INIT* mode.
         address: Address,
@@ -22,7 +22,7 @@ pub enum Reply {
     },
     /// Firmware version or module name.
     Text(Text),
-    /// Yes or no; the command defines the question.
+    /// Yes or no; the command says to which question.
     Flag(bool),
     /// A mask or status.
     Byte(u8),
@@ -30,18 +30,18 @@ pub enum Reply {
     Decimal(u32),
     /// `!AAEVV`: host watchdog settings.
     Watchdog {
-        /// Whether the watchdog is active; `None` from firmware that omits it.
+        /// True when the watchdog is on; `None` when the firmware does not tell.
         enabled: Option<bool>,
-        /// Time without a host message until the watchdog trips, tenths of a second.
+        /// Time without a message from the host after which the watchdog trips, tenths of a second.
         timeout_tenths: u8,
     },
     /// States of inputs and outputs.
     Bits(Bits),
-    /// The synchronised sample.
+    /// States of all inputs at the instant of the last [`super::Command::SampleAll`].
     Sampled {
-        /// True the first time the sample is read.
+        /// True when the sample is read for the first time.
         first_read: bool,
-        /// States at the sample.
+        /// States at that instant.
         bits: Bits,
     },
     /// Number of events on a digital input, modulo 65536.
@@ -64,21 +64,21 @@ pub enum Reply {
     Level(Level),
     /// Range and slew rate of a 7022 channel.
     OutputChannel {
-        /// Range.
+        /// Range of the output.
         range: TypeCode,
-        /// Slew rate.
+        /// Slew rate of the output.
         slew: SlewCode,
     },
     /// Range of an input channel.
     ChannelRange {
         /// Number of the input.
         channel: Channel,
-        /// Range.
+        /// Range of the input.
         range: TypeCode,
     },
 }
 
-/// A short text from a module, stored without allocation.
+/// A short text from a module, kept without allocation.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Text {
     bytes: [u8; Text::LONGEST],
@@ -86,10 +86,10 @@ pub struct Text {
 }
 
 impl Text {
-    /// Greatest length, characters. Names have up to six, versions fewer; the rest is reserve.
+    /// Most characters. Names have up to six, versions fewer; the rest is in reserve.
     pub const LONGEST: usize = 16;
 
-    /// Returns `None` when the text is empty or too long.
+    /// Creates a text; returns `None` when it is empty or too long.
     pub(super) fn new(text: &[u8]) -> Option<Self> {
         let mut bytes = [0; Self::LONGEST];
         bytes.get_mut(..text.len())?.copy_from_slice(text);

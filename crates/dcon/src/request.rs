@@ -43,7 +43,7 @@ impl<'a> Request<'a> {
         self
     }
 
-    /// Writes one hex digit, or none for `None`: requests to single-channel modules name no channel.
+    /// Writes one hex digit; writes nothing for `None`, because requests to modules with one channel name no channel.
     pub(super) fn digit<const MAX: u8>(
         &mut self,
         value: impl Into<Option<UpTo<MAX>>>,

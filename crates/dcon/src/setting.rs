@@ -1,22 +1,24 @@
 //! Tells whether a module already has the setting that a command would write. An EEPROM endures a limited number of
-//! writes, so the host reads a setting first ([`Command::setting`]) and writes it only if it differs
+//! writes, so the host first reads the setting ([`Command::setting`]) and writes it only if it differs
 //! ([`Command::is_in_effect`]).
 //!
-//! Two kinds of setting are always written. Stored outputs: comparing needs both the stored and the present
-//! pattern, and which half of the present one is outputs depends on a model that the request does not name. Alarms
-//! of a 7080 that are switched on, and their mode: the meaning of the `@AADI` reply depends on the mode, which
-//! cannot be read. An alarm that is off reads the same in both modes.
+//! Two kinds of settings are always written:
+//!
+//! - Stored outputs. A comparison needs the stored and the present pattern, and which half of the present one belongs
+//!   to outputs depends on the model, which the request does not name.
+//! - Alarms of a 7080, when they are switched on, and their mode. What the reply to `@AADI` means depends on the mode,
+//!   which cannot be read. An alarm that is off reads the same in both modes.
 
 use super::{AnalogIn, AnalogOut, Command, Common, Config, Counter, FormatByte, Reply, TypeCode};
 
-/// Bit of the watchdog status: tripped.
+/// Bit of the watchdog status that says that the watchdog has tripped.
 const TRIPPED: u8 = 0x04;
-/// Low bits of FF in which some digital modules return a model code, whatever was written.
+/// Low bits of FF in which some digital modules return a code of their model, whatever was written.
 const MODEL_BITS: u8 = 0x07;
 
 impl Command {
-    /// Returns the command that reads the setting this command writes; `None` when it writes none, or when no reply
-    /// shows it.
+    /// Returns the command that reads the setting which this command writes; `None` when it writes none, or when no
+    /// reply shows the setting.
     pub fn setting(&self) -> Option<Self> {
         match *self {
             Self::HostOk | Self::SampleAll | Self::Digital(..) => None,
@@ -27,7 +29,7 @@ impl Command {
         }
     }
 
-    /// Whether `found`, the reply to [`Command::setting`], shows that writing would change nothing.
+    /// Returns true when `found`, the reply to [`Command::setting`], shows that writing would change nothing.
     pub fn is_in_effect(&self, found: &Reply) -> bool {
         match (*self, *found) {
             (Self::Common(_, ask), found) => is_common_in_effect(ask, found),
@@ -100,7 +102,7 @@ fn is_common_in_effect(ask: Common, found: Reply) -> bool {
     }
 }
 
-/// Returns the settings in a configuration word, without its model code.
+/// Returns a configuration word without the code of the model that it may contain.
 fn settings_of(config: Config) -> Config {
     let FormatByte(format) = config.format;
     let format = match config.type_code {

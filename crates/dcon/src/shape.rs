@@ -1,4 +1,4 @@
-//! Forms of replies: lead, lengths, fields. The families' tables refer to these.
+//! Forms of replies: lead, lengths, fields. The tables of the families refer to these forms.
 
 use super::analog_out::output_range;
 use super::command::Effect;
@@ -10,7 +10,7 @@ use super::{
     UpTo,
 };
 
-/// Form of a valid reply. In the remarks AA is the address of the request.
+/// Form of a valid reply. Below, AA is the address in the request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shape {
     /// `!AA`
@@ -67,7 +67,7 @@ pub(super) enum Shape {
     ChannelRange(Channel),
 }
 
-/// Detects `?AA` and the bare `!`, by which a module declines. Other leads are left to the form.
+/// Recognises `?AA` and `!` alone, by which a module refuses. Any other lead is checked by the form.
 pub(super) fn check_refusal(text: &[u8], to: Address, effect: Effect) -> Result<(), ReplyError> {
     let output = effect == Effect::Output;
     let mut fields = Fields::new(text);
@@ -115,7 +115,7 @@ impl Shape {
         }
     }
 
-    /// Length of the longest variant from the lead on, characters.
+    /// Returns the number of characters of the longest valid reply, without checksum and CR.
     pub(super) fn longest(self) -> usize {
         match self {
             Self::Output => 1,
@@ -135,7 +135,7 @@ impl Shape {
         }
     }
 
-    /// Length of the shortest variant from the lead on, characters.
+    /// Returns the number of characters of the shortest valid reply, without checksum and CR.
     fn shortest(self) -> usize {
         match self {
             Self::Text => 4,
@@ -147,7 +147,7 @@ impl Shape {
         }
     }
 
-    /// Whether a shorter reply may be complete as well, so that only an end mark decides.
+    /// Returns true when a shorter reply may be complete too, so that only a CR or a checksum proves the end.
     pub(super) fn is_open(self) -> bool {
         self.shortest() < self.longest()
     }
@@ -161,7 +161,7 @@ impl Shape {
         self.lead() == b'!' && !own
     }
 
-    /// Decodes `text`, from lead to last character before checksum and CR.
+    /// Decodes `text`, a reply without checksum and CR.
     pub(super) fn decode(self, text: &[u8], expected: Address) -> Result<Reply, ReplyError> {
         let mut fields = Fields::new(text);
         fields.start(self.lead(), self.shortest()..=self.longest())?;
@@ -203,7 +203,7 @@ impl Shape {
         }
     }
 
-    /// Decodes the replies of digital modules without address, and the latches, which have one in some firmware.
+    /// Decodes replies of digital modules that carry no address, and latches, which carry one in some firmware.
     fn bits(self, fields: &mut Fields<'_>, expected: Address) -> Result<Reply, ReplyError> {
         if self == Self::Latched && fields.length() > self.shortest() {
             fields.address_is(expected)?;
@@ -232,14 +232,14 @@ fn two_bytes(fields: &mut Fields<'_>) -> Result<Bits, ReplyError> {
     })
 }
 
-/// Decodes a stored pattern: of modules with eight outputs, the first byte; they append 00.
+/// Decodes a stored pattern. Modules with eight outputs send it in the first byte and append 00.
 fn stored_bits(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
     two_bytes(fields).map(Reply::Bits)
 }
 
 fn config(fields: &mut Fields<'_>, expected: Address) -> Result<Reply, ReplyError> {
     let found = fields.address()?;
-    // A module in INIT* mode listens at 00 and reports its stored address.
+    // A module in INIT* mode is asked at address 00 and reports its stored address.
     if found != expected && expected != Address(0) {
         return Err(ReplyError::WrongAddress { found, expected });
     }

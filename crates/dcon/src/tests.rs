@@ -1,4 +1,4 @@
-//! The protocol as tables: the bytes of each command, the meaning of its reply, and replies that must be refused.
+//! Tests of the protocol as tables: bytes of each command, meaning of its reply, and replies that must be refused.
 
 #![allow(clippy::unwrap_used)]
 
@@ -41,7 +41,7 @@ fn word(width: Width, bits: u16) -> Digital {
     Digital::Write(OutputWord::new(width, bits).unwrap())
 }
 
-/// Commands that return readings, with replies; the tests below damage these.
+/// Commands that return readings, with replies, which the tests below damage.
 const READINGS: [(Command, &str); 7] = [
     (
         Command::AnalogIn(A1, AnalogIn::ReadAll(VOLTS)),
@@ -142,7 +142,7 @@ fn a_truncated_reply_is_refused() {
     for (command, reply) in all_frames() {
         for with_checksum in [false, true] {
             let whole = sealed(reply, with_checksum);
-            // A CR may only be missing where the length or the checksum proves the reply complete.
+            // The CR may be missing only where the length or the checksum proves the reply complete.
             for length in 0..whole.len() - 1 {
                 let outcome = command.decode(&whole[..length], with_checksum);
                 assert!(

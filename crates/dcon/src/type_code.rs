@@ -1,4 +1,4 @@
-//! Type codes (TT): the range that a module measures or drives, and its scaling.
+//! Type codes (TT): each stands for the range that a module measures or drives, and for its scale.
 
 /// Type code, the field TT of the configuration word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -17,12 +17,12 @@ pub enum Unit {
     Celsius,
 }
 
-/// The ends of a range in its unit.
+/// Both ends of a range, in its unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FullScale {
     /// Lower end.
     pub low: f64,
-    /// Upper end, which corresponds to 100 % and 7FFF.
+    /// Upper end; 100 % and 7FFF stand for it.
     pub high: f64,
     /// Unit of both ends.
     pub unit: Unit,
@@ -45,10 +45,10 @@ impl TypeCode {
     pub const COUNTER: Self = Self(0x50);
     /// Type code of a 7080 as frequency meter.
     pub const FREQUENCY: Self = Self(0x51);
-    /// Type code whose notation also applies to the cold junction: type J thermocouple.
+    /// Type code of a type J thermocouple; the reading of the cold junction has the same notation.
     pub(super) const COLD_JUNCTION: Self = Self(0x0E);
 
-    /// Returns the range; `None` for codes without one (digital, counter) and unknown codes.
+    /// Returns the range; `None` for codes that have none (digital, counter) and for unknown codes.
     pub fn full_scale(self) -> Option<FullScale> {
         use Unit::{Milliampere, Millivolt, Volt};
         Some(match self.0 {
@@ -72,8 +72,8 @@ impl TypeCode {
         })
     }
 
-    /// Returns the ranges of thermocouples J K T E R S B N C L M L-DIN (0E to 19) and Pt100 (20 to 23 with
-    /// 0.00385/K, 24 to 27 with 0.003916/K).
+    /// Returns the range of a temperature sensor: thermocouples J K T E R S B N C L M L-DIN (codes 0E to 19), and Pt100
+    /// (20 to 23 with 0.00385/K, 24 to 27 with 0.003916/K).
     fn temperature(self) -> Option<FullScale> {
         let (low, high) = match self.0 {
             0x0E => (-210.0, 760.0),
@@ -96,8 +96,8 @@ impl TypeCode {
         Some(FullScale::new(low, high, Unit::Celsius))
     }
 
-    /// Whether the hex notation of this input runs from 0000 at the lower end to FFFF at the upper end, instead of
-    /// two's complement.
+    /// Returns true when the hex notation of this input runs from 0000 at the lower end to FFFF at the upper end,
+    /// instead of being two's complement.
     pub fn unipolar_input(self) -> bool {
         matches!(self.0, 0x07 | 0x1A)
     }

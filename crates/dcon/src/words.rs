@@ -1,5 +1,5 @@
-//! Prints commands and replies in words, for traces and the bus tools. The meaning comes from the types; the
-//! protocol tables are in the family modules.
+//! Prints commands and replies in words, for traces and the bus tools. The words follow the types; the tables of the
+//! protocol are in the files of the families.
 
 use super::{Command, Reply, Value};
 use std::fmt;

@@ -1,7 +1,7 @@
-//! State changes of alarms: returned, acknowledged, shelved (ISA-18.2). They survive a restart.
+//! State changes of alarms (ISA-18.2): returned, acknowledged, shelved. They survive a restart.
 //!
-//! A change applies to every occurrence of a code on the rig, or on the simulated rig: one acknowledgement covers an alarm
-//! that was raised three times.
+//! A change applies to a code: one acknowledgement covers all occurrences of an alarm, even three. The real rig and the
+//! simulated rig are kept apart.
 
 use super::Store;
 use super::alarms::args;
@@ -14,14 +14,14 @@ use texts::Args;
 pub enum AlarmChange {
     /// The cause is gone.
     Returned,
-    /// A person has acknowledged it.
+    /// A person has acknowledged the alarm.
     Acknowledged {
         /// Name of the person.
         by: String,
     },
-    /// A person has shelved it: it is not shown for a while.
+    /// A person has shelved the alarm: it is hidden until a given time.
     Shelved {
-        /// End of the shelving.
+        /// Time until which the alarm is hidden, microseconds since 1970 UTC.
         until_us: i64,
         /// Name of the person.
         by: String,
@@ -30,20 +30,20 @@ pub enum AlarmChange {
     },
 }
 
-/// A state change with its alarm.
+/// A state change, with the alarm that it applies to.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AlarmChangeRecord {
     /// True for alarms of the simulated rig.
     pub simulated: bool,
     /// Code of the alarm; `None` for every alarm.
     pub code: Option<String>,
-    /// Time of the change.
+    /// Time of the change, microseconds since 1970 UTC.
     pub at_us: i64,
     /// The change.
     pub change: AlarmChange,
 }
 
-/// Unacknowledged occurrences of an alarm.
+/// All unacknowledged occurrences of one alarm.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnacknowledgedAlarm {
     /// Code of the alarm.
@@ -54,7 +54,7 @@ pub struct UnacknowledgedAlarm {
     pub args: Args,
     /// Number of occurrences.
     pub count: u32,
-    /// End of the shelving, if it is shelved.
+    /// Time until which the alarm is hidden, microseconds since 1970 UTC; `None`: it is not shelved.
     pub shelved_until_us: Option<i64>,
 }
 
@@ -126,7 +126,7 @@ fn left(connection: &Connection, simulated: bool) -> rusqlite::Result<Vec<Unackn
 }
 
 impl Store {
-    /// Returns the unacknowledged alarms of a rig, one per code, oldest first.
+    /// Returns the unacknowledged alarms of the real or the simulated rig, one per code, oldest first.
     pub fn unacknowledged_alarms(&self, simulated: bool) -> Result<Vec<UnacknowledgedAlarm>> {
         left(self.connection(), simulated).doing("reading unacknowledged alarms")
     }

@@ -1,4 +1,4 @@
-//! Occurrences of alarms.
+//! Occurrences of alarms, as the history shows them.
 
 use super::error::{Doing, Result};
 use super::{Archive, Filter, Moment};
@@ -6,7 +6,7 @@ use machine::station::catalogue::AlarmCode;
 use serde::Serialize;
 use texts::{Args, Lang};
 
-/// State of an alarm (ISA-18.2, states B to E); shelving does not change it.
+/// State of an alarm (ISA-18.2, states B to E). Whether it is shelved is kept apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AlarmState {
@@ -14,18 +14,18 @@ pub enum AlarmState {
     Unacknowledged,
     /// Active, acknowledged.
     Acknowledged,
-    /// Cleared before it was acknowledged.
+    /// No longer active, not acknowledged.
     ReturnedUnacknowledged,
-    /// Cleared and acknowledged.
+    /// No longer active, acknowledged.
     Normal,
 }
 
-/// Shelving of an alarm.
+/// An alarm that a person hid for a time: until when, who, why.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Shelf {
-    /// End of the shelving.
+    /// Time until which the alarm is hidden.
     pub until: Moment,
-    /// Name of the person.
+    /// Name of the person who shelved the alarm.
     pub by: String,
     /// Reason given by the person.
     pub reason: String,
@@ -40,27 +40,27 @@ pub struct Alarm {
     pub run: Option<u32>,
     /// Code of the alarm.
     pub code: String,
-    /// Serial line that it concerns, if any.
+    /// Serial line that the alarm is about, if any.
     pub line: Option<String>,
     /// Message in English.
     pub text: String,
-    /// Arguments of the message by name; empty before schema 9.
+    /// Arguments of the message, by name; empty for rows older than schema 9.
     pub args: Args,
-    /// Message in Chinese; `None` for an unknown code or missing arguments.
+    /// Message in Chinese; `None` when the code is unknown or an argument is missing.
     pub text_zh: Option<String>,
-    /// Cause in Chinese; `None` for an unknown code.
+    /// Cause in Chinese; `None` when the code is unknown.
     pub cause_zh: Option<&'static str>,
-    /// Time of the alarm.
+    /// Time at which the alarm was raised.
     pub raised: Moment,
-    /// Time at which it was cleared; `None` while it is active and when it ended its run.
+    /// Time at which the cause was gone; `None` while the alarm is active, and when it ended its run.
     pub cleared: Option<Moment>,
-    /// Time of the acknowledgement.
+    /// Time of the acknowledgement, if any.
     pub acknowledged: Option<Moment>,
-    /// Person who acknowledged it.
+    /// Person who acknowledged the alarm, if any.
     pub acknowledged_by: Option<String>,
-    /// Last shelving.
+    /// Last time that a person shelved the alarm, if any.
     pub shelf: Option<Shelf>,
-    /// State that follows from these times.
+    /// State of the alarm, as the times above give it.
     pub state: AlarmState,
 }
 
@@ -75,14 +75,14 @@ impl AlarmState {
     }
 }
 
-/// Reads stored arguments; empty when they are missing or damaged.
+/// Converts stored arguments; returns none when they are missing or damaged.
 pub(super) fn args(stored: Option<serde_json::Value>) -> Args {
     let args = stored.and_then(|it| serde_json::from_value(it).ok());
     args.unwrap_or_default()
 }
 
 impl Archive {
-    /// Returns the alarms of the selected runs (lot, run, recipe) and span in order of time, one page.
+    /// Returns one page of the alarms in order of time; lot, run, recipe and time span of the filter select them.
     pub fn alarms(&self, filter: &Filter) -> Result<Vec<Alarm>> {
         let alarms = filter.alarms().rows(&self.connection, |row| {
             let moment = |column: usize| {

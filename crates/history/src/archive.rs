@@ -1,4 +1,4 @@
-//! The reader: parts selected by a filter, and single parts down to their raw replies.
+//! The reader of the history: parts that a filter selects, and single parts down to their raw replies.
 
 use super::error::{Doing, Result};
 use super::reasons::texts;
@@ -6,18 +6,18 @@ use super::{CalibrationRecord, Filter, Measurement, Moment, Part, Sample, filter
 use rusqlite::{Connection, Row, params, params_from_iter};
 use std::path::{Path, PathBuf};
 
-/// A history opened for reading. Readers never block writers.
+/// A history that is open for reading. Reading never blocks a writer.
 #[derive(Debug)]
 pub struct Archive {
     pub(super) connection: Connection,
     pub(super) path: PathBuf,
 }
 
-/// Selects the values of one part.
+/// Selects the values of all attempts of one part.
 pub(super) const VALUES: &str = "SELECT parameter.key, m.value, m.uncertainty FROM measurement AS m
     JOIN parameter ON parameter.id = m.parameter_id
     WHERE m.part_id = ?1 ORDER BY m.parameter_id, m.attempt";
-/// Selects all attempts of one part.
+/// Selects all attempts of one part, with limits, verdict and budget.
 pub(super) const MEASUREMENTS: &str = "SELECT parameter.key, m.attempt, m.value, m.uncertainty,
       m.low, m.high, m.verdict, m.budget, m.parameter_id
     FROM measurement AS m JOIN parameter ON parameter.id = m.parameter_id
@@ -27,7 +27,8 @@ pub(super) const SAMPLES: &str = "SELECT line, module, channel, command, raw, at
     WHERE part_id = ?1 AND parameter_id = ?2 AND attempt = ?3 ORDER BY n";
 
 impl Archive {
-    /// Opens an existing history and migrates an older schema. Fails for a file of another program or a newer one.
+    /// Opens an existing history and migrates an older schema. Fails on a file of another program, and on a newer
+    /// schema.
     pub fn open(path: &Path) -> Result<Self> {
         Ok(Self {
             connection: open::reader(path)?,
@@ -35,8 +36,8 @@ impl Archive {
         })
     }
 
-    /// Calls `each` for every selected part in order of judgement, with constant memory. Stops at the first error of `each`
-    /// and returns it.
+    /// Calls `each` for every selected part, in order of judgement; the memory needed does not grow with their number.
+    /// Stops at the first error of `each` and returns it.
     pub fn each<E>(
         &self,
         filter: &Filter,
@@ -57,7 +58,7 @@ impl Archive {
         Ok(Ok(()))
     }
 
-    /// Returns all selected parts, for answers that fit into memory.
+    /// Returns all selected parts at once; use it only when they fit into memory.
     pub fn query(&self, filter: &Filter) -> Result<Vec<Part>> {
         let mut parts = Vec::new();
         let end = self.each(filter, |part| {
@@ -79,7 +80,7 @@ impl Archive {
             .doing("counting parts")
     }
 
-    /// Returns the cycle times of the selected parts, s, unordered.
+    /// Returns the cycle times of the selected parts, seconds, in no particular order.
     pub fn cycles(&self, filter: &Filter) -> Result<Vec<f64>> {
         filter
             .cycles()
@@ -87,7 +88,7 @@ impl Archive {
             .doing("reading cycle times")
     }
 
-    /// Returns part `seq` of every run of the lot, latest run last, with all attempts, raw replies and curves.
+    /// Returns part `seq` from every run of the lot, the latest run last, with all attempts, raw replies and curves.
     pub fn show(&self, lot: &str, seq: u64, kind: &str) -> Result<Vec<Part>> {
         let filter = Filter {
             lot: Some(lot.to_owned()),
@@ -123,7 +124,7 @@ impl Archive {
         row.map(|row| self.part(row)).transpose().doing(DOING)
     }
 
-    /// Returns the newest calibration of a rig for each coil voltage.
+    /// Returns the newest calibration for each coil voltage, of the real or the simulated rig.
     pub fn calibrations(&self, simulated: bool) -> Result<Vec<CalibrationRecord>> {
         self.connection
             .prepare(
@@ -134,7 +135,7 @@ impl Archive {
             .doing("reading the latest calibrations")
     }
 
-    /// Returns the parameter keys in the order of columns.
+    /// Returns the keys of all parameters, in the order in which exports list their columns.
     pub fn parameters(&self) -> Result<Vec<String>> {
         self.connection
             .prepare_cached("SELECT key FROM parameter ORDER BY id")
@@ -182,7 +183,7 @@ impl Archive {
             .query_row([id], |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?)))
     }
 
-    /// Returns the values and uncertainties of the last attempts.
+    /// Returns value and uncertainty of the last attempt at each parameter, by key.
     fn values_of(&self, part: i64) -> rusqlite::Result<(Map, Map)> {
         let mut statement = self.connection.prepare_cached(VALUES)?;
         let mut rows = statement.query([part])?;

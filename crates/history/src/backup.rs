@@ -1,4 +1,4 @@
-//! Online copy and integrity check. Writers continue during both.
+//! Copies the history while it is in use, and checks its integrity. Writers continue during both.
 
 use super::error::{Doing, HistoryError, Result};
 use super::{Archive, open};
@@ -6,8 +6,8 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 impl Archive {
-    /// Copies the present state to `target`, which must not exist. The copy is checked before it gets its name. Returns its
-    /// size in bytes.
+    /// Copies the present state to `target`, which must not exist. The copy is checked before it gets this name.
+    /// Returns the size of the copy in bytes.
     pub fn backup(&self, target: &Path) -> Result<u64> {
         if target.exists() {
             return Err(HistoryError::Exists {
@@ -17,7 +17,7 @@ impl Archive {
         let partial = partial_path(target);
         let copied = self.copy(&partial, target);
         if copied.is_err() && partial.exists() {
-            // The first error matters more than a failed clean-up.
+            // The first error is returned; a failed clean-up matters less.
             let _ = fs::remove_file(&partial);
         }
         copied
@@ -31,7 +31,7 @@ impl Archive {
         if partial.exists() {
             fs::remove_file(partial).map_err(place)?;
         }
-        // A reader is query-only; writing another file needs that lifted for one statement.
+        // The connection of a reader is query-only; writing the copy needs this lifted for one statement.
         self.connection
             .pragma_update(None, "query_only", false)
             .doing("copying the history")?;
@@ -48,7 +48,7 @@ impl Archive {
         .check()?;
         let file = File::open(partial).map_err(place)?;
         file.sync_all().map_err(place)?;
-        // A hard link fails when the name was taken meanwhile; a rename would overwrite.
+        // A hard link fails if the name has been taken in the meantime; a rename would overwrite the file.
         fs::hard_link(partial, target).map_err(place)?;
         if partial.exists() {
             fs::remove_file(partial).map_err(place)?;

@@ -1,7 +1,7 @@
 //! Columns of a part in CSV, spreadsheets and on the page.
 //!
-//! The order is [`COLUMNS`], the value of each parameter, the expanded uncertainty of each parameter. `history import` reads
-//! the same names.
+//! The order is: [`COLUMNS`], then the value of each parameter, then the expanded uncertainty of each parameter.
+//! `history import` reads the same names.
 
 use super::{Moment, Part};
 use std::borrow::Cow;
@@ -12,7 +12,7 @@ use std::fmt;
 pub enum Cell<'a> {
     /// No content.
     Empty,
-    /// A text; writers keep it from becoming a formula.
+    /// A text; writers make sure that no spreadsheet takes it for a formula.
     Text(Cow<'a, str>),
     /// A count.
     Count(u64),

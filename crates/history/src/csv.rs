@@ -1,28 +1,29 @@
-//! Comma-separated values by RFC 4180: strict reading, writing for spreadsheets.
+//! Comma-separated values (RFC 4180): reads them strictly, writes them for spreadsheets.
 //!
-//! Reading takes UTF-8 with or without byte order mark, quoted fields with doubled quotes, and LF or CRLF. Every record has
-//! the number of its first line. A record with more or fewer fields than the header is an error.
+//! A file to read is UTF-8 with or without byte order mark; quotes inside a quoted field are doubled; lines end with LF
+//! or CRLF. Every record keeps the number of its first line. A record with more or fewer fields than the header is an
+//! error.
 
 use ::csv::{ReaderBuilder, StringRecord, Terminator, WriterBuilder};
 use std::borrow::Cow;
 use std::io::{self, Write};
 
-/// Prefix by which spreadsheets recognise UTF-8.
+/// Prefix by which spreadsheets recognise a file as UTF-8.
 pub const BYTE_ORDER_MARK: &str = "\u{feff}";
 
 /// Characters that end a line.
 const LINE_END: [char; 2] = ['\r', '\n'];
 
-/// A record with its place in the file.
+/// A record with its line number.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Record {
-    /// First line, from 1.
+    /// Number of its first line in the file, from 1.
     pub line: usize,
     /// Fields without their quotes.
     pub fields: Vec<String>,
 }
 
-/// Why a text is not CSV.
+/// Reason why a text is not CSV.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CsvError {
     /// The text is empty.
@@ -31,25 +32,25 @@ pub enum CsvError {
     /// A record has more or fewer fields than the header.
     #[error("line {line}: found {found} fields, expected {expected} as in the header")]
     Ragged {
-        /// Line number in the file.
+        /// Number of the record's first line in the file, from 1.
         line: usize,
-        /// Fields found.
+        /// Number of fields found.
         found: usize,
-        /// Fields of the header.
+        /// Number of fields in the header.
         expected: usize,
     },
-    /// A quoted field has no end, or text after its end.
+    /// A quoted field has no closing quote, or has text after it.
     #[error("line {line}: a quoted field must end with a quote before the next comma")]
     Quote {
-        /// First line of the record.
+        /// Number of the record's first line in the file, from 1.
         line: usize,
     },
 }
 
-/// Reads header and records; skips empty lines.
+/// Reads a text as records, the header first; skips empty lines.
 ///
 /// # Errors
-/// Names the line of a record with a wrong number of fields or a misplaced quote.
+/// Fails on a wrong number of fields or a misplaced quote; the error names the line.
 pub fn read(text: &str) -> Result<Vec<Record>, CsvError> {
     let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
     let mut reader = ReaderBuilder::new()
@@ -77,7 +78,7 @@ pub fn read(text: &str) -> Result<Vec<Record>, CsvError> {
     }
 }
 
-/// Makes a record after checking its number of fields.
+/// Makes a record; fails when it has another number of fields than the header.
 fn record(row: &StringRecord, line: usize, header: Option<&Record>) -> Result<Record, CsvError> {
     let fields: Vec<String> = row.iter().map(str::to_owned).collect();
     let expected = header.map_or(fields.len(), |header| header.fields.len());
@@ -91,7 +92,7 @@ fn record(row: &StringRecord, line: usize, header: Option<&Record>) -> Result<Re
     }
 }
 
-/// Checks that every field that begins with a quote ends with one; the reader does not.
+/// Returns true when every field that begins with a quote also ends with one; the CSV library does not check that.
 fn is_strict(raw: &str, row: &StringRecord) -> bool {
     let mut rest = raw;
     for (n, field) in row.iter().enumerate() {
@@ -106,10 +107,10 @@ fn is_strict(raw: &str, row: &StringRecord) -> bool {
     rest.is_empty()
 }
 
-/// First characters by which a spreadsheet takes a text for a formula.
+/// Characters that make a spreadsheet take a text for a formula when it begins with one of them.
 const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
 
-/// Returns true when a spreadsheet may take the text, without leading apostrophes, for a formula.
+/// Returns true when a spreadsheet may take the text for a formula; apostrophes at its beginning are ignored.
 fn looks_like_formula(text: &str) -> bool {
     text.trim_start_matches('\'').starts_with(FORMULA)
 }
@@ -129,10 +130,10 @@ pub fn unescape_formula(text: &str) -> &str {
     inner.unwrap_or(text)
 }
 
-/// Writes one record with CRLF.
+/// Writes one record and ends it with CRLF.
 ///
 /// # Errors
-/// `out` cannot be written.
+/// Fails when `out` cannot be written.
 pub fn write(
     out: &mut impl Write,
     fields: impl IntoIterator<Item = impl AsRef<str>>,

@@ -1,13 +1,14 @@
-//! Evidence curves: packs the samples of a signal into a blob, and unpacks it.
+//! Curves kept as evidence of a reject: packs the samples of a signal into a blob, and unpacks it.
 //!
-//! A sample is two LEB128 numbers (seven bits a byte, low ones first, the high bit set on all but the last):
+//! A sample is two LEB128 numbers (seven bits per byte, low ones first, the high bit set in all bytes but the last):
 //!
-//! 1. microseconds since the previous sample, 0 for the first;
-//! 2. 0 for a reading without a number (over range), else 1 + the zigzag code (0, -1, 1, -2 ...) of the steps since the last
-//!    number, or since 0 for the first number.
+//! 1. microseconds since the previous sample, 0 for the first one;
+//! 2. 0 for a reading without a number (over range), else 1 + the zigzag code (0, -1, 1, -2 ...) of the change in steps
+//!    since the last number; the first number counts from 0.
 //!
-//! A sample takes 2 to 12 bytes (gaps below nine hours, changes below 2^47 steps), about 4 in a test of the default recipe. A
-//! part takes at most 12 kB: a trace keeps at most [`MAX_SAMPLES`](machine::instrument::trace::MAX_SAMPLES) of a test.
+//! A sample takes 2 to 12 bytes (gaps below nine hours, changes below 2^47 steps), about 4 in a test by the default
+//! recipe. A part takes at most 12 kB, because a test keeps at most
+//! [`MAX_SAMPLES`](machine::instrument::trace::MAX_SAMPLES) samples.
 
 use super::Moment;
 use super::error::{Doing, HistoryError, Result};
@@ -16,20 +17,20 @@ use machine::instrument::curve::Curve;
 use rusqlite::{Transaction, params};
 use serde::{Deserialize, Serialize, Serializer};
 
-/// Samples of a signal.
+/// Samples of one signal during a test.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct CurveRecord {
-    /// Name of the point.
+    /// Name of the point that was sampled.
     pub signal: String,
     /// Unit of the values; empty for bits and counts.
     pub unit: String,
-    /// Resolution: values are stored as whole multiples of it; more than 0.
+    /// Resolution, in the unit of the values: they are stored as whole multiples of it. More than 0.
     pub step: f64,
-    /// Instant (microseconds since 1970 UTC) and value in order of time; `None` for a reading without a number.
+    /// Instant (microseconds since 1970 UTC) and value, in order of time; the value is `None` for a reading over range.
     pub samples: Vec<(i64, Option<f64>)>,
 }
 
-/// A curve in JSON.
+/// A curve as JSON shows it.
 #[derive(Serialize)]
 struct Shown<'a> {
     signal: &'a str,
@@ -39,7 +40,7 @@ struct Shown<'a> {
     values: &'a [Option<f64>],
 }
 
-/// Serialises curves with their start as an instant.
+/// Serialises curves for JSON, with their start as a date and time.
 pub(super) fn shown<S: Serializer>(
     curves: &[Curve],
     serializer: S,
@@ -53,7 +54,7 @@ pub(super) fn shown<S: Serializer>(
     }))
 }
 
-/// Packs a curve.
+/// Packs the samples of a curve into a blob.
 pub(super) fn packed(curve: &CurveRecord) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(curve.samples.len() * 5);
     let (mut then, mut before) = (curve.samples.first().map_or(0, |it| it.0), 0_i64);
@@ -72,7 +73,7 @@ pub(super) fn packed(curve: &CurveRecord) -> Vec<u8> {
     bytes
 }
 
-/// Unpacks offsets and values; `None` unless the blob holds exactly `samples` of them.
+/// Unpacks a blob into time offsets and values; `None` unless it holds exactly `samples` of them.
 fn unpacked(mut bytes: &[u8], samples: usize, step: f64) -> Option<(Vec<i64>, Vec<Option<f64>>)> {
     let (mut at, mut steps) = (0_i64, 0_i64);
     let (mut offsets, mut values) = (Vec::new(), Vec::new());
@@ -111,7 +112,7 @@ fn take(bytes: &mut &[u8]) -> Option<u64> {
     None
 }
 
-/// Maps small numbers of either sign to small unsigned ones.
+/// Zigzag code: maps integers near 0, of either sign, to small unsigned ones.
 fn zigzag(value: i64) -> u64 {
     ((value << 1) ^ (value >> 63)).cast_unsigned()
 }
@@ -120,7 +121,7 @@ fn straight(code: u64) -> i64 {
     (code >> 1).cast_signed() ^ -((code & 1).cast_signed())
 }
 
-/// Inserts a curve; one without samples gets no row.
+/// Inserts a curve; does nothing for a curve without samples.
 pub(super) fn insert(tx: &Transaction<'_>, part: i64, it: &CurveRecord) -> rusqlite::Result<()> {
     let Some((begin_us, _)) = it.samples.first() else {
         return Ok(());
@@ -147,7 +148,7 @@ pub(super) const CURVES: &str = "SELECT signal, unit, begin_us, step, samples, p
     WHERE part_id = ?1 ORDER BY signal";
 
 impl Archive {
-    /// Returns the curves of a part in order of signal names; empty for a part that passed.
+    /// Returns the curves of a part in order of signal names; a part that passed has none.
     pub fn curves(&self, part: &Part) -> Result<Vec<Curve>> {
         const DOING: &str = "reading the curves of a part";
         let mut statement = self.connection.prepare_cached(CURVES).doing(DOING)?;
@@ -186,7 +187,7 @@ mod tests {
     use super::*;
     use machine::instrument::trace::MAX_SAMPLES;
 
-    /// Bytes of a sample at the most: a gap below 2^35 us and a change of less than 2^47 steps.
+    /// Most bytes that a sample takes: a gap below 2^35 us takes 5, a change of less than 2^47 steps 7.
     const WORST: usize = 5 + 7;
 
     fn curve(samples: &[(i64, Option<f64>)]) -> CurveRecord {

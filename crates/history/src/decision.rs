@@ -1,4 +1,4 @@
-//! Decisions of a person about a lot that is not under way.
+//! Decisions of a person about a lot of which no run is under way.
 
 use super::LotState;
 use texts::Message;
@@ -6,7 +6,7 @@ use texts::Message;
 /// A decision about a lot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Decision {
-    /// No run may begin until a release.
+    /// No run of the lot may begin until it is released.
     Hold,
     /// The lot may be run again.
     Release,
@@ -20,7 +20,7 @@ impl Decision {
     /// All decisions.
     pub const ALL: [Self; 4] = [Self::Hold, Self::Release, Self::Close, Self::Reopen];
 
-    /// Returns the name of its order.
+    /// Returns the name of the order that gives this decision.
     pub const fn order(self) -> &'static str {
         match self {
             Self::Hold => "hold_lot",
@@ -30,7 +30,7 @@ impl Decision {
         }
     }
 
-    /// Returns the decision with this order name.
+    /// Returns the decision that the order named `word` gives; `None` for any other order.
     pub fn ordered(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|it| it.order() == word)
     }
@@ -44,7 +44,7 @@ impl Decision {
         }
     }
 
-    /// Returns the refusal for a lot in this state; `None` when the decision is possible.
+    /// Returns why this decision is refused for a lot in this state; `None` when it is possible.
     pub fn refusal(self, state: LotState) -> Option<Message> {
         let refused = |code| Some(Message::new("refusal", code));
         match (self, state) {

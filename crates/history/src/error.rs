@@ -1,8 +1,8 @@
-//! Why the history could not be read or written.
+//! Reasons why the history cannot be read or written.
 
 use std::path::PathBuf;
 
-/// A failed access to the history. The cause is in `source()`.
+/// Reason why an access to the history failed; `source()` returns the underlying error.
 #[derive(Debug, thiserror::Error)]
 pub enum HistoryError {
     /// The file to read does not exist.
@@ -11,10 +11,10 @@ pub enum HistoryError {
         /// The missing file.
         path: PathBuf,
     },
-    /// The file is no SQLite database, or one of another program.
+    /// The file is not an SQLite database, or it belongs to another program.
     #[error("{path} is not a relayrig history ({found}); it was left untouched")]
     Foreign {
-        /// The file asked for.
+        /// File that was to be opened.
         path: PathBuf,
         /// What was found instead.
         found: String,
@@ -22,11 +22,11 @@ pub enum HistoryError {
     /// The file was written by a later version of the program.
     #[error("{path} has schema {found}, this program knows up to {known}: use a newer program")]
     Newer {
-        /// The file asked for.
+        /// File that was to be opened.
         path: PathBuf,
         /// Schema of the file.
         found: i64,
-        /// Latest schema known here.
+        /// Latest schema that this program knows.
         known: i64,
     },
     /// The file belongs to a rig of the other kind.
@@ -44,71 +44,71 @@ pub enum HistoryError {
     /// Another process held the file for longer than the busy timeout.
     #[error("{doing}: the history is locked by another process")]
     Locked {
-        /// The step that failed.
+        /// What the program was doing.
         doing: &'static str,
-        /// The cause.
+        /// Error of SQLite.
         source: rusqlite::Error,
     },
-    /// The disk is full; nothing of the batch was written.
+    /// The disk is full; no row of the batch was written.
     #[error("{doing}: the disk is full")]
     DiskFull {
-        /// The step that failed.
+        /// What the program was doing.
         doing: &'static str,
-        /// The cause.
+        /// Error of SQLite.
         source: rusqlite::Error,
     },
     /// The file or its folder is read-only.
     #[error("{doing}: the history is read-only")]
     ReadOnly {
-        /// The step that failed.
+        /// What the program was doing.
         doing: &'static str,
-        /// The cause.
+        /// Error of SQLite.
         source: rusqlite::Error,
     },
-    /// Any other answer of the database.
+    /// Any other error of the database.
     #[error("{doing}")]
     Database {
-        /// The step that failed.
+        /// What the program was doing.
         doing: &'static str,
-        /// The cause.
+        /// Error of SQLite.
         source: rusqlite::Error,
     },
-    /// A row names a lot that this writer did not open.
+    /// A row names a lot of which this writer has opened no run.
     #[error("lot {lot:?} is not open")]
     LotNotOpen {
-        /// The lot named.
+        /// Name of the lot.
         lot: String,
     },
-    /// A landing names a part that has no row.
+    /// A landing names a part that is not in the history.
     #[error("lot {lot:?} has no {kind} part {seq} that could land")]
     NoSuchPart {
-        /// The lot named.
+        /// Name of the lot.
         lot: String,
-        /// `lot` or `golden`.
+        /// Kind of the part: `lot`, or `golden` for a reference part.
         kind: String,
-        /// The part named.
+        /// Number of the part.
         seq: u64,
     },
-    /// A part differs from the row that it already has.
+    /// A part differs from the row that the history already has for it.
     #[error("lot {lot:?} already has another {kind} part {seq}; the first one stays")]
     PartTwice {
-        /// The lot named.
+        /// Name of the lot.
         lot: String,
-        /// `lot` or `golden`.
+        /// Kind of the part: `lot`, or `golden` for a reference part.
         kind: String,
-        /// The part named.
+        /// Number of the part.
         seq: u64,
     },
-    /// The beams of two bins confirm the same part.
+    /// The beams of two bins report the same part.
     #[error("part {seq} of lot {lot:?} already landed in {first:?}, now in {second:?}")]
     LandedTwice {
-        /// The lot named.
+        /// Name of the lot.
         lot: String,
-        /// The part named.
+        /// Number of the part.
         seq: u64,
-        /// The bin in the row.
+        /// Bin that was stored first.
         first: String,
-        /// The bin refused.
+        /// Bin that is refused.
         second: String,
     },
     /// A count exceeds what SQLite can store.
@@ -116,27 +116,27 @@ pub enum HistoryError {
     TooLarge {
         /// Name of the count.
         what: &'static str,
-        /// Its value.
+        /// Value of the count.
         value: u64,
     },
-    /// The target of a backup exists.
+    /// The target of a backup already exists.
     #[error("{path} exists already; a backup never overwrites")]
     Exists {
         /// The existing file.
         path: PathBuf,
     },
-    /// A finished copy could not get its name.
+    /// A finished copy could not be given its final name.
     #[error("putting the backup in place at {path}")]
     Place {
-        /// Target of the backup.
+        /// Final name of the copy.
         path: PathBuf,
-        /// The cause.
+        /// Error of the file system.
         source: std::io::Error,
     },
     /// The integrity check found damage.
     #[error("{path} is damaged: {finding}")]
     Damaged {
-        /// The file checked.
+        /// File that was checked.
         path: PathBuf,
         /// First finding of the integrity check.
         finding: String,
@@ -146,9 +146,9 @@ pub enum HistoryError {
 /// Result of an access to the history.
 pub type Result<T> = std::result::Result<T, HistoryError>;
 
-/// Adds the step that failed to a database error.
+/// Adds to a database error what the program was doing.
 pub(super) trait Doing<T> {
-    /// Turns a database error into the variant an operator can act upon.
+    /// Turns a database error into the variant that tells an operator what to do.
     fn doing(self, doing: &'static str) -> Result<T>;
 }
 

@@ -1,8 +1,9 @@
-//! The filter of command line, page and exports, and its SQL.
+//! The filter that command line, page and exports share, and its SQL.
 //!
-//! Without a parameter, the indexes of `part` find the parts. With one, the index `measurement_value` (parameter, population,
-//! run, verdict, value) gives their row numbers: SQLite enters it once per run and verdict at the least value and then visits
-//! the matching parts in ascending order, so that a page ends early. `filter/related.rs` selects runs, alarms and orders.
+//! Without a parameter, the indexes of the table `part` find the parts. With one, the index `measurement_value`
+//! (parameter, population, run, verdict, value) gives their row numbers: SQLite enters this index once per run and
+//! verdict, at the least value, and then visits the matching parts in ascending order, so a page of results ends the
+//! search early. `filter/related.rs` selects runs, alarms and orders.
 
 mod related;
 
@@ -12,7 +13,7 @@ use rusqlite::types::Value;
 use rusqlite::{Connection, Row, params_from_iter};
 use serde::Deserialize;
 
-/// Selection of parts; an absent member does not restrict.
+/// Selects parts; a member that is absent selects all.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Filter {
@@ -28,17 +29,17 @@ pub struct Filter {
     pub until: Option<Moment>,
     /// `pass`, `fail`, `void` or `unjudged`.
     pub verdict: Option<String>,
-    /// Bin of the verdict.
+    /// Name of the bin that the verdict assigns.
     pub bin: Option<String>,
-    /// `lot` (when absent), `golden` or `all`.
+    /// `lot` for production parts (also when absent), `golden` for reference parts, or `all`.
     pub kind: Option<String>,
-    /// Parts that have a counted value of this parameter.
+    /// Key of a parameter; selects parts with a value of it that counts (judged, and not measured again).
     pub param: Option<String>,
     /// Least value of `param`, included.
     pub min: Option<f64>,
     /// Greatest value of `param`, included.
     pub max: Option<f64>,
-    /// Only parts between a passed and a failed reference check.
+    /// True selects only suspect parts: judged after a passed reference check and before a failed one.
     pub suspect: bool,
     /// Most parts to return, in order of judgement.
     pub limit: Option<u64>,
@@ -46,7 +47,7 @@ pub struct Filter {
     pub offset: Option<u64>,
 }
 
-/// A statement with its values.
+/// An SQL statement with the values for its placeholders.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Select {
     /// Statement with a `?` for each of `values`.
@@ -63,7 +64,7 @@ impl Select {
         }
     }
 
-    /// Returns all rows as `read` converts them.
+    /// Runs the statement and returns all rows, each converted by `read`.
     pub fn rows<T>(
         &self,
         connection: &Connection,
@@ -75,7 +76,7 @@ impl Select {
             .collect()
     }
 
-    /// Returns the first row as `read` converts it.
+    /// Runs the statement and returns the first row, converted by `read`.
     pub fn first<T>(
         &self,
         connection: &Connection,
@@ -105,7 +106,7 @@ pub(super) fn reference_part() -> String {
 }
 
 impl Filter {
-    /// Returns true when the filter takes every part of its runs, reference parts included.
+    /// Returns true when the filter selects every part of its runs, reference parts included.
     pub fn takes_whole_runs(&self) -> bool {
         let runs = Self {
             lot: self.lot.clone(),
@@ -117,7 +118,7 @@ impl Filter {
         *self == runs
     }
 
-    /// Returns the names of the members that are set, without `suspect`.
+    /// Returns the names of the members that are set; leaves out `suspect`.
     pub fn members(&self) -> Vec<&'static str> {
         let set = [
             ("lot", self.lot.is_some()),
@@ -138,7 +139,7 @@ impl Filter {
         named.map(|(name, _)| name).collect()
     }
 
-    /// Selects rows of `part` in order of judgement.
+    /// Selects the columns of the parts, in order of judgement.
     pub(super) fn parts(&self) -> Select {
         let mut select = match &self.param {
             Some(param) => {
@@ -163,7 +164,7 @@ impl Filter {
         select
     }
 
-    /// Adds limit and offset.
+    /// Adds the filter's limit and offset to a statement.
     fn page(&self, select: &mut Select) {
         let signed = |it: u64| i64::try_from(it).unwrap_or(i64::MAX);
         if self.limit.is_some() || self.offset.is_some() {
@@ -172,8 +173,8 @@ impl Filter {
         }
     }
 
-    /// Selects part row and value of a parameter, unordered. Reads only the index unless the filter has a bin, a time or
-    /// `suspect`.
+    /// Selects row number of the part and value of a parameter, in no particular order. Reads only the index, unless
+    /// the filter has a bin, a time or `suspect`.
     pub(super) fn series(&self, param: &str) -> Select {
         let joined = self.restricts_part();
         let mut select = self.values(param, "m.part_id, m.value", joined);
@@ -183,7 +184,7 @@ impl Filter {
         select
     }
 
-    /// Counts the parts, by the index of values alone where that is enough.
+    /// Counts the parts; reads only the index of values when that is enough.
     pub(super) fn count(&self) -> Select {
         let found = match &self.param {
             Some(param) if !self.restricts_part() => {
@@ -199,14 +200,15 @@ impl Filter {
         }
     }
 
-    /// Returns true when the filter selects all production parts of whole runs, apart from its page.
+    /// Returns true when the filter, its limit and offset aside, selects all production parts of the runs that it
+    /// names.
     pub(super) fn selects_whole_runs(&self) -> bool {
         let production = self.kind.as_deref().is_none_or(|kind| kind == "lot");
         let ranged = self.min.is_some() || self.max.is_some();
         production && self.verdict.is_none() && !ranged && !self.restricts_part()
     }
 
-    /// Returns true when a member restricts a column that only `part` has.
+    /// Returns true when a member needs a column that the index of values lacks.
     fn restricts_part(&self) -> bool {
         self.suspect || self.bin.is_some() || self.since.is_some() || self.until.is_some()
     }
@@ -220,7 +222,7 @@ impl Filter {
         select
     }
 
-    /// Counts parts that passed, and those that passed a first test without a second attempt.
+    /// Counts the parts that passed, and among them those that passed their first test without any second attempt.
     pub(super) fn passed(&self) -> Select {
         let mut select = Select::new(
             "SELECT count(*), ifnull(sum(NOT EXISTS (SELECT 1 FROM measurement AS m \
@@ -279,7 +281,7 @@ impl Filter {
         select.values.extend(runs.values);
     }
 
-    /// Adds the span of time from `since` until before `until`.
+    /// Adds the condition that `column` lies in the time span of the filter: `since` included, `until` excluded.
     fn span(&self, select: &mut Select, column: &str) {
         if let Some(since) = self.since {
             select.add(&format!(" AND {column} >= ?"), since.0);
@@ -289,7 +291,8 @@ impl Filter {
         }
     }
 
-    /// Adds conditions on `part`. With `by_value` the index of values has restricted kind and verdict already.
+    /// Adds the conditions on `part`; with `by_value`, leaves out kind and verdict, which the index has already
+    /// restricted.
     fn part_conditions(&self, select: &mut Select, by_value: bool) {
         if !by_value {
             match self.kind.as_deref() {

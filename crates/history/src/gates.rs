@@ -1,6 +1,6 @@
-//! State of a lot, reference checks, retests and suspect parts.
+//! State of a lot, reference checks, retests, and suspect parts.
 //!
-//! | state | a run may begin | set by |
+//! | state | may a run begin? | what leads to this state |
 //! |---|---|---|
 //! | open | yes, with its recipe | a run that was stopped, cut off or ended by an alarm; a release |
 //! | running | yes: the run before was cut off | the begin of a run; the next program on the rig makes it open |
@@ -10,9 +10,9 @@
 //! A lot keeps its recipe for life. A complete lot stays complete, whatever ends a retest or a hold, until a person reopens it
 //! ([`ReopeningRecord`](super::ReopeningRecord)).
 //!
-//! Parts judged after the last passed check and before a failed one are *suspect*. Their rows stay unchanged;
-//! [`Filter::suspect`](super::Filter) selects them. On a rig the checks of all runs count, on the simulated rig those of the
-//! same run.
+//! A part judged after the last passed check and before a failed one is *suspect*. Its row stays unchanged;
+//! [`Filter::suspect`](super::Filter) selects it. On a real rig the checks of all runs count; on the simulated rig only
+//! those of the same run.
 
 use super::error::{Doing, Result};
 use super::store::{RowIds, source};
@@ -24,13 +24,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LotState {
-    /// May be run.
+    /// A run of the lot may begin.
     Open,
     /// A run is under way, or was cut off and no program has used the rig since.
     Running,
-    /// May not be run until it is released.
+    /// No run of the lot may begin until the lot is released.
     Held,
-    /// Done.
+    /// All parts of the lot are tested, or a person closed the lot.
     Complete,
 }
 
@@ -38,7 +38,7 @@ impl LotState {
     /// All states.
     pub const ALL: [Self; 4] = [Self::Open, Self::Running, Self::Held, Self::Complete];
 
-    /// Returns its name in rows and JSON.
+    /// Returns the name of the state in rows and JSON.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Open => "open",
@@ -61,22 +61,22 @@ pub struct LotStateRecord {
     pub lot: String,
     /// The new state.
     pub state: LotState,
-    /// Reason why it is held.
+    /// Reason of the hold; `None` in every other state.
     pub why: Option<String>,
-    /// Time of the change.
+    /// Time of the change, microseconds since 1970 UTC.
     pub at_us: i64,
 }
 
-/// A comparison of reference parts with their certificates.
+/// Result of a reference check: reference parts, measured and compared with their certificates.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ReferenceCheckRecord {
-    /// The open lot at that time.
+    /// Name of the lot whose run was open at that time.
     pub lot: String,
-    /// Time of the result.
+    /// Time of the result, microseconds since 1970 UTC.
     pub at_us: i64,
-    /// True when the parts read as certified.
+    /// True when the readings agree with the certificates.
     pub passed: bool,
-    /// Serial numbers, or the deviation found.
+    /// Serial numbers of the parts, or the deviation found.
     pub text: String,
 }
 
@@ -85,9 +85,9 @@ pub struct ReferenceCheckRecord {
 pub struct LotStatus {
     /// State of the lot.
     pub state: LotState,
-    /// Reason why it is held.
+    /// Reason of the hold; `None` in every other state.
     pub why: Option<String>,
-    /// Time of the last change.
+    /// Time of the last change of state.
     pub since: Moment,
     /// Name of the recipe of its last run, imports aside.
     pub recipe: String,
@@ -98,32 +98,32 @@ pub struct LotStatus {
 /// Yield of a lot over its runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct LotYield {
-    /// Parts judged in first tests.
+    /// Parts judged in first tests, that is, not in a retest.
     pub parts: u64,
     /// Parts that passed their first test.
     pub first_pass: u64,
     /// Parts that passed in a retest.
     pub retest_pass: u64,
-    /// Parts between a passed and a failed reference check.
+    /// Suspect parts: judged after a passed reference check and before a failed one.
     pub suspect: u64,
 }
 
-/// A reference check.
+/// A reference check, as the history shows it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct ReferenceCheck {
     /// Number of the run within its lot.
     pub run: u32,
     /// Time of the result.
     pub at: Moment,
-    /// True when the parts read as certified.
+    /// True when the readings agree with the certificates.
     pub passed: bool,
-    /// Serial numbers, or the deviation found.
+    /// Serial numbers of the parts, or the deviation found.
     pub text: String,
-    /// Start of the suspect span of a failed check; `None` for a passed one.
+    /// Time from which parts are suspect after a failed check; `None` for a passed one.
     pub suspect_since: Option<Moment>,
 }
 
-/// SQL condition on `part` that selects suspect parts.
+/// SQL condition on `part` that is true for a suspect part.
 pub(super) const SUSPECT: &str = " AND EXISTS (SELECT 1 FROM golden_check AS failed \
     JOIN run AS checked ON checked.id = failed.run_id JOIN run AS own ON own.id = part.run_id \
     WHERE NOT failed.passed AND part.judged_at_us > failed.suspect_since_us \
@@ -143,7 +143,7 @@ pub(super) fn state(connection: &Connection, record: &LotStateRecord) -> rusqlit
     )
 }
 
-/// Inserts a check; recording it again changes nothing.
+/// Inserts a reference check; does nothing when the history already has it.
 pub(super) fn reference_check(
     tx: &Transaction<'_>,
     row_ids: &RowIds,
@@ -207,7 +207,7 @@ impl Archive {
             .doing("reading the state of a lot")
     }
 
-    /// Counts first and final results and suspect parts of a lot.
+    /// Counts the parts of a lot: tested first, passed then, passed in a retest, suspect.
     pub fn lot_yield(&self, lot: &str) -> Result<LotYield> {
         const DOING: &str = "counting a lot over its runs";
         let count = |sql: &str| {
@@ -246,7 +246,7 @@ impl Archive {
             .doing("reading reference checks")
     }
 
-    /// Returns the latest reference check of a rig.
+    /// Returns the latest reference check of the real or the simulated rig.
     pub fn last_reference_check(&self, simulated: bool) -> Result<Option<ReferenceCheck>> {
         self.connection
             .query_row(

@@ -1,9 +1,9 @@
-//! Import of CSV files: the whole file is read and checked before the first row is written.
+//! Import of CSV files. The whole file is read and checked before the first row is written.
 //!
-//! The header names parameter keys and optionally `time` (RFC 3339), `verdict`, `serial` and `bin`.
-//! An empty cell is a value that was not measured. Columns that only the export writes (`lot`, `seq`, `uncertainty ...`) are
-//! ignored, so that an export can be imported; any other unknown column is refused, since a misspelt key would lose its
-//! values unnoticed.
+//! The header names parameter keys, and optionally `time` (RFC 3339), `verdict`, `serial` and `bin`. An empty cell
+//! means that the value was not measured. Columns that only the export writes (`lot`, `seq`, `uncertainty ...`) are
+//! ignored, so that an export can be imported. Any other unknown column is refused, because a misspelt key would lose
+//! its values unnoticed.
 
 use super::csv::{self, CsvError, Record};
 use super::inquiry::checks::VERDICTS;
@@ -28,24 +28,24 @@ const UNCERTAINTY: &str = "uncertainty ";
 /// One row of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImportRow {
-    /// The part without lot and sequence number; its time is that of the row, or 0.
+    /// The part, still without lot and number; its time is 0 when the row has none.
     pub part: PartRecord,
     /// True when the row has a time.
     pub timed: bool,
 }
 
-/// Why a file is refused as a whole.
+/// Reason why the whole file is refused.
 #[derive(Debug, thiserror::Error)]
 pub enum ImportError {
     /// The text is not CSV.
     #[error(transparent)]
     Csv(#[from] CsvError),
-    /// A column is neither a parameter nor one of the known names.
+    /// A column is neither a parameter key nor one of the other known names.
     #[error(
         "line 1: unknown column {found:?}; expected time, verdict, serial, bin or one of {known}"
     )]
     UnknownColumn {
-        /// Name found.
+        /// Name of the column.
         found: String,
         /// Accepted parameter keys.
         known: String,
@@ -53,13 +53,13 @@ pub enum ImportError {
     /// Two columns have the same name.
     #[error("line 1: column {found:?} appears twice")]
     ColumnTwice {
-        /// Name found.
+        /// Name of the columns.
         found: String,
     },
-    /// A mapping names a column that the file lacks.
+    /// The caller renames a column that the file lacks.
     #[error("line 1: there is no column {column:?} to map")]
     NothingToMap {
-        /// Name looked for.
+        /// Name of the missing column.
         column: String,
     },
     /// No column is a parameter.
@@ -72,7 +72,7 @@ pub enum ImportError {
         line: usize,
         /// Name of the column.
         column: String,
-        /// Text found.
+        /// Text of the cell.
         found: String,
         /// Accepted values.
         expected: &'static str,
@@ -90,7 +90,7 @@ enum Column {
     PassedOver,
 }
 
-/// Reads records whose first one is the header. `maps` renames columns (from, to); `parameters` are the keys of the history.
+/// Reads records, of which the first is the header. `maps` renames columns (from, to); `parameters` are the known keys.
 pub fn parse_records(
     records: &[Record],
     maps: &[(String, String)],

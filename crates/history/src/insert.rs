@@ -7,7 +7,7 @@ use super::{curve, reasons};
 use machine::dut::Reason;
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
 
-/// Inserts a run, and lot and recipe when they are new. Returns row and number of the run.
+/// Inserts a run, and its lot and recipe if they are new. Returns the row number of the run and its number in the lot.
 pub(super) fn run(
     transaction: &Transaction<'_>,
     lot: &LotRecord,
@@ -54,7 +54,7 @@ pub(super) fn run(
     Ok(made)
 }
 
-/// Inserts a part with its measurements, samples and curves; does nothing when it has the same row already.
+/// Inserts a part with its measurements, samples and curves; does nothing when an equal row exists.
 pub(super) fn part(tx: &Transaction<'_>, row_ids: &mut RowIds, part: &PartRecord) -> Result<()> {
     const DOING: &str = "recording a part";
     let run = row_ids.run(&part.lot)?;
@@ -101,7 +101,7 @@ pub(super) fn part(tx: &Transaction<'_>, row_ids: &mut RowIds, part: &PartRecord
     }
 }
 
-/// Checks that the record of a part is consistent.
+/// Asserts that the record of a part is consistent.
 fn check(part: &PartRecord) {
     assert!(part.seq >= 1, "the first part has number 1");
     assert_eq!(
@@ -238,7 +238,7 @@ fn parameter(tx: &Transaction<'_>, row_ids: &mut RowIds, key: &str) -> Result<i6
     Ok(row)
 }
 
-/// Returns the row of a parameter; inserts a new one, with its column in the view `parts`.
+/// Returns the row number of a parameter; inserts the parameter if it is new, and adds its column to the view `parts`.
 pub(super) fn parameter_row(connection: &Connection, key: &str) -> rusqlite::Result<i64> {
     let mut find = connection.prepare_cached("SELECT id FROM parameter WHERE key = ?1")?;
     if let Some(row) = find.query_row([key], |row| row.get(0)).optional()? {

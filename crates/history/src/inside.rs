@@ -1,4 +1,4 @@
-//! Places of the parts inside the machine, for the next run.
+//! Places of the parts that a run leaves inside the machine; the next run takes them over.
 
 use super::Store;
 use super::error::{Doing, Result};
@@ -7,7 +7,7 @@ use machine::handling::inside::Inside;
 use machine::rig::bin::Bin;
 use rusqlite::{OptionalExtension, Transaction, params};
 
-/// The last known places of one rig.
+/// Places that were occupied when last known, on the real or the simulated rig.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct InsideRecord {
     /// True for the simulated rig.
@@ -33,7 +33,7 @@ pub(super) fn keep(tx: &Transaction<'_>, it: &InsideRecord) -> Result<()> {
 }
 
 impl Store {
-    /// Returns what the previous run left inside; empty without a previous run.
+    /// Returns the places of the parts that the previous run left inside; none when there was no previous run.
     pub fn left_inside(&self, simulated: bool) -> Result<Inside> {
         let read = |row: &rusqlite::Row<'_>| {
             Ok(Inside {

@@ -1,5 +1,5 @@
-//! Later additions to rows: where a part landed, that it was interrupted, when an alarm was cleared. Every function runs
-//! inside a transaction of [`Store`](super::Store).
+//! Later additions to a row: where a part landed, that it was interrupted, when an alarm was cleared. Every function
+//! here runs inside a transaction of [`Store`](super::Store).
 
 use super::error::{Doing, HistoryError, Result};
 use super::insert::signed;
@@ -8,7 +8,7 @@ use super::store::RowIds;
 use super::{AlarmRecord, InterruptedRecord, LandingRecord};
 use rusqlite::{OptionalExtension, Transaction, params};
 
-/// Fills in bin and time of a landing, once.
+/// Adds bin and time of the landing to the row of a part; only the first call changes the row.
 pub(super) fn landing(tx: &Transaction<'_>, row_ids: &RowIds, it: &LandingRecord) -> Result<()> {
     const DOING: &str = "recording a landing";
     let run = row_ids.run(&it.lot)?;
@@ -43,7 +43,7 @@ pub(super) fn landing(tx: &Transaction<'_>, row_ids: &RowIds, it: &LandingRecord
     landed_before(it, first)
 }
 
-/// Makes a judged part void with bin `retest`, once and only before it has landed.
+/// Makes a judged part void and assigns bin `retest`; only once, and only before the part has landed.
 pub(super) fn interrupted(
     tx: &Transaction<'_>,
     row_ids: &RowIds,
@@ -92,7 +92,7 @@ fn landed_before(it: &LandingRecord, first: Option<String>) -> Result<()> {
     }
 }
 
-/// Inserts an alarm; a second record of it only fills in when it was cleared.
+/// Inserts an alarm; for one that has a row, adds only the time at which it was cleared.
 pub(super) fn alarm(tx: &Transaction<'_>, row_ids: &RowIds, it: &AlarmRecord) -> Result<()> {
     let run = it.lot.as_deref().map(|lot| row_ids.run(lot)).transpose()?;
     assert!(!it.code.is_empty(), "an alarm without a code");

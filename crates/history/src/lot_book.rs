@@ -1,10 +1,10 @@
-//! The list of lots that were run, the latest first, each over all its runs.
+//! The list of all lots that were run, the latest first; an entry covers all runs of its lot.
 
 use super::error::{Doing, Result};
 use super::{Archive, LotStatus, LotYield, Moment, Reopening};
 use serde::Serialize;
 
-/// A lot over all its runs.
+/// A lot with the sums over all its runs.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct LotEntry {
     /// Name of the lot.
@@ -13,7 +13,7 @@ pub struct LotEntry {
     pub runs: u32,
     /// Start of the last run.
     pub opened: Moment,
-    /// Code of the trouble that ended the last run; `None` for a normal end and for a run that was cut off.
+    /// Code of the trouble that ended the last run; `None` when it ended normally or was cut off.
     pub cause: Option<String>,
     /// Text of the cause, English.
     pub cause_text: Option<String>,
@@ -22,18 +22,18 @@ pub struct LotEntry {
     /// State and recipe.
     #[serde(flatten)]
     pub standing: LotStatus,
-    /// Yield.
+    /// Counts of tested, passed and suspect parts.
     #[serde(flatten)]
     pub counts: LotYield,
 }
 
-/// Selects lots with the number of their runs and the end of the last one, without imports.
+/// Selects the lots, without imports, with the number of their runs and the cause that ended the last run.
 const BOOK: &str = "SELECT lot.name, count(*), max(run.opened_at_us), run_end.cause, run_end.cause_text
     FROM run JOIN lot ON lot.id = run.lot_id LEFT JOIN run_end ON run_end.run_id = run.id WHERE run.source <> 'import'
     GROUP BY lot.id ORDER BY 3 DESC, lot.id DESC LIMIT ?1 OFFSET ?2";
 
 impl Archive {
-    /// Returns at most `limit` lots after the latest `offset` ones.
+    /// Returns at most `limit` lots, the latest first; skips the first `offset` ones.
     pub fn lot_book(&self, limit: u32, offset: u32) -> Result<Vec<LotEntry>> {
         let names: Vec<(String, u32, i64, [Option<String>; 2])> = self
             .connection

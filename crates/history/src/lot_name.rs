@@ -1,13 +1,13 @@
-//! Rule for names of lots: a person can read the name on a screen, on paper and in a terminal.
+//! Rule for the name of a lot: a person must be able to read it on a screen, on paper and in a terminal.
 
-/// Longest name in characters, the same as in the schema.
+/// Length of the longest allowed name, characters; the schema has the same limit.
 const LONGEST: usize = 200;
 
 /// The rule of [`is_lot_name`] in words.
 pub const LOT_NAME: &str =
     "1 to 200 characters, none of them a control character, and not blanks alone";
 
-/// Returns true when a new lot may have this name. Existing lots keep theirs.
+/// Returns true when a new lot may have this name. Lots that exist already keep their names.
 pub fn is_lot_name(name: &str) -> bool {
     !name.trim().is_empty()
         && name.chars().count() <= LONGEST

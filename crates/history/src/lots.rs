@@ -1,11 +1,11 @@
-//! Summaries of runs, and verdicts of a span of time.
+//! Summaries of runs, and counts of verdicts in a span of time.
 
 use super::error::{Doing, Result};
 use super::{Archive, Filter, Moment};
 use rusqlite::{OptionalExtension, params, params_from_iter};
 use serde::Serialize;
 
-/// A run with its counts of production parts.
+/// A run, with counts of its production parts.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LotSummary {
     /// Name of the lot.
@@ -16,39 +16,40 @@ pub struct LotSummary {
     pub recipe: String,
     /// Hash of the recipe.
     pub recipe_hash: String,
-    /// Hash of the calibration.
+    /// Hash of the calibration that the run used, if any.
     pub calibration_hash: Option<String>,
     /// `rig`, `simulated` or `import`.
     pub source: String,
-    /// Seed of the simulated rig.
+    /// Seed of the simulated rig; `None` on a real one.
     pub seed: Option<String>,
     /// Person who agreed to a retest; `None` for a first test.
     pub retest: Option<String>,
     /// Start of the run.
     pub opened: Moment,
-    /// End of the run; `None` while it runs and for a run that was cut off.
+    /// End of the run; `None` while it is under way, and for a run that was cut off.
     pub closed: Option<Moment>,
-    /// `complete`, `stopped` or `alarm`; `None` without an end and before schema 9.
+    /// How the run ended: `complete`, `stopped` or `alarm`; `None` when it has no end, and for runs older than schema
+    /// 9.
     pub ended: Option<String>,
-    /// Code of the trouble that ended the run: an alarm or a fault of the program.
+    /// Code of the trouble that ended the run, an alarm or a fault of the program; `None` when no trouble ended it.
     pub cause: Option<String>,
     /// Text of the cause, English.
     pub cause_text: Option<String>,
     /// Counts of production parts.
     #[serde(flatten)]
     pub counts: Yield,
-    /// Tests of reference parts.
+    /// Number of tests of reference parts.
     pub golden: u64,
     /// Number of alarms.
     pub alarms: u64,
-    /// Production parts by the bin of their verdict.
+    /// Number of production parts by the bin that the verdict assigns.
     pub bins: std::collections::BTreeMap<String, u64>,
 }
 
-/// Counts of verdicts.
+/// Number of parts by verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Yield {
-    /// All parts.
+    /// Number of all parts, judged or not.
     pub parts: u64,
     /// Passed parts.
     pub pass: u64,
@@ -60,7 +61,7 @@ pub struct Yield {
     pub unjudged: u64,
 }
 
-/// Parts that passed.
+/// Number of parts that passed, in two ways of counting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Passed {
     /// Parts that passed after any number of attempts.
@@ -89,15 +90,15 @@ impl Yield {
     }
 }
 
-/// Counts verdicts in a span of time.
+/// Counts the verdicts on production parts in a span of time.
 pub(super) const YIELD: &str = "SELECT verdict, count(*) FROM part INDEXED BY part_time
     WHERE judged_at_us >= ?1 AND judged_at_us < ?2 AND kind = 'lot' GROUP BY verdict";
-/// Counts the parts of one run.
+/// Counts the parts of one run by kind, verdict and bin.
 pub(super) const COUNTS: &str =
     "SELECT kind, verdict, bin, count(*) FROM part WHERE run_id = ?1 GROUP BY 1, 2, 3";
 
 impl Archive {
-    /// Returns the selected runs (lot, recipe, run) in order of opening.
+    /// Returns the runs in order of their start; lot, recipe and run of the filter select them.
     pub fn lots(&self, filter: &Filter) -> Result<Vec<LotSummary>> {
         let mut select = filter.runs();
         select.sql = format!(
@@ -144,7 +145,7 @@ impl Archive {
             .doing("reading a recipe")
     }
 
-    /// Returns true when the filter (lot, recipe, run) selects a run.
+    /// Returns true when lot, recipe and run of the filter select at least one run.
     pub fn has_runs(&self, filter: &Filter) -> Result<bool> {
         let runs = filter.runs();
         self.connection
@@ -153,7 +154,7 @@ impl Archive {
             .doing("looking for a run")
     }
 
-    /// Counts production parts judged from `since` until before `until`.
+    /// Counts the verdicts on production parts that were judged in a time span: `since` included, `until` excluded.
     pub fn yield_between(&self, since: Moment, until: Moment) -> Result<Yield> {
         let mut counts = Yield::default();
         self.connection
@@ -171,7 +172,7 @@ impl Archive {
             .doing("counting verdicts")
     }
 
-    /// Counts the selected parts that passed, and those that passed at the first attempt.
+    /// Counts the selected parts that passed, and among them those that passed at the first attempt.
     pub fn passed(&self, filter: &Filter) -> Result<Passed> {
         filter
             .passed()

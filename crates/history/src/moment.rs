@@ -1,4 +1,4 @@
-//! Instants: microseconds since 1970 UTC inside the program, RFC 3339 in its input and output.
+//! Instants: microseconds since 1970 UTC inside the program, RFC 3339 in input and output.
 
 use jiff::Timestamp;
 use jiff::fmt::temporal::Pieces;
@@ -6,11 +6,11 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use std::fmt;
 use std::str::FromStr;
 
-/// Microseconds since 1970-01-01 UTC, shown as RFC 3339 with six digits.
+/// Microseconds since 1970-01-01 UTC; shown as RFC 3339 with six decimals of a second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Moment(pub i64);
 
-/// A text that is not an RFC 3339 time with offset.
+/// Error: a text is not an RFC 3339 time with offset.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{found:?} is no RFC 3339 time: expected for example 2026-03-01T08:00:00+08:00")]
 pub struct MomentError {
@@ -30,7 +30,7 @@ impl FromStr for Moment {
     }
 }
 
-/// Reads a time in the year 9999, which people write for "never", as the latest instant.
+/// Reads any time in the year 9999, which people write to mean "never", as the latest possible instant.
 fn never(text: &str) -> Option<Timestamp> {
     let said = Pieces::parse(text).ok()?;
     let is_last_year = said.date().year() == 9999;
@@ -38,7 +38,7 @@ fn never(text: &str) -> Option<Timestamp> {
 }
 
 impl fmt::Display for Moment {
-    /// An instant beyond the calendar (year 9999) is shown as its number.
+    /// Writes RFC 3339; an instant beyond the year 9999 is written as its number of microseconds.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match Timestamp::from_microsecond(self.0) {
             Ok(at) => write!(f, "{at:.6}"),

@@ -1,12 +1,12 @@
-//! Opening a history file: owner, schema, durability.
+//! Opens a history file: checks whose it is, brings it to the present schema, makes writes durable.
 //!
 //! 1. A file with tables but another `application_id` belongs to another program. It is refused before any write.
-//! 2. A schema newer than this program is refused; an older one is migrated, one transaction a step.
-//! 3. Write-ahead log with `synchronous = FULL`: an acknowledged batch survives power loss.
-//! 4. Query plans do not depend on bound values (`QPSG`): planning a statement again for each part would take longer than
-//!    running it.
-//! 5. Reads use the page cache, not a memory map: an I/O error in a map raises a signal that would end the process that
-//!    drives the rig.
+//! 2. A schema newer than this program is refused; an older one is migrated, all missing steps in one transaction.
+//! 3. Write-ahead log with `synchronous = FULL`: a batch that was acknowledged survives power loss.
+//! 4. SQLite may not use bound values for its query plans (`QPSG`), because planning a statement again for each part
+//!    would take longer than running it.
+//! 5. Reads use the page cache, not a memory map: an I/O error in a map raises a signal, which would end the process
+//!    that drives the rig.
 
 use super::error::{Doing, HistoryError, Result};
 use super::{reasons, series, views};
@@ -15,7 +15,7 @@ use rusqlite::{Connection, ErrorCode, OpenFlags};
 use std::path::Path;
 use std::time::Duration;
 
-/// `RRig`: the application id in the header of a history file.
+/// Application id in the header of a history file: `RRig` in ASCII.
 pub const APPLICATION_ID: i64 = 0x5252_6967;
 
 /// Step `n` migrates schema `n` to `n + 1`. Existing steps never change.
@@ -36,16 +36,16 @@ pub(super) const MIGRATIONS: [&str; 11] = [
 /// Schema that this program writes.
 pub const SCHEMA: i64 = MIGRATIONS.len() as i64;
 
-/// First schema with packed values of closed runs.
+/// First schema that packs the values of closed runs.
 const PACKS: i64 = 6;
 
-/// First schema with reasons as codes.
+/// First schema that stores reasons as codes.
 const CODES: i64 = 8;
 
-/// Longest wait for a locked file: longer than any batch takes.
+/// Longest wait for a file that another process has locked; longer than any batch takes.
 const BUSY: Duration = Duration::from_secs(5);
 
-/// Opens a file for writing; creates a missing one.
+/// Opens a file for writing; creates it if it is missing.
 pub(super) fn writer(path: &Path) -> Result<Connection> {
     let flags = OpenFlags::SQLITE_OPEN_READ_WRITE
         | OpenFlags::SQLITE_OPEN_CREATE
@@ -55,7 +55,7 @@ pub(super) fn writer(path: &Path) -> Result<Connection> {
     Ok(connection)
 }
 
-/// Opens an existing file for reading, after migrating an older schema.
+/// Opens an existing file for reading; migrates an older schema first.
 pub(super) fn reader(path: &Path) -> Result<Connection> {
     if !path.exists() {
         return Err(HistoryError::Missing {
@@ -96,7 +96,8 @@ fn prepare(connection: &Connection, path: &Path) -> Result<()> {
     migrate(connection, found)
 }
 
-/// Returns the schema of the file, 0 for an empty one. Fails when the file belongs to another program or is newer.
+/// Returns the schema of the file, 0 for an empty one. Fails when the file belongs to another program, or when its
+/// schema is newer.
 fn check(connection: &Connection, path: &Path) -> Result<i64> {
     let foreign = |found: String| HistoryError::Foreign {
         path: path.to_owned(),
@@ -122,7 +123,7 @@ fn check(connection: &Connection, path: &Path) -> Result<i64> {
     }
 }
 
-/// Returns application id, schema, and number of tables and indexes.
+/// Returns application id, schema, and the number of tables and indexes.
 fn header(connection: &Connection) -> rusqlite::Result<(i64, i64, i64)> {
     let tables = "SELECT count(*) FROM sqlite_schema";
     Ok((
@@ -144,7 +145,8 @@ fn migrate(connection: &Connection, found: i64) -> Result<()> {
     done
 }
 
-/// Runs the missing steps. Reads the schema again, since another process may have migrated during the wait for the lock.
+/// Runs the missing steps. Reads the schema again, because another process may have migrated the file while this one
+/// waited for the lock.
 fn steps(connection: &Connection) -> rusqlite::Result<()> {
     let from: i64 = connection.pragma_query_value(None, "user_version", |row| row.get(0))?;
     for (step, sql) in MIGRATIONS

@@ -1,4 +1,4 @@
-//! Audit of orders: person, place, order and answer. Rows never change.
+//! Audit of orders: who, from where, which order, which answer. Rows never change.
 
 use super::error::{Doing, Result};
 use super::store::RowIds;
@@ -9,9 +9,9 @@ use serde::Serialize;
 /// An order and its answer.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct OrderRecord {
-    /// The open lot at that time, if any.
+    /// Name of the lot whose run was open at that time, if any.
     pub lot: Option<String>,
-    /// Time of the answer.
+    /// Time of the answer, microseconds since 1970 UTC.
     pub at_us: i64,
     /// Name of the person; empty when not logged in.
     pub who: String,
@@ -19,28 +19,28 @@ pub struct OrderRecord {
     pub role: String,
     /// Address of the browser, or `command line`.
     pub origin: String,
-    /// The order with its members, JSON.
+    /// The order with its members, as JSON text.
     pub what: String,
     /// Reason of the refusal, English; `None` for an accepted order.
     pub refused: Option<String>,
 }
 
-/// An order in the audit.
+/// An order as the audit shows it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct OrderEntry {
     /// Time of the answer.
     pub at: Moment,
-    /// Lot under way; `None` outside a run.
+    /// Name of the lot whose run was open at that time, if any.
     pub lot: Option<String>,
-    /// Number of the run within its lot.
+    /// Number of that run within its lot.
     pub run: Option<u32>,
     /// Name of the person; empty when not logged in.
     pub who: String,
-    /// Role of the person.
+    /// Role of the person; empty when not logged in.
     pub role: String,
     /// Address of the browser, or `command line`.
     pub origin: String,
-    /// The order with its members.
+    /// The order with its members, as JSON.
     pub what: serde_json::Value,
     /// Reason of the refusal, English; `None` for an accepted order.
     pub refused: Option<String>,
@@ -62,7 +62,8 @@ pub(super) fn insert(tx: &Transaction<'_>, row_ids: &RowIds, it: &OrderRecord) -
 }
 
 impl Archive {
-    /// Returns the orders of the selected runs (lot, run, recipe) and span, of one person or of all, in order of time.
+    /// Returns orders in order of time, of one person or of all; lot, run, recipe and time span of the filter select
+    /// them.
     pub fn orders(&self, filter: &Filter, who: Option<&str>) -> Result<Vec<OrderEntry>> {
         filter
             .orders(who)

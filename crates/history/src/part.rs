@@ -1,4 +1,4 @@
-//! A part with its measurements as page, exports and `--json` show it.
+//! A part with its measurements, as page, exports and `--json` show it.
 
 use super::{Moment, curve};
 use machine::dut::Reason;
@@ -15,96 +15,96 @@ pub struct Part {
     pub lot: String,
     /// Number of the run within its lot.
     pub run: u32,
-    /// `lot` or `golden`.
+    /// `lot` for a production part, `golden` for a reference part.
     pub kind: String,
-    /// Count of parts that entered the nest.
+    /// Number of the part: it was the `seq`-th of its kind to enter the nest in this run.
     pub seq: u64,
     /// Name of the recipe.
     pub recipe: String,
-    /// Serial number.
+    /// Serial number, if the part has one.
     pub serial: Option<String>,
     /// `pass`, `fail`, `void` or `unjudged`.
     pub verdict: String,
-    /// Bin of the verdict.
+    /// Bin that the verdict assigns, if any.
     pub bin: Option<String>,
-    /// Bin whose beam confirmed the part.
+    /// Bin whose beam saw the part fall; `None` until then.
     pub landed_bin: Option<String>,
-    /// Time of that confirmation.
+    /// Time at which that beam saw the part.
     pub landed_at: Option<Moment>,
-    /// Reasons against a pass, as texts.
+    /// Reasons why the part did not pass, as texts.
     pub reasons: Vec<String>,
     /// The same reasons as codes.
     pub reason_codes: Vec<Reason>,
     /// Time of the verdict.
     pub time: Moment,
-    /// Time from probes up to verdict, rig seconds.
+    /// Time from the raising of the probes to the verdict, seconds of rig time.
     pub test_s: Option<f64>,
-    /// Time since the previous nest exit, rig seconds.
+    /// Time since the previous part left the nest, seconds of rig time.
     pub cycle_s: Option<f64>,
-    /// Last value of each parameter, by key.
+    /// Value of the last attempt at each parameter, by key.
     pub values: serde_json::Map<String, serde_json::Value>,
     /// Expanded uncertainty (k = 2) of each value, by key.
     pub uncertainty: serde_json::Map<String, serde_json::Value>,
-    /// All attempts with their samples; filled for a single part only.
+    /// All attempts with their samples; filled only when a single part is read.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub measurements: Vec<Measurement>,
-    /// Sampled curves of a part that did not pass; filled for a single part only.
+    /// Sampled curves of a part that did not pass; filled only when a single part is read.
     #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "curve::shown")]
     pub curves: Vec<Curve>,
     #[serde(skip)]
     pub(super) row: i64,
 }
 
-/// One attempt to measure one parameter.
+/// One attempt at measuring one parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Measurement {
-    /// Parameter key.
+    /// Key of the parameter.
     pub parameter: String,
     /// Number of the attempt, from 1.
     pub attempt: u32,
-    /// Value in the unit of the key.
+    /// Value, in the unit that the key names; `None` without a usable value.
     pub value: Option<f64>,
-    /// Expanded uncertainty, k = 2.
+    /// Expanded uncertainty (k = 2), in the same unit.
     pub uncertainty: Option<f64>,
-    /// Lower limit in force.
+    /// Lower limit of the recipe, if any.
     pub low: Option<f64>,
-    /// Upper limit in force.
+    /// Upper limit of the recipe, if any.
     pub high: Option<f64>,
     /// Verdict of this attempt.
     pub verdict: String,
-    /// Uncertainty budget.
+    /// Uncertainty budget, as JSON.
     pub budget: Option<serde_json::Value>,
-    /// Replies that the value was computed from.
+    /// Replies from which the value was computed.
     pub samples: Vec<Sample>,
 }
 
 /// One reply of a module.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Sample {
-    /// Serial line.
+    /// Name of the serial line.
     pub line: String,
-    /// Module address.
+    /// Address of the module.
     pub module: String,
-    /// Channel of the module.
+    /// Channel of the module; empty for a reply about the whole module.
     pub channel: String,
-    /// Text sent.
+    /// Request as sent.
     pub command: String,
-    /// Text received.
+    /// Reply as received.
     pub raw: String,
-    /// Time of the last byte.
+    /// Time at which the last byte of the reply arrived.
     pub at: Moment,
 }
 
 #[cfg(any(test, feature = "fixture"))]
 impl Part {
-    /// Returns the part with these reasons.
+    /// Returns the part with these reasons, as codes and as texts.
     pub fn with_reasons(mut self, reasons: Vec<Reason>) -> Self {
         self.reasons = reasons.iter().map(Reason::to_string).collect();
         self.reason_codes = reasons;
         self
     }
 
-    /// Returns a part of run 1 without measurements.
+    /// Returns a part of run 1 without measurements, for tests.
     pub fn fixture(lot: &str, seq: u64, verdict: &str) -> Self {
         Self {
             tag: "part",

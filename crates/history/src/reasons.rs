@@ -1,4 +1,4 @@
-//! Codes of the reasons why a part did not pass: the table `reason` has a row for each text of `part.reasons`.
+//! Codes of the reasons why a part did not pass: the table `reason` has one row per text in `part.reasons`.
 
 use super::Archive;
 use super::insert::parameter_row;
@@ -10,10 +10,10 @@ use rusqlite::{Connection, Row, params};
 pub(super) const REASONS: &str = "SELECT code, parameter.key, side, detail FROM reason
     LEFT JOIN parameter ON parameter.id = reason.parameter_id WHERE part_id = ?1 ORDER BY n";
 
-/// Parts that one step of the migration reads.
+/// Number of parts that the migration reads at a time.
 const BATCH: usize = 1_000;
 
-/// Inserts reasons of the part in row `part`; the first one gets number `n`, at least 1.
+/// Inserts reasons for the part in row `part`; numbers them from `n`, which is at least 1.
 pub(super) fn insert(
     connection: &Connection,
     part: i64,
@@ -42,18 +42,19 @@ pub(super) fn insert(
     Ok(())
 }
 
-/// Texts of reasons before schema 8, one a line: `code|parameter|side|text`, with `*` for the detail. The table is frozen:
-/// later edits of the catalogue do not change how old files are migrated.
+/// Texts of reasons before schema 8, one per line: `code|parameter|side|text`, with `*` in place of the detail. This
+/// table is frozen, so later edits of the catalogue do not change how old files are migrated.
 const TEXTS: &str = include_str!("schema/reason_texts.txt");
 
-/// Reads a text as programs before schema 8 wrote it; one without a code stays [`Code::Unclassified`](machine::dut::reason::Code).
+/// Converts a text that a program before schema 8 wrote; a text that is not known becomes
+/// [`Code::Unclassified`](machine::dut::reason::Code).
 fn read_text(text: &str) -> Reason {
     let known = TEXTS.lines().find_map(|line| match_text(line, text));
     let known = known.or_else(|| limit_reason(text));
     known.unwrap_or_else(|| Reason::unclassified(text))
 }
 
-/// Returns the reason of one line of [`TEXTS`] when its form matches the text.
+/// Returns the reason that one line of [`TEXTS`] describes; `None` when its text does not match.
 fn match_text(line: &str, text: &str) -> Option<Reason> {
     let [code, key, side, form] = line.splitn(4, '|').collect::<Vec<_>>().try_into().ok()?;
     let detail = match form.split_once('*') {
@@ -65,7 +66,7 @@ fn match_text(line: &str, text: &str) -> Option<Reason> {
     Reason::stored(code, about, Side::from_name(side), detail)
 }
 
-/// Returns the reason of a text that begins with the key of a characteristic and names its limit.
+/// Returns the reason of a text that begins with the key of a characteristic and then names the limit that was missed.
 fn limit_reason(text: &str) -> Option<Reason> {
     let (key, rest) = text.split_once(' ')?;
     let (code, side) = match rest {
@@ -79,7 +80,7 @@ fn limit_reason(text: &str) -> Option<Reason> {
     Reason::stored(code, Characteristic::from_key(key), side, "")
 }
 
-/// Inserts the codes of every part that was recorded before schema 8.
+/// Inserts the codes for every part that was recorded before schema 8.
 pub(super) fn read_texts(connection: &Connection) -> rusqlite::Result<()> {
     let mut after = 0;
     loop {
@@ -95,7 +96,7 @@ pub(super) fn read_texts(connection: &Connection) -> rusqlite::Result<()> {
     }
 }
 
-/// Returns the next parts with reasons, after row `after`, with their stored texts.
+/// Returns the stored texts of the next parts that have reasons, from the row after `after`.
 fn with_texts(
     connection: &Connection,
     after: i64,
@@ -110,14 +111,14 @@ fn with_texts(
         .collect()
 }
 
-/// Returns the texts of a stored JSON list.
+/// Returns the texts in a stored JSON list.
 pub(super) fn texts(stored: &serde_json::Value) -> impl Iterator<Item = &str> {
     let list = stored.as_array().map(Vec::as_slice).unwrap_or_default();
     list.iter().filter_map(serde_json::Value::as_str)
 }
 
 impl Archive {
-    /// Returns a reason for each text; one whose code this program does not know is unclassified.
+    /// Returns one reason for each text; a code that this program does not know gives an unclassified reason.
     pub(super) fn reasons(&self, part: i64, texts: &[String]) -> rusqlite::Result<Vec<Reason>> {
         if texts.is_empty() {
             return Ok(Vec::new());

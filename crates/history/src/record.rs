@@ -1,4 +1,5 @@
-//! Records that the control cycle hands to the history: texts, numbers, reasons and microseconds since 1970 UTC (`_us`).
+//! Records that the control cycle hands to the history: texts, numbers and reasons. A name in `_us` stands for an
+//! instant in microseconds since 1970 UTC.
 //!
 //! A number that is not finite is stored as null.
 
@@ -11,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use texts::Args;
 
-/// A run of a lot. Opening the lot again adds a run with the next number.
+/// A run of a lot. Opening the same lot again adds a run with the next number.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct LotRecord {
     /// Name of the lot.
@@ -20,15 +21,15 @@ pub struct LotRecord {
     pub recipe: String,
     /// Text of the recipe, TOML.
     pub recipe_snapshot: String,
-    /// Hash of the text, see [`snapshot_hash`]; runs with equal hashes share one stored text.
+    /// Hash of that text, made by [`snapshot_hash`]; runs with equal hashes share one stored text.
     pub recipe_hash: String,
-    /// Hash of the calibration in force.
+    /// Hash of the calibration in force, if any.
     pub calibration_hash: Option<String>,
     /// Start of the run.
     pub opened_at_us: i64,
     /// True on the simulated rig.
     pub simulated: bool,
-    /// Seed of the simulated rig.
+    /// Seed of the simulated rig; `None` on a real one.
     pub seed: Option<u64>,
     /// Person who agreed to a retest; `None` for a first test.
     pub retest: Option<String>,
@@ -37,56 +38,57 @@ pub struct LotRecord {
 /// One judged part with everything measured on it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PartRecord {
-    /// The open lot it belongs to.
+    /// Name of the part's lot, of which a run is open.
     pub lot: String,
-    /// Count of parts that entered the nest, from 1.
+    /// Number of the part, from 1: it was the `seq`-th of its kind to enter the nest in this run.
     pub seq: u64,
     /// Serial number, if the part has one.
     pub serial: Option<String>,
     /// `pass`, `fail` or `void`.
     pub verdict: String,
-    /// Bin of the verdict; empty for a part that is not sorted.
+    /// Bin that the verdict assigns; empty for a part that is not sorted.
     pub bin: String,
-    /// Reasons against a pass, the decisive one first.
+    /// Reasons why the part did not pass, the decisive one first.
     pub reasons: Vec<Reason>,
     /// Time of the verdict.
     pub judged_at_us: i64,
-    /// Time from probes up to verdict, rig seconds; NaN for an import.
+    /// Time from the raising of the probes to the verdict, seconds of rig time; NaN for an import.
     pub test_s: f64,
-    /// Time since the previous nest exit, rig seconds; `None` until it is known, at the landing at the latest.
+    /// Time since the previous part left the nest, seconds of rig time; `None` while it is unknown, at most until the
+    /// landing.
     pub cycle_s: Option<f64>,
-    /// Bin whose beam confirmed the part.
+    /// Bin whose beam saw the part fall; `None` until then.
     pub landed_bin: Option<String>,
-    /// Time of that confirmation.
+    /// Time at which that beam saw the part.
     pub landed_at_us: Option<i64>,
-    /// `lot` for a production part, `golden` for a reference part; each kind counts its own `seq`.
+    /// `lot` for a production part, `golden` for a reference part; the parts of each kind are numbered from 1.
     pub kind: String,
-    /// Measurements in order of time; a repetition has a higher attempt.
+    /// Measurements in order of time; when one is repeated, the repetition has a higher attempt number.
     pub measurements: Vec<MeasurementRecord>,
     /// Sampled curves; empty for a part that passed.
     pub curves: Vec<CurveRecord>,
 }
 
-/// One attempt to measure one parameter.
+/// One attempt at measuring one parameter.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MeasurementRecord {
-    /// Parameter key with unit suffix, `operate_voltage_v`.
+    /// Key of the parameter, which ends with its unit, for example `operate_voltage_v`.
     pub key: String,
-    /// Value in the unit of the key; `None` without a usable value.
+    /// Value, in the unit that the key names; `None` without a usable value.
     pub value: Option<f64>,
-    /// Expanded uncertainty, k = 2, same unit.
+    /// Expanded uncertainty (k = 2), in the same unit.
     pub uncertainty: Option<f64>,
-    /// Lower limit of the recipe.
+    /// Lower limit of the recipe, if any.
     pub low: Option<f64>,
-    /// Upper limit of the recipe.
+    /// Upper limit of the recipe, if any.
     pub high: Option<f64>,
     /// Verdict of this attempt: `pass`, `fail` or `void`.
     pub verdict: String,
     /// Number of the attempt, from 1; statistics use the last one.
     pub attempt: u32,
-    /// Uncertainty budget as JSON text.
+    /// Uncertainty budget, as JSON text.
     pub budget: Option<String>,
-    /// Replies that the value was computed from.
+    /// Replies from which the value was computed.
     pub samples: Vec<SampleRecord>,
 }
 
@@ -99,37 +101,37 @@ pub struct SampleRecord {
     pub module: String,
     /// Channel; empty for a reply about the whole module.
     pub channel: String,
-    /// Text sent, without the carriage return.
+    /// Request as sent, without the carriage return.
     pub command: String,
-    /// Text received, without the carriage return.
+    /// Reply as received, without the carriage return.
     pub raw: String,
-    /// Time of the last byte.
+    /// Time at which the last byte of the reply arrived.
     pub at_us: i64,
 }
 
-/// The beam of a bin confirms a part.
+/// The beam of a bin saw a part fall.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct LandingRecord {
-    /// The open lot it belongs to.
+    /// Name of the part's lot, of which a run is open.
     pub lot: String,
-    /// `lot` or `golden`.
+    /// `lot` for a production part, `golden` for a reference part.
     pub kind: String,
     /// Number of the part.
     pub seq: u64,
-    /// Bin of the beam.
+    /// Bin whose beam saw the part.
     pub bin: String,
-    /// Time of the confirmation.
+    /// Time at which the beam saw the part.
     pub at_us: i64,
-    /// Time since the previous nest exit, rig seconds, if known.
+    /// Time since the previous part left the nest, seconds of rig time; `None` while it is unknown.
     pub cycle_s: Option<f64>,
 }
 
-/// A judged part is interrupted on its way: its row becomes void with bin `retest` and keeps its values.
+/// A judged part was interrupted on its way to the bin: its row becomes void, gets bin `retest` and keeps its values.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct InterruptedRecord {
-    /// The open lot it belongs to.
+    /// Name of the part's lot, of which a run is open.
     pub lot: String,
-    /// `lot` or `golden`.
+    /// `lot` for a production part, `golden` for a reference part.
     pub kind: String,
     /// Number of the part.
     pub seq: u64,
@@ -137,22 +139,22 @@ pub struct InterruptedRecord {
     pub reason: Reason,
 }
 
-/// An occurrence of an alarm; recorded again with `cleared_at_us` when it is cleared.
+/// An occurrence of an alarm; when the alarm is cleared, it is recorded again with `cleared_at_us`.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct AlarmRecord {
-    /// The open lot at that time, if any.
+    /// Name of the lot whose run was open at that time, if any.
     pub lot: Option<String>,
     /// Code of the alarm.
     pub code: String,
-    /// Serial line that it concerns, if any.
+    /// Serial line that the alarm is about, if any.
     pub line: Option<String>,
     /// Message in English.
     pub text: String,
     /// Arguments of the message by name.
     pub args: Args,
-    /// Time of the alarm.
+    /// Time at which the alarm was raised.
     pub raised_at_us: i64,
-    /// Time at which it was cleared.
+    /// Time at which the cause was gone; `None` while the alarm is active.
     pub cleared_at_us: Option<i64>,
 }
 
@@ -161,13 +163,13 @@ pub struct AlarmRecord {
 pub struct CalibrationRecord {
     /// Time of the calibration.
     pub made_at_us: i64,
-    /// End of validity.
+    /// Time at which the factors expire.
     pub due_at_us: i64,
-    /// Hash of the body, see [`snapshot_hash`].
+    /// Hash of `body`, made by [`snapshot_hash`].
     pub hash: String,
     /// Factors with uncertainties, JSON text.
     pub body: String,
-    /// True unless the last verification failed.
+    /// False after a failed verification, else true.
     pub verified: bool,
 }
 
@@ -189,13 +191,13 @@ pub enum Row {
     Calibrated(CalibratedRecord),
     /// A judged part.
     Part(PartRecord),
-    /// A part whose beam has confirmed it.
+    /// A part that the beam of a bin saw.
     Landed(LandingRecord),
     /// A judged part that was interrupted.
     Interrupted(InterruptedRecord),
     /// An alarm that was raised or cleared.
     Alarm(AlarmRecord),
-    /// An alarm that was acknowledged, shelved or returned.
+    /// An alarm whose state changed: returned, acknowledged or shelved.
     AlarmChange(AlarmChangeRecord),
     /// The end of a run.
     RunEnded(RunEndRecord),
@@ -207,13 +209,13 @@ pub enum Row {
     ReferenceCheck(ReferenceCheckRecord),
     /// An order with its answer.
     Order(OrderRecord),
-    /// Uses of a wearing part.
+    /// Increase of the use count of a wearing part.
     Wear(WearRecord),
     /// Places of parts inside the machine.
     Inside(InsideRecord),
 }
 
-/// Returns the SHA-256 of a text, hexadecimal.
+/// Returns the SHA-256 of a text as hexadecimal digits.
 pub fn snapshot_hash(text: impl AsRef<[u8]>) -> String {
     Sha256::digest(text.as_ref())
         .iter()

@@ -1,11 +1,12 @@
 //! Judges stored values and curves by another recipe; writes no row.
 //!
-//! - Values are judged as in a run, with their stored uncertainty; a value within U of a limit is `not proven`, since it
-//!   cannot be measured again.
-//! - Values at the reference temperature of their recipe are converted to that of the other recipe.
-//! - Curves may prove that a characteristic without a value exceeds its upper limit ([`machine::dut::characteristic::KindCharacteristic`]).
+//! - Values are judged as in a run, with their stored uncertainty. A value within its uncertainty of a limit is
+//!   `not proven`, because it cannot be measured again.
+//! - Values that the first recipe states at its reference temperature are converted to that of the other recipe.
+//! - When a characteristic has no value, its curves may prove that it exceeds the upper limit
+//!   ([`machine::dut::characteristic::KindCharacteristic`]).
 //! - Reasons that depend on no limit (an open circuit, a refused reply) stay.
-//! - The other recipe must have the same kind and nominal voltage ([`Basis::misfit`]).
+//! - The other recipe must be for the same kind of part and the same nominal voltage ([`Basis::misfit`]).
 
 use super::Part;
 use machine::dut::reason::Code;
@@ -14,7 +15,7 @@ use machine::dut::{Characteristic, Judgement, Reason, Recipe, Verdict};
 use machine::gauge::{Budget, Reading, Side, judge};
 use machine::instrument::curve::Curve;
 
-/// Returns the verdict of `recipe` on a part with its curves, tested by a recipe of `basis`.
+/// Judges a part and its curves by `recipe`; `basis` describes the recipe by which the part was tested.
 pub fn rejudged(part: &Part, curves: &[Curve], basis: Basis, recipe: &Recipe) -> Verdict {
     let bound = |it: Characteristic| it.lower_bound(curves, recipe.device.part().nominal_v);
     let judged: Vec<(Characteristic, Judgement)> = recipe
@@ -49,7 +50,7 @@ pub fn rejudged(part: &Part, curves: &[Curve], basis: Basis, recipe: &Recipe) ->
     }
 }
 
-/// Returns the stored value and uncertainty times `factor`; NaN for a missing one.
+/// Returns stored value and uncertainty, both times `factor`; NaN when they are missing.
 fn stored(part: &Part, of: Characteristic, factor: f64) -> Reading {
     let number = |map: &serde_json::Map<String, serde_json::Value>| {
         let number = map.get(of.key()).and_then(serde_json::Value::as_f64);
@@ -63,8 +64,8 @@ fn stored(part: &Part, of: Characteristic, factor: f64) -> Reading {
     }
 }
 
-/// Returns true for a reason that depends on a limit or a missing value, which the other recipe judges anew. A contact that
-/// did not move also exceeds an upper limit, where the curves have `seen` that.
+/// Returns true for a reason that depends on a limit or on a missing value; the other recipe judges it anew. "The
+/// contact did not move" is such a reason when the curves show, by `seen`, that an upper limit is exceeded.
 fn is_limit(reason: &Reason, seen: impl Fn(Characteristic) -> bool) -> bool {
     match reason.code {
         Code::OutsideLimit(_) | Code::NotProven(_) | Code::NotMeasured(_) => true,

@@ -1,30 +1,30 @@
 //! Retention: deletes the parts of runs that were copied whole.
 //!
 //! - Backup and export call [`Store::record_export`] once their file is on the disk. Only closed runs count as copied.
-//! - [`Store::prune`] deletes parts, reasons, measurements, raw replies, curves and alarms of copied runs that ended before
-//!   an instant, one transaction a run. Lot, run, recipe and the note of the copy stay: run numbers continue, and the note
-//!   names the file with the parts.
+//! - [`Store::prune`] deletes parts, reasons, measurements, raw replies, curves and alarms of copied runs that ended
+//!   before a given instant, one transaction per run. Lot, run, recipe and the note of the copy stay: run numbers
+//!   continue, and the note names the file that holds the parts.
 
 use super::error::{Doing, Result};
 use super::{Filter, Store};
 use rusqlite::{Transaction, params, params_from_iter};
 use serde::Serialize;
 
-/// A run whose parts were deleted.
+/// A run whose parts were deleted, or will be.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Pruned {
     /// Name of the lot.
     pub lot: String,
     /// Number of the run within its lot.
     pub run: u32,
-    /// Deleted parts, including tests of reference parts.
+    /// Number of deleted parts, tests of reference parts included.
     pub parts: u64,
-    /// File of the copy.
+    /// File that holds the copy of the run.
     pub file: String,
 }
 
 impl Store {
-    /// Notes that `file` holds the selected closed runs (lot, run, recipe) whole. Returns their number.
+    /// Notes that `file` holds the closed runs that lot, run and recipe of the filter select. Returns their number.
     pub fn record_export(&mut self, filter: &Filter, file: &str, at_us: i64) -> Result<u64> {
         const DOING: &str = "noting a copy";
         let runs = filter.runs();
@@ -54,7 +54,7 @@ impl Store {
         Ok(found.into_iter().map(|(_, run)| run).collect())
     }
 
-    /// Deletes the parts of copied runs that ended before the instant, and calls `each` after every run.
+    /// Deletes the parts of copied runs that ended before the given instant, and calls `each` after every run.
     pub fn prune(
         &mut self,
         closed_before_us: i64,
@@ -91,7 +91,7 @@ impl Store {
     }
 }
 
-/// Statements that empty a run, referring tables first.
+/// Statements that delete the rows of a run; a table that refers to another comes first.
 pub(super) const EMPTYING: [&str; 8] = [
     "DELETE FROM series WHERE run_id = ?1",
     "DELETE FROM curve WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",

@@ -1,22 +1,22 @@
-//! End of a run, with its cause when trouble ended it.
+//! Writes how a run ended, with the cause when trouble ended it. `app/src/lot/journal.rs` makes the record.
 
 use super::error::{Doing, Result};
 use super::store::RowIds;
 use machine::station::turn::Ending;
 use rusqlite::{Transaction, params};
 
-/// The end of the open run of a lot.
+/// How the open run of a lot ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RunEndRecord {
     /// Name of the lot.
     pub lot: String,
-    /// Kind of end.
+    /// Complete, stopped, or ended by an alarm.
     pub ended: Ending,
     /// Code and English text of the trouble that ended the run, if any.
     pub cause: Option<(String, String)>,
 }
 
-/// Stores the end of a run; a later one replaces it.
+/// Stores how a run ended; replaces an earlier record of the same run.
 pub(super) fn insert(tx: &Transaction<'_>, row_ids: &RowIds, it: &RunEndRecord) -> Result<()> {
     assert!(
         it.cause.is_none() || it.ended == Ending::Alarm,

@@ -1,13 +1,14 @@
 //! Packed values of closed runs, for statistics over many runs.
 //!
-//! Closing a run packs the counted values of its production parts into a blob per parameter: 8 bytes a value instead of the
-//! 31 of its index entry, and no decoding row by row. Filters that select whole runs read the blobs; other filters, and runs
-//! that were never closed, read the index. Both ways give the same values in the same order.
+//! When a run is closed, the counted values of its production parts are packed into one blob per parameter: 8 bytes per
+//! value instead of the 31 of an index entry, and no decoding row by row. Filters that select whole runs read the
+//! blobs; other filters, and runs that were never closed, read the index. Both ways give the same values in the same
+//! order.
 
 use super::{Archive, Filter};
 use rusqlite::{Connection, OptionalExtension, params};
 
-/// Selects parts and counted values of a parameter in one run, unordered.
+/// Selects part and counted value of a parameter in one run, in no particular order.
 pub(super) const OF_RUN: &str = "SELECT part_id, value FROM measurement
     WHERE parameter_id = ?1 AND population = 'lot' AND run_id = ?2
       AND part_verdict IN ('pass', 'fail', 'void', 'unjudged')";
@@ -22,7 +23,7 @@ struct Piece {
     values: Vec<f64>,
 }
 
-/// Packs every parameter of a closed run.
+/// Packs the values of every parameter of a closed run.
 pub(super) fn pack(connection: &Connection, run: i64) -> rusqlite::Result<()> {
     let parameters: Vec<i64> = connection
         .prepare_cached("SELECT id FROM parameter")?
@@ -44,7 +45,7 @@ pub(super) fn pack(connection: &Connection, run: i64) -> rusqlite::Result<()> {
     Ok(())
 }
 
-/// Packs the runs that were closed before this table existed.
+/// Packs the values of runs that were closed before this table existed.
 pub(super) fn pack_all(connection: &Connection) -> rusqlite::Result<()> {
     let runs: Vec<i64> = connection
         .prepare("SELECT id FROM run WHERE closed_at_us IS NOT NULL")?
@@ -53,7 +54,7 @@ pub(super) fn pack_all(connection: &Connection) -> rusqlite::Result<()> {
     runs.into_iter().try_for_each(|run| pack(connection, run))
 }
 
-/// Reads a piece from the index; `None` without a value.
+/// Reads the values of one run from the index; `None` when the run has no value.
 fn loose(connection: &Connection, parameter: i64, run: i64) -> rusqlite::Result<Option<Piece>> {
     let mut found: Vec<(i64, f64)> = connection
         .prepare_cached(OF_RUN)?
@@ -88,8 +89,8 @@ fn packed(connection: &Connection, parameter: i64, run: i64) -> rusqlite::Result
 }
 
 impl Archive {
-    /// Returns the values of `param` in order of judgement; `None` when the filter selects more finely than by run, or when
-    /// parts of two runs alternate.
+    /// Returns the values of `param` in order of judgement, run after run; `None` when the filter selects only some
+    /// parts of a run, or when parts of two runs alternate in time.
     pub(super) fn side_by_side(
         &self,
         param: &str,

@@ -1,6 +1,6 @@
-//! The writer: opens lots, records batches, closes lots.
+//! The writer of the history: opens runs of lots, records batches of rows, closes runs.
 //!
-//! A batch is one transaction and one disk flush. A rig records each part alone, an import hundreds at once.
+//! A batch is one transaction and one disk flush. A rig records each part alone; an import records hundreds at once.
 
 use super::error::{Doing, HistoryError, Result};
 use super::{
@@ -11,10 +11,10 @@ use rusqlite::{Connection, OptionalExtension, Transaction, TransactionBehavior, 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// Name and version of this program; every run and the foot of every page keep them.
+/// Name and version of this program; every run stores them and every printed page shows them.
 pub(crate) const PROGRAM: &str = concat!("relayrig ", env!("CARGO_PKG_VERSION"));
 
-/// The writer of a history file. Calls block for about one disk flush.
+/// The writer of a history file. A call blocks for about one disk flush.
 #[derive(Debug)]
 pub struct Store {
     connection: Connection,
@@ -23,17 +23,17 @@ pub struct Store {
     row_ids: RowIds,
 }
 
-/// Row numbers that need no look-up in the file.
+/// Row numbers kept in memory, so that they need no query.
 #[derive(Debug, Default)]
 pub(super) struct RowIds {
-    /// Row of the open run, by lot.
+    /// Row number of the open run, by name of the lot.
     pub runs: HashMap<String, i64>,
-    /// Row of a parameter, by key.
+    /// Row number of each parameter, by key.
     pub parameters: HashMap<String, i64>,
 }
 
 impl RowIds {
-    /// Returns the row of the open run of `lot`.
+    /// Returns the row number of the open run of `lot`.
     pub fn run(&self, lot: &str) -> Result<i64> {
         let missing = || HistoryError::LotNotOpen {
             lot: lot.to_owned(),
@@ -43,8 +43,8 @@ impl RowIds {
 }
 
 impl Store {
-    /// Opens a file; creates a missing one and migrates an older one. Fails for a file of another program and for a schema
-    /// newer than [`SCHEMA`](super::SCHEMA).
+    /// Opens a file; creates it if it is missing, migrates an older schema. Fails on a file of another program, and on
+    /// a schema newer than [`SCHEMA`](super::SCHEMA).
     pub fn open(path: &Path) -> Result<Self> {
         Ok(Self {
             connection: open::writer(path)?,
@@ -66,7 +66,8 @@ impl Store {
         Ok(number)
     }
 
-    /// Opens a run, records `parts` of the same lot and closes the run, in one transaction. Returns the number of the run.
+    /// Opens a run, records `parts` of its lot and closes the run, all in one transaction. Returns the number of the
+    /// run.
     pub fn import(&mut self, lot: &LotRecord, parts: Vec<PartRecord>) -> Result<u32> {
         const DOING: &str = "importing";
         let own = parts.iter().all(|part| part.lot == lot.lot);
@@ -106,10 +107,10 @@ impl Store {
         Ok(())
     }
 
-    /// Writes a batch in one transaction; on an error nothing of it is written.
+    /// Writes a batch in one transaction; on an error no row of it is written.
     ///
-    /// A part or landing that equals its row is skipped, so that a batch of unknown fate can be sent again; one that differs
-    /// is refused.
+    /// A part or landing that equals its row is skipped, so a batch can be sent again when nobody knows whether it was
+    /// written; one that differs from its row is refused.
     pub fn record(&mut self, rows: &[Row]) -> Result<()> {
         const DOING: &str = "recording";
         let Self {
@@ -135,12 +136,12 @@ impl Store {
         written
     }
 
-    /// Stores a calibration; for one that exists only updates `verified`.
+    /// Stores a calibration; if it is stored already, only updates `verified`.
     pub fn save_calibration(&mut self, calibration: &CalibrationRecord) -> Result<()> {
         save(&self.connection, calibration)
     }
 
-    /// Returns the newest calibration of a rig for one coil voltage, expired or not.
+    /// Returns the newest calibration for one coil voltage, expired or not, of the real or the simulated rig.
     pub fn latest_calibration_of(
         &self,
         simulated: bool,
@@ -169,7 +170,7 @@ impl Store {
     }
 }
 
-/// Returns the value of the column `source`.
+/// Returns the text that the column `source` holds for a rig.
 pub(super) const fn source(simulated: bool) -> &'static str {
     if simulated { "simulated" } else { "rig" }
 }
@@ -253,7 +254,7 @@ pub(super) fn calibration(row: &rusqlite::Row<'_>) -> rusqlite::Result<Calibrati
 
 #[cfg(test)]
 impl Store {
-    /// Records that the beam of `bin` confirmed production part `seq`.
+    /// Records that the beam of `bin` saw production part `seq`.
     pub(super) fn landed(
         &mut self,
         lot: &str,
@@ -272,11 +273,11 @@ impl Store {
         })])
     }
 
-    /// Records an alarm, or with `cleared_at_us` that it was cleared.
+    /// Records an alarm, or that it was cleared if `cleared_at_us` is set.
     pub(super) fn alarm(&mut self, alarm: &super::AlarmRecord) -> Result<()> {
         self.record(&[Row::Alarm(alarm.clone())])
     }
-    /// Fails at once on a locked file.
+    /// Makes every later access to a locked file fail at once.
     pub(super) fn impatient(&self) {
         self.connection
             .busy_timeout(std::time::Duration::ZERO)
@@ -288,7 +289,7 @@ impl Store {
             .pragma_update(None, "query_only", on)
             .expect("a file can be kept from being written");
     }
-    /// Makes every write fail that would enlarge the file.
+    /// Makes every later write fail that would enlarge the file.
     pub(super) fn forbid_growth(&self) {
         let pages: i64 = self
             .connection
@@ -298,7 +299,7 @@ impl Store {
             .pragma_update_and_check(None, "max_page_count", pages, |_| Ok(()))
             .expect("a file can be kept from growing");
     }
-    /// Returns a pragma as text.
+    /// Returns the value of a pragma as text.
     pub(super) fn pragma(&self, name: &str) -> String {
         let read = |row: &rusqlite::Row<'_>| row.get::<_, rusqlite::types::Value>(0);
         match self.connection.pragma_query_value(None, name, read) {
@@ -307,7 +308,7 @@ impl Store {
             other => format!("{other:?}"),
         }
     }
-    /// Writes in a transaction that is never committed, and closes the file.
+    /// Writes in a transaction that is never committed, then closes the file.
     pub(super) fn begin_and_forget(self) {
         self.connection
             .execute_batch("BEGIN IMMEDIATE; UPDATE part SET verdict = 'void'; DELETE FROM sample;")

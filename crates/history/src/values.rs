@@ -1,5 +1,5 @@
-//! Values of one parameter in order of judgement, with their limits: the input of the statistics. They come from the packed
-//! values of closed runs, or else from the index of values.
+//! Values of one parameter in order of judgement, with their limits: the input of the statistics. They come from the
+//! packed values of closed runs, or else from the index of values.
 
 use super::error::{Doing, Result};
 use super::{Archive, Filter};
@@ -8,7 +8,7 @@ use rusqlite::{OptionalExtension, params};
 /// Values of one parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Values {
-    /// Finite values in order of judgement; of an import, in order of the file.
+    /// Finite values in order of judgement; the values of an import are in order of the file.
     pub values: Vec<f64>,
     /// Limits in force.
     pub limits: LimitsSeen,
@@ -19,14 +19,14 @@ pub struct Values {
 pub enum LimitsSeen {
     /// No run has a limit.
     None,
-    /// All runs agree.
+    /// All runs have the same limits.
     Same {
         /// Lower limit.
         low: Option<f64>,
         /// Upper limit.
         high: Option<f64>,
     },
-    /// Runs have different limits, so that a capability over all of them has no meaning.
+    /// Runs have different limits, so a capability over all of them has no meaning.
     Differ,
 }
 
@@ -36,8 +36,8 @@ pub(super) const LIMITS: &str = "SELECT low, high FROM measurement
       AND population = 'lot' AND run_id = ?2 LIMIT 1";
 
 impl Archive {
-    /// Returns the values of `param` of the selected parts, without superseded attempts and values that could not be judged.
-    /// `limit` and `offset` of the filter count values.
+    /// Returns the values of `param` for the selected parts; leaves out attempts that were repeated and values that
+    /// could not be judged. `limit` and `offset` of the filter count values.
     pub fn values(&self, param: &str, filter: &Filter) -> Result<Values> {
         let values = self.series(param, filter).doing("reading values")?;
         let limits = self.limits(param, filter).doing("reading limits")?;
@@ -61,7 +61,7 @@ impl Archive {
         Ok(in_order(found).collect())
     }
 
-    /// Reads one measurement of each run: the recipe does not change within a run.
+    /// Reads the limits of one measurement per run; that is enough, because the recipe does not change within a run.
     fn limits(&self, param: &str, filter: &Filter) -> rusqlite::Result<LimitsSeen> {
         let mut one = self.connection.prepare_cached(LIMITS)?;
         let mut seen: Option<(Option<f64>, Option<f64>)> = None;
@@ -80,11 +80,11 @@ impl Archive {
     }
 }
 
-/// Highest ratio of empty places to values for placing by row number.
+/// Most gaps in the row numbers, per value, for which [`in_order`] places values instead of sorting them.
 const EMPTY: usize = 3;
 
-/// Orders values by the row number of their part, which grows with judgement. Places each value directly while row numbers
-/// have few gaps, else sorts.
+/// Orders values by the row number of their part, which grows in order of judgement. While row numbers have few gaps,
+/// writes each value straight to its place; else sorts.
 fn in_order(mut found: Vec<(i64, f64)>) -> Box<dyn Iterator<Item = f64>> {
     let parts = found.iter().map(|&(part, _)| part);
     let (Some(first), Some(last)) = (parts.clone().min(), parts.max()) else {
@@ -99,7 +99,7 @@ fn in_order(mut found: Vec<(i64, f64)>) -> Box<dyn Iterator<Item = f64>> {
     for (part, value) in found {
         placed[part.abs_diff(first) as usize] = value;
     }
-    // The index holds finite values only.
+    // NaN marks an empty place; the index holds finite values only.
     Box::new(placed.into_iter().filter(|value| !value.is_nan()))
 }
 

@@ -1,7 +1,7 @@
 //! Views for people who open the file with other tools: plural names, local time, one column per parameter.
 //!
-//! Views are no part of a migration: they are rebuilt after each migration, and for every new parameter, which gets a column
-//! in `parts`.
+//! Migrations do not contain views. All views are rebuilt after each migration, and whenever a new parameter gets a
+//! column in `parts`.
 
 use rusqlite::Connection;
 
@@ -66,7 +66,7 @@ pub(super) fn rebuild(connection: &Connection) -> rusqlite::Result<()> {
     connection.execute_batch(&parts(&parameters))
 }
 
-/// Returns the view `parts`, with the last attempt of each parameter as a column.
+/// Returns the SQL of the view `parts`, which shows the last attempt at each parameter as a column.
 fn parts(parameters: &[(i64, String)]) -> String {
     let columns: String = parameters
         .iter()

@@ -1,4 +1,4 @@
-//! Counters of uses since the last replacement of wearing parts.
+//! Use counts of wearing parts since they were last replaced.
 
 use super::error::{Doing, Result};
 use super::store::source;
@@ -6,27 +6,27 @@ use super::{Archive, Moment, Store};
 use rusqlite::{Connection, Transaction, params};
 use serde::Serialize;
 
-/// Further uses of a wearing part.
+/// Increase of the use count of a wearing part.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WearRecord {
     /// True on the simulated rig.
     pub simulated: bool,
     /// Name of the counter.
     pub name: String,
-    /// Uses since the previous record, at least 1.
+    /// Number of uses since the previous record, at least 1.
     pub more: u64,
 }
 
-/// A counter of uses.
+/// The use count of a wearing part.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Wear {
     /// Name of the counter.
     pub name: String,
-    /// Uses since the last replacement.
+    /// Number of uses since the last replacement.
     pub count: u64,
-    /// Time of the last replacement.
+    /// Time of the last replacement, if any.
     pub replaced: Option<Moment>,
-    /// Person who replaced it.
+    /// Person who made that replacement.
     pub replaced_by: Option<String>,
 }
 
@@ -64,19 +64,19 @@ fn read(connection: &Connection, simulated: bool) -> Result<Vec<Wear>> {
 }
 
 impl Archive {
-    /// Returns all counters of a rig.
+    /// Returns the use counts of all wearing parts of the real or the simulated rig.
     pub fn wear(&self, simulated: bool) -> Result<Vec<Wear>> {
         read(&self.connection, simulated)
     }
 }
 
 impl Store {
-    /// Returns all counters of a rig.
+    /// Returns the use counts of all wearing parts of the real or the simulated rig.
     pub fn wear(&self, simulated: bool) -> Result<Vec<Wear>> {
         read(self.connection(), simulated)
     }
 
-    /// Sets the counter `name` to 0 after a replacement. Returns false when there is no such counter.
+    /// Sets the counter `name` to 0, because the part was replaced. Returns false when there is no such counter.
     pub fn replaced(&mut self, simulated: bool, name: &str, by: &str, at_us: i64) -> Result<bool> {
         self.connection()
             .execute(

@@ -1,21 +1,22 @@
-//! Stationary pieces whose boxes the mover meets, the earliest first. A piece that is entered in several cells
-//! comes once per cell.
+//! Keeps the stationary pieces whose boxes the mover meets, and returns the earliest first. A piece that lies in
+//! several cells of the grid comes once per cell.
 
 use super::space::LANES;
 
-/// Most candidates kept at a time. With more, some are checked out of order, which costs time but changes no answer.
+/// Most candidates that are kept. When there are more, some are checked out of order, which costs time but changes no
+/// answer.
 const MOST: usize = 32;
 
 /// The candidates found so far, at most [`MOST`].
 #[derive(Debug, Clone)]
 pub(crate) struct Candidates {
-    /// High half: the fraction of the path before which the mover does not meet the piece, as bits of an f32 (never
-    /// negative, so they sort like numbers). Low half: its [`Place`].
+    /// High half: fraction of the path before which the mover does not meet the piece, as bits of an f32 (never
+    /// negative, so the bits sort like numbers). Low half: [`Place`] of the piece.
     keys: [u64; MOST],
     count: usize,
 }
 
-/// Place of a candidate: number of its bundle and lane within it.
+/// Place of a candidate: number of its bundle, and its lane in the bundle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Place(u32);
 
@@ -35,13 +36,13 @@ impl Candidates {
         count: 0,
     };
 
-    /// Whether the free room is smaller than one bundle.
+    /// Returns true when there is no room for all pieces of another bundle.
     #[inline]
     pub(crate) fn is_full(&self) -> bool {
         self.count > MOST - LANES
     }
 
-    /// Adds the lanes of a bundle whose bits are set, as far as there is room. Mostly there are one or two.
+    /// Adds the lanes of a bundle whose bits are set, as far as there is room. Mostly one or two are set.
     #[inline]
     pub(crate) fn push(&mut self, bundle: u32, lanes: u32, entry: &[f32; LANES]) {
         let place = u64::from(bundle * LANES as u32);

@@ -1,26 +1,27 @@
 //! Finds the triangles of a mesh that enclose a space.
 //!
-//! Mesh files are untidy: surfaces occur twice or inside each other, have stray triangles beside them or walls
-//! within, and leave out corners that the neighbour across an edge has. A body inside such a mesh touches no
+//! Mesh files are untidy. Surfaces occur twice, or inside each other; stray triangles lie beside them and walls within
+//! them; an edge may lack a corner that the triangle on its other side has. A body inside such a mesh touches no
 //! triangle, so the enclosed spaces must be found nevertheless:
-//! 1. Corners nearer than [`WELD_MM`] are merged. Triangles shrunk to a segment or a point enclose nothing.
-//! 2. Repeated triangles count once. A triangle that occurs in both orientations within a connected part is a wall
-//!    between two spaces and is left out, unless every triangle of the part occurs in both.
-//! 3. A free edge (an edge of one triangle only) is cut at the corners of other free edges that lie on it.
-//! 4. Triangles with a free edge are removed until none has one; the rest is closed.
-//! 5. Triangles connected by edges form a surface of their own.
+//! 1. Corners nearer to each other than [`WELD_MM`] are merged. Triangles that become a segment or a point enclose
+//!    nothing.
+//! 2. A triangle that occurs several times counts once. A triangle that occurs in both orientations within a connected
+//!    part is a wall between two spaces and is left out, unless every triangle of the part occurs in both.
+//! 3. A free edge (an edge of one triangle only) is cut at those corners of other free edges that lie on it.
+//! 4. Triangles with a free edge are removed until none has one; what remains is closed.
+//! 5. Triangles that are connected by edges form one surface.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::shape::Mesh;
 use super::vector::{Vec3, add, dot, length, scale, sub};
 
-/// Corners nearer to each other than this are merged, mm: as much as a move may be blocked early, and more than the
-/// rounding of programs that write one corner twice.
+/// Corners nearer to each other than this are merged, mm. A move may be blocked by as much too early, and programs that
+/// write one corner twice round by less.
 const WELD_MM: f64 = 1e-6;
 /// Most rounds of cutting; each round cuts every free edge once.
 const MOST_CUTS: usize = 16;
-/// A mesh with more free edges than this is taken to be open on purpose.
+/// A mesh with more free edges than this counts as open on purpose.
 const MOST_FREE: usize = 2_000;
 
 /// Indices of the three vertices of a triangle.
@@ -29,13 +30,13 @@ pub(crate) type Corners = [usize; 3];
 /// A surface that encloses a space.
 pub(crate) struct Surface {
     pub(crate) triangles: Vec<Corners>,
-    /// Each edge is shared by an even number of triangles, so crossing the surface once changes sides.
+    /// Each edge belongs to an even number of triangles, so whoever crosses the surface once changes sides.
     pub(crate) is_even: bool,
-    /// Along each edge equally many triangles run in both directions, so the surface has an inside and an outside.
+    /// Along each edge, as many triangles run one way as the other, so the surface has an inside and an outside.
     pub(crate) is_oriented: bool,
 }
 
-/// Returns the parts of a mesh that are connected by corners, each as its triangles; merged corners have the same
+/// Returns the parts of a mesh, each as its triangles. A part is connected by corners; merged corners have the same
 /// index.
 pub(crate) fn parts(mesh: &Mesh) -> Vec<BTreeSet<Corners>> {
     let welded = weld(&mesh.vertices);
@@ -53,8 +54,8 @@ pub(crate) fn closed_surfaces(vertices: &[Vec3], part: &BTreeSet<Corners>) -> Ve
     surfaces(&closed(vertices, &proper))
 }
 
-/// Removes every open triangle of a part. Leaves walls out where the rest is closed without them and the walls
-/// enclose no space of their own.
+/// Removes every open triangle of a part. Leaves walls out when the rest is closed without them and they enclose no
+/// space of their own.
 fn closed(vertices: &[Vec3], part: &BTreeSet<Corners>) -> Vec<Corners> {
     let has_reverse = |corners: &Corners| part.contains(&reversed(*corners));
     let (paired, alone): (Vec<Corners>, Vec<Corners>) = part.iter().partition(|it| has_reverse(it));
@@ -71,7 +72,7 @@ fn closed(vertices: &[Vec3], part: &BTreeSet<Corners>) -> Vec<Corners> {
     without_free_triangles(cut_free_edges(vertices, [alone, walls].concat()))
 }
 
-/// Returns for each vertex the index of the first vertex nearer to it than [`WELD_MM`].
+/// Returns, for each vertex, the index of the first vertex that is nearer to it than [`WELD_MM`]; perhaps its own.
 fn weld(vertices: &[Vec3]) -> Vec<usize> {
     let mut exact = HashMap::new();
     let mut near: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
@@ -95,7 +96,7 @@ fn weld(vertices: &[Vec3]) -> Vec<usize> {
     welded
 }
 
-/// Rotates the indices so that the lowest comes first: equal for triangles with the same corners and orientation.
+/// Rotates the indices so that the lowest comes first; triangles with the same corners and orientation become equal.
 fn lowest_first([a, b, c]: Corners) -> Corners {
     if a < b && a < c {
         [a, b, c]
@@ -127,17 +128,17 @@ fn connected_by_corners(triangles: &BTreeSet<Corners>) -> Vec<BTreeSet<Corners>>
     parts
 }
 
-/// The same triangle with the opposite orientation.
+/// Returns the same triangle with the opposite orientation.
 fn reversed([a, b, c]: Corners) -> Corners {
     lowest_first([a, c, b])
 }
 
-/// The directed edges in order around the triangle.
+/// Returns the directed edges in their order around the triangle.
 fn sides([a, b, c]: Corners) -> [(usize, usize); 3] {
     [(a, b), (b, c), (c, a)]
 }
 
-/// The undirected edges of a triangle, each starting at its lower index.
+/// Returns the undirected edges of a triangle; each begins at its lower index.
 fn edges(corners: Corners) -> [(usize, usize); 3] {
     sides(corners).map(|(p, q)| (p.min(q), p.max(q)))
 }
@@ -155,7 +156,7 @@ fn free_edges(triangles: &[Corners]) -> BTreeSet<(usize, usize)> {
     free.map(|(edge, _)| edge).collect()
 }
 
-/// Cuts triangles at the corners of other free edges that lie on their free edge.
+/// Cuts triangles with a free edge at those corners of other free edges that lie on it.
 fn cut_free_edges(vertices: &[Vec3], mut triangles: Vec<Corners>) -> Vec<Corners> {
     for _ in 0..MOST_CUTS {
         let free = free_edges(&triangles);
@@ -186,7 +187,7 @@ fn cut_free_edges(vertices: &[Vec3], mut triangles: Vec<Corners>) -> Vec<Corners
     triangles
 }
 
-/// Whether a vertex lies strictly between two others.
+/// Returns true when a vertex lies strictly between two others, on the line through them.
 fn lies_on(vertices: &[Vec3], vertex: usize, (p, q): (usize, usize)) -> bool {
     if vertex == p || vertex == q {
         return false;
@@ -218,7 +219,7 @@ fn without_free_triangles(mut triangles: Vec<Corners>) -> Vec<Corners> {
     }
 }
 
-/// Splits triangles into surfaces that are connected by edges.
+/// Splits triangles into surfaces; each is connected by edges.
 fn surfaces(triangles: &[Corners]) -> Vec<Surface> {
     let mut beside: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
     let mut forward: BTreeMap<(usize, usize), usize> = BTreeMap::new();

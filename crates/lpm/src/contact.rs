@@ -1,9 +1,9 @@
-//! Searches for contacts on a path: closed forms at once, iterative searches later.
+//! Searches for contacts on a path: first by closed forms, later by iterative searches.
 //!
-//! Upright pairs on a straight path are decided as soon as the broad phase reports them
-//! ([`meeting`](super::meeting)). Pairs that need a search (tilted pieces, triangles, turns) go onto a list, each
-//! pair once, and are searched in the order in which their boxes meet. A contact shortens the path for all later
-//! pairs, so when the first contact is wanted the pair whose boxes meet first is decided first.
+//! A pair of upright pieces on a straight path is decided by a closed form as soon as the broad phase reports it
+//! ([`meeting`](super::meeting)). A pair that needs a search (tilted pieces, triangles, turns) goes onto a list, once.
+//! The pairs on the list are searched in the order in which their boxes meet: a contact shortens the path for all later
+//! pairs, so the first contact is found soonest this way.
 
 use super::candidates::Candidates;
 use super::distance::Gap;
@@ -20,13 +20,13 @@ use super::vector::sub;
 /// Which contact a question asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Wanted {
-    /// Any contact: the gate only needs to know whether there is one.
+    /// Any contact; enough for a gate that only needs to know whether there is one.
     Any,
     /// The first contact on the path.
     First,
 }
 
-/// A pair within the margin at `t`.
+/// A pair that comes within the margin at the fraction `t` of the path.
 #[derive(Debug, Clone)]
 pub(crate) struct Found {
     t: f64,
@@ -35,12 +35,12 @@ pub(crate) struct Found {
     evidence: Evidence,
 }
 
-/// How a contact was found, and what is needed to complete it.
+/// How a contact was found, with what is needed to compute its place and normal.
 #[derive(Debug, Clone)]
 enum Evidence {
-    /// Index of the piece of the mover; both pieces are upright and a closed form gives place and normal.
+    /// Index of the piece of the mover. Both pieces are upright, so a closed form gives place and normal.
     Closed(u32),
-    /// Result of a search. Boxed so that the more frequent closed forms stay small.
+    /// Result of a search. Boxed, so that the closed forms, which are more frequent, stay small.
     Searched(Box<Gap>),
 }
 
@@ -53,7 +53,7 @@ impl Found {
         }
     }
 
-    /// Fraction of the path, place and normal of the contact.
+    /// Returns the contact: fraction of the path, place and normal.
     #[inline]
     pub(crate) fn hit(&self, passage: &Passage) -> Hit {
         let gap = match (&self.evidence, &passage.element(self.element).form) {
@@ -72,7 +72,7 @@ impl Found {
 }
 
 impl Passage<'_> {
-    /// Searches for a contact within the margin. When `found` holds none afterwards, that is proof.
+    /// Searches for a contact within the margin. If `found` holds none afterwards, it is proven that there is none.
     pub(crate) fn contact<'a>(&'a self, found: &mut Findings<'a>) {
         for group in &self.body.groups {
             let hull = group.hull(&self.whereabouts(self.way.margin_mm));
@@ -88,17 +88,17 @@ impl Passage<'_> {
     }
 }
 
-/// The contact found so far, and the pairs that still need a search.
+/// Contact found so far, and pairs that still need a search.
 pub(crate) struct Findings<'a> {
     wanted: Wanted,
     pub(crate) best: Option<Found>,
     pub(crate) pending: Vec<Pending>,
-    /// The straight path with its reciprocals, computed on first use.
+    /// The straight path with its reciprocals, computed when first needed.
     run: Option<Run<'a>>,
 }
 
 impl Findings<'_> {
-    /// Starts a search without any contact.
+    /// Starts a search: no contact is found yet.
     #[inline]
     pub(crate) fn wanted(wanted: Wanted) -> Self {
         Findings {
@@ -109,7 +109,7 @@ impl Findings<'_> {
         }
     }
 
-    /// Fraction of the path up to which a contact still matters; below 0 when none does.
+    /// Returns the fraction of the path up to which a contact still matters; below 0 when none does.
     #[inline]
     pub(crate) fn until(&self) -> f64 {
         match (&self.best, self.wanted) {
@@ -136,15 +136,16 @@ struct Search<'a, 'b> {
     group: &'a Group,
     found: &'b mut Findings<'a>,
     sweep: &'b Sweep,
-    /// The boxes of the pieces, computed on first use.
+    /// Boxes of the pieces, computed when first needed.
     boxes: Option<Boxes<MOST_OF_A_GROUP>>,
-    /// The pieces at the start of the path, each computed on first use.
+    /// The pieces at the start of the path, each computed when first needed.
     prisms: [Option<Prism>; MOST_OF_A_GROUP],
     candidates: Candidates,
 }
 
 impl Visit for Search<'_, '_> {
-    /// When any contact will do, pieces are checked at once; for the first contact they wait as candidates.
+    /// Returns true when the first contact is wanted: pieces then wait as candidates. For any contact they are checked
+    /// at once.
     #[inline]
     fn in_order(&self) -> bool {
         self.found.wanted == Wanted::First
@@ -182,7 +183,7 @@ impl Visit for Search<'_, '_> {
         while let Some(place) = self.candidates.earliest(self.found.until()) {
             let bundle = self.passage.model.space.bundle(place.bundle());
             let piece = bundle.piece(place.lane());
-            // Entries of one piece in several cells are equally early and therefore adjacent.
+            // The entries of a piece that lies in several cells are equally early, so they are adjacent.
             if last != Some(piece) {
                 last = Some(piece);
                 self.piece(piece, &bundle.cover(place.lane()));
@@ -211,7 +212,7 @@ impl<'a, 'b> Search<'a, 'b> {
         }
     }
 
-    /// Checks which pieces of the group may meet this stationary piece.
+    /// Checks the pieces of the group that may meet this stationary piece.
     #[inline]
     fn piece(&mut self, element: u32, cover: &Cover) {
         let until = self.found.until();
@@ -265,7 +266,7 @@ impl<'a, 'b> Search<'a, 'b> {
 }
 
 impl Passage<'_> {
-    /// Contact of two upright pieces on a level path; with a margin, the place of the contact is searched as well.
+    /// Returns the contact of two upright pieces on a level path; with a margin, also searches for its place.
     #[inline]
     fn met(
         &self,
@@ -279,7 +280,8 @@ impl Passage<'_> {
         if margin == 0.0 {
             return Some((t, None));
         }
-        // Height and footprint are each within the margin, but diagonally over an edge the distance can exceed it.
+        // Heights and footprints are each within the margin, but diagonally over an edge the distance can exceed the
+        // margin.
         let (element, mover) = (element.piece(), mover.piece());
         let hit = straight::first_within(&element, &mover, run.way, margin, t, until)?;
         Some((hit.t, Some(hit.gap)))

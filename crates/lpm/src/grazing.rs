@@ -1,23 +1,23 @@
 //! First contact of two grazing discs, in double-double precision.
 //!
-//! On a grazing pass the fraction of the path depends on the root of a small difference of radii: a rounding of
-//! 1e-12 mm moves the contact by 1e-5 mm. Where the places themselves were reached without rounding, twice the
-//! digits decide whether the discs touch at all, and where.
+//! On a grazing pass, the fraction of the path depends on the root of a small difference of radii: a rounding of
+//! 1e-12 mm moves the contact by 1e-5 mm. Where the places of the bodies themselves are exact, arithmetic with twice
+//! the digits decides whether the discs touch at all, and where.
 
-/// A number as the unevaluated sum of two f64, the second below the last place of the first (after Dekker and Knuth).
+/// A number as a sum of two f64, the second below the last place of the first (after Dekker and Knuth).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Twofold(f64, f64);
 
-/// Relative error bound: a dozen operations with 2^-104 each, with a wide reserve.
+/// Relative error bound: a dozen operations with an error of 2^-104 each, and a wide reserve.
 const ROUNDING: f64 = f64::EPSILON * f64::EPSILON * 1024.0;
 
 impl Twofold {
-    /// Converts an exact number.
+    /// Converts a number that is exact in f64.
     pub(crate) fn of(exact: f64) -> Twofold {
         Twofold(exact, 0.0)
     }
 
-    /// `a + b`, exactly.
+    /// Returns `a + b`, exactly.
     pub(crate) fn sum(a: f64, b: f64) -> Twofold {
         let sum = a + b;
         let second = sum - a;
@@ -46,8 +46,8 @@ impl Twofold {
     }
 }
 
-/// Returns the first fraction of the path `run` (exact) at which a point that starts at `from`, outside, enters the
-/// disc of `radius` about the origin, rounded down; `None` is proof that it never does.
+/// Returns the first fraction of the path `run`, rounded down, at which a point enters the disc of `radius` about the
+/// origin; the point starts outside at `from`, and `run` is exact. `None` is proof that the point never enters.
 pub(crate) fn first(from: [Twofold; 2], run: [f64; 2], radius: Twofold) -> Option<f64> {
     let [x, y] = from;
     let [u, v] = run.map(Twofold::of);

@@ -1,6 +1,6 @@
-//! Enclosed spaces of a body, and points of it that another body may enclose.
+//! Enclosed spaces of a body, and points of the body that may lie inside another one.
 //!
-//! Triangles reveal surfaces that meet; this module covers a body that lies wholly inside a closed mesh.
+//! Triangles show where surfaces meet; this module finds a body that lies wholly inside a closed mesh.
 
 use std::collections::BTreeSet;
 
@@ -10,18 +10,18 @@ use super::shape::Shape;
 use super::solid::Solid;
 use super::vector::{Vec3, add};
 
-/// Enclosed spaces and test points of a body, besides its pieces.
+/// What a body has besides its pieces: enclosed spaces and test points.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Interior {
     /// Closed surfaces of the body.
     pub(crate) solids: Vec<Solid>,
-    /// One point of each connected piece, to be tested for lying inside another body.
+    /// One point of each connected part, to test whether the part lies inside another body.
     pub(crate) witnesses: Vec<Vec3>,
 }
 
 impl Interior {
-    /// Builds the interior of a checked shape in its own frame. Returns `None` without a mesh: then the centres of
-    /// the pieces suffice as test points ([`Interior::around`]).
+    /// Builds the interior of a checked shape, in the frame of the shape. Returns `None` for a shape without a mesh:
+    /// the centres of its pieces then suffice as test points ([`Interior::around`]).
     pub(crate) fn of(shape: &Shape) -> Option<Interior> {
         if !has_mesh(shape) {
             return None;
@@ -31,7 +31,7 @@ impl Interior {
         Some(interior)
     }
 
-    /// Builds the interior of a body without a mesh from the centres of its pieces.
+    /// Builds the interior of a body without a mesh; the test points are the centres of its pieces.
     pub(crate) fn around(witnesses: Vec<Vec3>) -> Interior {
         Interior {
             solids: Vec::new(),
@@ -54,7 +54,7 @@ impl Interior {
         }
     }
 
-    /// Returns a test point of one body that lies inside the other, although their surfaces may not meet.
+    /// Returns a test point of one body that lies inside the other body, although their surfaces need not meet.
     pub(crate) fn shared_with(&self, other: &Interior) -> Option<Vec3> {
         let inside = |solids: &[Solid], points: &[Vec3]| {
             let held = |point: &&Vec3| solids.iter().any(|solid| solid.holds(**point));

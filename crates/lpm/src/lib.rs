@@ -1,10 +1,10 @@
 //! Collision core: decides whether a rigid body can travel along a path between stationary bodies, and proves every
 //! "clear".
 //!
-//! The library has no clock, no file access and no settings of its own. Lengths are millimetres, frames
-//! right-handed, z points up. [`Model`] holds the stationary elements; three questions check a [`Move`] of a
-//! [`Mover`] or a [`Shape`] against them: [`Model::any_hit`] (the gate: any contact), [`Model::first_contact`] and
-//! [`Model::clearance`]. [`Model::first_forbidden`] applies a [`Permission`] per pair.
+//! The library has no clock, no file access and no settings of its own. Lengths are in millimetres, frames are
+//! right-handed, z points up. [`Model`] holds the stationary elements. Three questions check a [`Move`] of a [`Mover`]
+//! or a [`Shape`] against them: [`Model::any_hit`] (is there any contact?), [`Model::first_contact`] and
+//! [`Model::clearance`]. [`Model::first_forbidden`] applies a [`Permission`] to each pair of mover and element.
 //!
 //! ```
 //! use lpm::{Model, Move, Pose, Shape};
@@ -23,57 +23,58 @@
 //! # Ok::<(), lpm::Flaw>(())
 //! ```
 //!
-//! # Map of the modules
-//! | modules | contents |
+//! # Files
+//! | files | what they hold |
 //! |---|---|
 //! | `model`, `stationary`, `name` | the stationary elements, their pieces and their names |
 //! | `question`, `answer`, `permission` | the questions, their answers, permissions of pairs |
-//! | `shape`, `pose`, `piece`, `prism`, `mover`, `interior` | bodies: as given, as convex pieces, as upright prisms, as a mover, as enclosed spaces |
+//! | `shape`, `pose`, `piece`, `prism`, `mover`, `interior` | a body: as given, as convex pieces, as upright prisms, as a mover, its enclosed spaces |
 //! | `path`, `passage` | the path of a mover, alone and through a model |
 //! | `space`, `candidates` | broad phase: `layers` holds Omega and `{h1, h2}`, `grid` holds `V`, `silhouettes` holds `B` |
-//! | `rest`, `meeting`, `touch`, `grazing` | upright pieces in closed form: at rest, on a straight path, the contact itself, grazing contacts |
+//! | `rest`, `meeting`, `touch`, `grazing` | upright pieces in closed form: at rest, on a straight path, place of contact, grazing contacts |
 //! | `straight`, `turning`, `distance` | any convex pieces: translations, turns, separating planes |
-//! | `contact`, `search`, `nearest` | searches for a contact (the gate needs no distances) and for the least distance |
+//! | `contact`, `search`, `nearest` | searches for any contact, for the first contact, and for the least distance |
 //! | `solid`, `closed` | points inside closed meshes |
 //! | [`scene`], `outline` | scene and move files; silhouettes for drawings |
 //! | [`exact`] | the true answer in whole numbers, for tests and benchmarks |
 //!
 //! # The layer-based projection model
-//! After Peng and others (2010), sections 3 and 4. A checking space Omega over the baseplate follows the height of its
-//! elements and is cut into layers `{h1, h2, V, B}`; elements are inserted and removed one by one. The broad phase
-//! tests layer, silhouette and oriented box in this order and stops at the first miss. The layout of `V`, the choice of
-//! layers and everything behind the broad phase are this library's own. The oriented box is not a separate step here:
-//! the piece itself is tested instead, in closed form (`meeting`, `touch`) or by a separating plane (`distance`).
+//! The broad phase follows Peng and others (2010), sections 3 and 4. A checking space Omega over the baseplate is as
+//! high as its elements and is cut into layers `{h1, h2, V, B}`; elements are inserted and removed one by one. The
+//! broad phase tests layer, silhouette and oriented box, in this order, and stops at the first miss. The layout of `V`,
+//! the choice of layers and everything after the broad phase are this library's own. It has no separate test of the
+//! oriented box, but tests the piece itself: in closed form (`meeting`, `touch`) or by a separating plane (`distance`).
 //!
 //! # Continuous and exact checks
-//! The paper checks poses (`rest`); this library also checks paths. Upright blocks and cylinders on a straight path
-//! meet in closed form (`meeting`). Along a translation the distance of any two convex pieces is a convex function,
-//! so a few separating planes give first contact and least distance for the true shapes; cylinders stay round, in
-//! any orientation (`straight`). Turning moves advance conservatively with a second-order bound (`turning`).
+//! The paper checks poses (`rest`); this library also checks paths. For upright blocks and cylinders on a straight
+//! path, a closed form gives the contact (`meeting`). Along a translation the distance of any two convex pieces is a
+//! convex function, so a few separating planes give first contact and least distance for the true shapes; cylinders
+//! stay round, in any orientation (`straight`). A turning move advances step by step, each step proven by a
+//! second-order bound (`turning`).
 //!
 //! # Never a false clear
-//! Bodies are closed sets: touching is contact. *Blocked* means that the distance comes within the margin, or that
-//! this could not be excluded. The proof of *clear*:
+//! Bodies are closed sets: touching is contact. *Blocked* means that the distance comes within the margin, or that this
+//! could not be excluded. The proof of *clear* has these steps:
 //! 1. A pair of upright pieces on a straight path is clear when a line misses a figure that was grown by twice the
 //!    rounding of the arithmetic (argument in `meeting`).
-//! 2. Any other pair of convex pieces is clear for a stretch of the path only by an evaluated plane. Its separation
-//!    is computed in f64 from the support functions of both pieces, and a forward error bound is subtracted
-//!    (`piece::NOISE` times the sum of all magnitudes that entered). How the plane was found does not
-//!    matter.
+//! 2. Any other pair of convex pieces is clear for a stretch of the path only if a plane proves it. The separation by
+//!    this plane is computed in f64 from the support functions of both pieces, and a forward error bound is subtracted
+//!    (`piece::NOISE` times the sum of all magnitudes that entered). How the plane was found does not matter.
 //! 3. Along a translation the separation by a fixed plane is linear; along a turn `turning` bounds it from below. A
-//!    stretch ends where the bound reaches the margin, and stretches follow each other without a hole.
-//! 4. A pair that the broad phase drops has boxes, rounded outward by the same bound and then to single precision,
-//!    that never overlap during the move. Everything that the broad phase computes along the path carries
-//!    `space::sweep::SLACK_MM`, and the steps of height are monotone.
-//! 5. `solid` finds a body inside a closed mesh and takes doubt for inside; `closed` finds the closed surfaces of a
-//!    mesh, however untidy its file is.
-//! 6. NaN compares false: every comparison is written so that false means blocked. Iteration limits, invalid moves
-//!    and invalid bodies mean blocked ([`ElementKey::UNDECIDABLE`]).
+//!    stretch ends where this separation reaches the margin, and stretches follow each other without a gap.
+//! 4. When the broad phase drops a pair, the boxes of its pieces never overlap during the move. These boxes are rounded
+//!    outward by the same error bound and then to single precision. Everything that the broad phase computes along the
+//!    path carries `space::sweep::SLACK_MM`, and the steps of height are monotone.
+//! 5. `solid` finds a body inside a closed mesh, and counts a doubtful body as inside; `closed` finds the closed
+//!    surfaces of a mesh, however untidy its file is.
+//! 6. A comparison with NaN is false, and every comparison is written so that false means blocked. Iteration limits,
+//!    invalid moves and invalid bodies mean blocked ([`ElementKey::UNDECIDABLE`]).
 //!
 //! # Why f64 with bounds
-//! Whole micrometres would make every comparison exact but block up to 2 um too early, where at most 1e-6 mm is
-//! allowed. Expansion arithmetic would decide cases within rounding, where the answer is blocked anyway. So numbers
-//! stay f64 as given, and every proof subtracts its own rounding.
+//! With whole micrometres every comparison would be exact, but moves would be blocked up to 2 um too early, where at
+//! most 1e-6 mm is allowed. Expansion arithmetic (exact sums of floating-point numbers) would decide cases within
+//! rounding, where the answer is blocked anyway. So numbers stay f64 as given, and every proof subtracts its own
+//! rounding.
 //!
 //! # Tolerances
 //! | name | value | covers |
@@ -95,15 +96,15 @@
 //! | `scene::face::FLAT` | 1e-4, relative to the face | flatness and convexity of faces with more than three corners in a file |
 //!
 //! # How early a move may be blocked
-//! - Straight moves: the verdict is designed to stay within 1e-6 mm of the margin for coordinates up to 1e6 mm.
-//!   This rests on the searches for planes, which are tested against constructed truth, not proven to converge: of
-//!   the 60,000 pairs that a test draws (needles, foils, tilts of 1e-12, places up to 1e6 mm) none loses more than
-//!   5e-7 mm, always to the safe side.
+//! - Straight moves: the verdict is designed to stay within 1e-6 mm of the margin for coordinates up to 1e6 mm. This
+//!   depends on the searches for planes, which are tested against constructed truth but not proven to converge: of the
+//!   60,000 pairs that a test draws (needles, foils, tilts of 1e-12, places up to 1e6 mm) none loses more than 5e-7 mm,
+//!   always to the safe side.
 //! - Turning moves: at most 5e-4 mm.
-//! - The place of a contact that only grazes a round side is reported early, by the root of twice the radius times
-//!   the rounding, where bodies reached their places by rounding (turned, kept with a margin, or at places whose
-//!   sums are not exact in double precision): up to 1e-4 mm within a metre. The verdict keeps its 1e-6 mm. Where
-//!   nothing was rounded, `grazing` keeps the place within 1e-6 mm as well.
+//! - The place of a contact that only grazes a round side may be reported too early, by the root of twice the radius
+//!   times the rounding: up to 1e-4 mm within a metre. This happens where bodies reached their places by rounding
+//!   (turned, kept with a margin, or at places whose sums are not exact in double precision). The verdict keeps its
+//!   1e-6 mm. Where nothing was rounded, `grazing` keeps the place within 1e-6 mm as well.
 
 #![allow(
     clippy::neg_cmp_op_on_partial_ord,
@@ -153,7 +154,7 @@ pub use permission::{Forbidden, Passing, Permission};
 pub use pose::Pose;
 pub use shape::{Flaw, LARGEST_COORDINATE_MM, Mesh, Shape};
 
-/// Keeps the example of the README compiling.
+/// Makes `cargo test` compile the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

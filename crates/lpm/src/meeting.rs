@@ -1,17 +1,17 @@
-//! Contact of upright pieces on a straight path in closed form: the swept extrusion, exactly.
+//! First contact of upright pieces on a straight path, in closed form and for the whole path at once.
 //!
-//! In the frame of the element the mover becomes a point that runs along a line, and the element grows by the mover
-//! (Minkowski sum): an interval in z times a figure in the plane. Two rectangles with common axes give a rectangle,
-//! a rectangle and a disc a rectangle with round corners, two discs a disc, two rectangles turned against each
-//! other an octagon. Each figure is an intersection of slabs, with discs for round corners, and the crossing of a
-//! line with all of these has a closed form.
+//! In the frame of the element the mover becomes a point that runs along a line, and the element grows by the shape of
+//! the mover (Minkowski sum) to an interval in z times a figure in the plane. The figure of two rectangles with common
+//! axes is a rectangle, that of a rectangle and a disc is a rectangle with round corners, that of two discs is a disc,
+//! and that of two rectangles turned against each other is an octagon. Each figure is an intersection of slabs, with
+//! discs for round corners, and where a line crosses a slab or a disc has a closed form.
 //!
 //! # Never a false clear
-//! Every slab and disc is grown by [`Meeting::slack`]: [`NOISE`] for how the pieces came to their places,
-//! [`ROUNDING`] for what is computed here. A line that meets the true figure meets the grown one, earlier by at
-//! least that slack divided by its speed; so the returned fraction is never late, and `None` is proof. Where a
-//! corner is grazed and nothing was rounded before, [`grazing`] may move the fraction later, to the true one
-//! rounded down. Conversely, a reported pair has come within three slacks: below 1e-7 mm for coordinates of 1e6 mm.
+//! Every slab and disc is grown by [`Meeting::slack`]: by [`NOISE`] for how the pieces came to their places, and by
+//! [`ROUNDING`] for what is computed here. A line that meets the true figure meets the grown one, earlier by at least
+//! this slack divided by its speed; so the returned fraction is never late, and `None` is proof. Where a corner is
+//! grazed and nothing was rounded before, [`grazing`] may move the fraction later, to the true one rounded down.
+//! Conversely, a reported pair comes within three slacks of contact: below 1e-7 mm for coordinates of 1e6 mm.
 
 use super::grazing::{self, Twofold};
 use super::path::Path;
@@ -19,18 +19,18 @@ use super::piece::NOISE;
 use super::prism::Prism;
 use super::vector::{Vec3, reach, sub};
 
-/// Relative error bound of the computations here, from the difference of two places and the run: fewer than 16
-/// roundings of 2^-53 each lead from them to a fraction of the path, and the bound allows twice that.
+/// Relative error bound of what is computed here, from the difference of two places and the run to a fraction of the
+/// path: fewer than 16 roundings of 2^-53 each; the bound allows twice that.
 const ROUNDING: f64 = 32.0 * (f64::EPSILON / 2.0);
 
-/// How early a grazing contact may come before it is refined with more digits, mm: a tenth of the promised 1e-6 mm.
+/// How early a grazing contact may come before more digits refine it, mm: a tenth of the promised 1e-6 mm.
 const GRAZED_MM: f64 = 1e-7;
 
-/// Contacts nearer than this to the end of a round corner are not refined, mm: past that end a side may come first.
-/// The distance exceeds all rounding.
+/// A contact nearer than this to the end of a round corner is not refined, mm, because beyond that end a side may come
+/// first. This distance exceeds all rounding.
 const ROUND_MM: f64 = 1e-3;
 
-/// A straight path and the reciprocals of its displacement.
+/// A straight path, with the reciprocals of its displacement.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Run<'a> {
     pub(crate) way: Vec3,
@@ -52,7 +52,7 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Reciprocal of a rate; 0 for a rate too small to divide by.
+/// Returns the reciprocal of a rate; 0 for a rate too small to divide by.
 #[inline]
 fn pace(rate: f64) -> f64 {
     if rate.abs() < 1e-290 { 0.0 } else { 1.0 / rate }
@@ -65,12 +65,12 @@ pub(crate) struct Meeting<'a> {
     /// Vector from the element to the mover at the start.
     apart: Vec3,
     run: &'a Run<'a>,
-    /// Growth of every figure, mm: margin plus slack.
+    /// By how much every figure is grown, mm: margin plus slack.
     grown: f64,
     slack: f64,
 }
 
-/// An interval of fractions of the move.
+/// An interval of fractions of the path.
 type Window = (f64, f64);
 
 impl<'a> Meeting<'a> {
@@ -93,8 +93,8 @@ impl<'a> Meeting<'a> {
         }
     }
 
-    /// Returns the first fraction, up to `until`, at which heights and footprints are both within the margin.
-    /// `None` is proof that there is none; NaN counts as contact.
+    /// Returns the first fraction, up to `until`, at which heights and footprints are both within the margin. `None` is
+    /// proof that there is none; NaN counts as contact.
     #[inline]
     pub(crate) fn first(&self, until: f64) -> Option<f64> {
         let heights = self.element.half[2] + self.mover.half[2];
@@ -111,7 +111,7 @@ impl<'a> Meeting<'a> {
         }
     }
 
-    /// Footprints with common axes, which `framed` supplies; at most one of the two is a rectangle askew to them.
+    /// Returns the same from `window` for footprints with common axes (a disc has any axes); `framed` gives the axes.
     #[inline]
     fn rounded(&self, window: Window, framed: &Prism) -> Option<f64> {
         let radius = self.element.radius + self.mover.radius;
@@ -129,8 +129,8 @@ impl<'a> Meeting<'a> {
         Some(self.grazed(framed, t).unwrap_or(t))
     }
 
-    /// Returns the fraction in double-double precision where a round corner is grazed and nothing was rounded on
-    /// the way to the places; never before `t`, where the grown figures meet.
+    /// Returns the fraction in double-double precision, if a round corner is grazed and the places were reached without
+    /// rounding; never before `t`, at which the grown figures meet.
     fn grazed(&self, framed: &Prism, t: f64) -> Option<f64> {
         let at = [0, 1].map(|axis: usize| self.apart[axis] + t * self.run.way[axis]);
         let half = self.halves();
@@ -141,12 +141,12 @@ impl<'a> Meeting<'a> {
             (u * u + v * v).sqrt(),
         );
         let closing = (w[0] * u + w[1] * v).abs();
-        // The contact moves by the slack divided by the sine of the grazing angle; at rest it does not move.
+        // The slack, divided by the sine of the grazing angle, moves the contact; at rest nothing moves.
         let is_graze = closing * GRAZED_MM < self.slack * radius * speed;
         if !is_graze {
             return None;
         }
-        // On a path along an axis no side comes before the end of its corner.
+        // On a path along an axis no side comes before the end of its round corner.
         let on_corner = |axis: usize| {
             let beyond = at[axis].abs() - half[axis];
             half[axis] == 0.0 || self.run.way[1 - axis] == 0.0 || beyond > ROUND_MM
@@ -170,14 +170,14 @@ impl<'a> Meeting<'a> {
         Some(grazing::first(from, [u, v], radius)?.max(t))
     }
 
-    /// Sums of the half extents of two footprints with common axes.
+    /// Returns the sums of the half extents of two footprints with common axes.
     #[inline]
     fn halves(&self) -> [f64; 2] {
         let half = |axis: usize| self.element.half[axis] + self.mover.half[axis];
         [half(0), half(1)]
     }
 
-    /// The displacement along the axes of a footprint, with its reciprocals.
+    /// Returns the displacement along the axes of a footprint, with its reciprocals.
     #[inline]
     fn rates(&self, framed: &Prism) -> [(f64, f64); 2] {
         let (way, pace_of) = (&self.run.way, &self.run.pace);
@@ -194,7 +194,7 @@ impl<'a> Meeting<'a> {
             .map(|window| window.0)
     }
 
-    /// Intersects the window with the slabs of one rectangle, grown by the other.
+    /// Intersects the window with the slabs of one rectangle, which is grown by the other.
     fn askew(&self, window: Window, framed: &Prism, other: &Prism) -> Option<Window> {
         let [cos, sin] = framed
             .along([other.axis[0], other.axis[1], 0.0])
@@ -217,18 +217,18 @@ impl<'a> Meeting<'a> {
     }
 }
 
-/// Rounding bound, mm: what rounding may have done to two pieces whose centres lie `apart`, plus the rounding of
-/// computing from `apart` at rest.
+/// Returns a bound of all rounding for two pieces whose centres lie `apart`, mm: of the rounding that brought them to
+/// their places, and of that in computing from `apart` at rest.
 #[inline]
 pub(crate) fn slack(element: &Prism, mover: &Prism, apart: Vec3) -> f64 {
     NOISE * (element.span + mover.span) + ROUNDING * reach(apart)
 }
 
-/// Returns the part of `window` in which `|start + t rate| <= half`. The rate comes with its reciprocal.
+/// Returns the part of `window` in which `|start + t rate| <= half`; `pace` is the reciprocal of `rate`.
 #[inline]
 fn slab((low, high): Window, start: f64, (rate, pace): (f64, f64), half: f64) -> Option<Window> {
     if pace == 0.0 {
-        // Without a usable reciprocal, the slab is widened by the whole displacement along it.
+        // Without a usable reciprocal, the slab is widened by the whole displacement across it.
         if start.abs() > half + rate.abs() {
             return None;
         }
@@ -241,8 +241,8 @@ fn slab((low, high): Window, start: f64, (rate, pace): (f64, f64), half: f64) ->
     if low > high { None } else { Some((low, high)) }
 }
 
-/// Returns the first fraction of `window` at which `p + t v`, already within the bounding rectangle, is inside the
-/// rectangle of `half` with corners of `radius`.
+/// Returns the first fraction in `window` at which `p + t v` is inside the rectangle of `half` with corners of
+/// `radius`; it is already within the bounding rectangle.
 #[inline]
 fn corner(
     (low, high): Window,
@@ -256,7 +256,7 @@ fn corner(
     if !(over(0) * over(0) + over(1) * over(1) > radius * radius) {
         return Some(low);
     }
-    // The point is outside, thus before the disc of a corner: it can enter only through that disc.
+    // The point is outside and near a corner, so it can enter only through the disc of this corner.
     let w = |axis: usize| at[axis] - half[axis].copysign(at[axis]);
     let w = [w(0), w(1)];
     let speed = v[0] * v[0] + v[1] * v[1];

@@ -1,4 +1,5 @@
-//! The model of the stationary elements: insertion, removal, names. The questions are in [`question`](super::question).
+//! The model of the stationary elements: inserts, removes and names them. The questions are in
+//! [`question`](super::question).
 
 use super::answer::ElementKey;
 use super::interior::Interior;
@@ -8,7 +9,7 @@ use super::shape::{Flaw, Shape};
 use super::space::{Filling, Space};
 use super::stationary::{NONE, Pieces};
 
-/// The stationary elements. Elements are inserted and removed one by one; nothing is rebuilt.
+/// The stationary elements. Each can be inserted and removed alone; nothing is rebuilt.
 #[derive(Debug, Clone, Default)]
 pub struct Model {
     slots: Vec<Slot>,
@@ -16,15 +17,15 @@ pub struct Model {
     names: Names,
     pub(crate) space: Space,
     pub(crate) pieces: Pieces,
-    /// Slots of elements with a closed mesh: these can enclose a body without touching it.
+    /// Slots of elements with a closed mesh; only these can enclose a body without touching it.
     pub(crate) hollow: Vec<u32>,
 }
 
-/// The slot of a present or removed element.
+/// Slot of an element, present or removed.
 #[derive(Debug, Clone)]
 struct Slot {
     generation: u32,
-    /// First of its pieces; [`NONE`] for a free slot.
+    /// Number of its first piece; [`NONE`] for a free slot.
     first: u32,
     id: Name,
     /// Enclosed spaces of an element with a mesh.
@@ -43,10 +44,10 @@ impl Model {
         Model::default()
     }
 
-    /// Adds one element. `id` serves messages and need not be unique.
+    /// Adds one element. `id` is used in messages only and need not be unique.
     ///
     /// # Errors
-    /// Returns the [`Flaw`] of the shape or the pose; the model stays unchanged.
+    /// Fails with the [`Flaw`] of the shape or the pose; the model stays unchanged.
     pub fn insert(&mut self, id: &str, shape: &Shape, pose: &Pose) -> Result<ElementKey, Flaw> {
         shape.check()?;
         pose.check()?;
@@ -65,11 +66,11 @@ impl Model {
         Ok(key)
     }
 
-    /// Builds a model of many elements at once, faster than one [`Model::insert`] per element and with the same
-    /// result. [`Model::keys`] are in the order of the elements.
+    /// Builds a model of many elements at once: faster than one [`Model::insert`] per element, with the same result.
+    /// [`Model::keys`] are in the order of the elements.
     ///
     /// # Errors
-    /// Returns the index and the [`Flaw`] of the first flawed element.
+    /// Fails with the index and the [`Flaw`] of the first flawed element.
     pub fn of<'a>(
         elements: impl Iterator<Item = (&'a str, &'a Shape, &'a Pose)>,
     ) -> Result<Model, (usize, Flaw)> {
@@ -93,7 +94,7 @@ impl Model {
         Ok(model)
     }
 
-    /// Makes the slot of an element whose pieces are entered: keeps its name and its enclosed spaces.
+    /// Makes the slot of an element whose pieces are already entered; keeps its name and its enclosed spaces.
     #[inline]
     fn taken(&mut self, id: &str, shape: &Shape, pose: &Pose, key: ElementKey, first: u32) -> Slot {
         let interior = match shape {
@@ -160,12 +161,12 @@ impl Model {
             .map_or("(removed)", |slot| self.names.text(&slot.id))
     }
 
-    /// Number of elements.
+    /// Returns the number of elements.
     pub fn len(&self) -> usize {
         self.slots.len() - self.free.len()
     }
 
-    /// Whether the model has no elements.
+    /// Returns true when the model has no elements.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -175,7 +176,7 @@ impl Model {
         self.taken_slots().map(|slot| self.key(slot))
     }
 
-    /// Heap used by the model, bytes; closed meshes, stored separately, are not included.
+    /// Returns the heap that the model uses, bytes, without closed meshes, which are stored separately.
     pub fn heap_bytes(&self) -> usize {
         let numbers = self.free.capacity() + self.hollow.capacity();
         self.slots.capacity() * size_of::<Slot>()
@@ -202,8 +203,8 @@ impl Model {
         self.slots[slot as usize].first
     }
 
-    /// Returns a point of the element in a slot, or of `other`, that lies inside the other body although their
-    /// surfaces may not meet.
+    /// Returns a point of one body, the element in a slot or `other`, that lies inside the other one, although their
+    /// surfaces need not meet.
     pub(crate) fn shared_point(&self, slot: u32, other: &Interior) -> Option<[f64; 3]> {
         let slot = &self.slots[slot as usize];
         match &slot.interior {

@@ -1,4 +1,4 @@
-//! Moving bodies: split into pieces once, checked against the model many times.
+//! Moving bodies: each is split into pieces once and checked against the model many times.
 
 use super::interior::Interior;
 use super::piece::{Piece, pieces_of};
@@ -8,14 +8,14 @@ use super::shape::{Flaw, Shape};
 use super::space::{Boxes, Cover, Four, SLOWEST_MM};
 use super::vector::{Vec3, add, length, reach};
 
-/// Most pieces of a group: these are placed at once without heap allocation.
+/// Most pieces in a group; as many can be placed at once without heap allocation.
 pub(crate) const MOST_OF_A_GROUP: usize = 4;
 
-/// A checked body in its own frame, split into pieces and ready for many questions.
+/// A checked body in its own frame, split into pieces; it serves for any number of questions.
 #[derive(Debug, Clone)]
 pub struct Mover {
     pub(crate) pieces: Vec<Piece>,
-    /// The prism of each piece that is upright in the frame of the body.
+    /// Prism of each piece, if the piece is upright in the frame of the body.
     pub(crate) prisms: Vec<Option<Prism>>,
     pub(crate) groups: Vec<Group>,
     interior: Option<Interior>,
@@ -35,11 +35,11 @@ pub(crate) struct Group {
     half: [f32; 4],
     /// Largest distance of a point from the origin of the body, rounded outward, mm.
     ball: f64,
-    /// Widening of the boxes of the group at any place, mm.
+    /// By how much the boxes of the group are widened at any place, mm.
     wider: f64,
 }
 
-/// Place and path for which the boxes of a group are computed.
+/// Where the boxes of a group are computed: place, orientation and path.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Whereabouts<'a> {
     /// Origin of the body at rest or at the start of its path, mm.
@@ -47,7 +47,7 @@ pub(crate) struct Whereabouts<'a> {
     pub(crate) orientation: Orientation<'a>,
     /// Displacement of the body, mm.
     pub(crate) run: Vec3,
-    /// Margin by which the boxes are widened, mm.
+    /// By how much the boxes are widened for the margin, mm.
     pub(crate) margin_mm: f64,
 }
 
@@ -62,14 +62,14 @@ pub(crate) enum Orientation<'a> {
 }
 
 /// Relative error bound of the boxes of a placed group: fewer than ten roundings to single precision, of magnitudes
-/// that sum up to those of group and path along the axis, plus the error of a [`RoughYaw`].
+/// that together are at most those of group and path along the axis, plus the error of a [`RoughYaw`].
 const SINGLE: f64 = 1e-6;
 
 impl Mover {
     /// Splits a shape into pieces.
     ///
     /// # Errors
-    /// Returns the [`Flaw`] of the shape.
+    /// Fails with the [`Flaw`] of the shape.
     pub fn new(shape: &Shape) -> Result<Mover, Flaw> {
         shape.check()?;
         let pieces = pieces_of(shape);
@@ -86,14 +86,14 @@ impl Mover {
         })
     }
 
-    /// Whether the body encloses a space in which others can lie without touching its triangles.
+    /// Returns true when the body encloses a space in which another can lie without touching its triangles.
     pub(crate) fn is_hollow(&self) -> bool {
         self.interior
             .as_ref()
             .is_some_and(|interior| !interior.solids.is_empty())
     }
 
-    /// The enclosed spaces of the body at `pose`.
+    /// Returns the enclosed spaces of the body at `pose`.
     pub(crate) fn interior_at(&self, pose: &Pose) -> Interior {
         let (frame, position) = (&Frame::of(pose.rotation), pose.position);
         match &self.interior {
@@ -144,14 +144,14 @@ impl Group {
         group
     }
 
-    /// Bits of the places in use.
+    /// Returns a mask of the places in use (bit k: place k).
     #[inline]
     pub(crate) fn used(&self) -> u32 {
         (1 << self.count) - 1
     }
 
-    /// Widening of a box along each axis for the margin and all rounding to single precision, mm. Rounding along an
-    /// axis scales with the places along it and with the size of the group.
+    /// Returns by how much a box is widened along each axis, mm: for the margin and for all rounding to single
+    /// precision. The rounding along an axis grows with the places along this axis and with the size of the group.
     #[inline(always)]
     fn wider(&self, at: &Whereabouts) -> Four {
         let always = (self.wider + at.margin_mm * (1.0 + SINGLE)) as f32;
@@ -226,8 +226,8 @@ impl Group {
     }
 }
 
-/// Rotates boxes about z: centres relative to the origin, and half extents along the axes of the parent frame, axis
-/// by axis.
+/// Rotates boxes about z. Returns centres relative to the origin, and half extents along the axes of the parent frame,
+/// axis by axis.
 #[inline(always)]
 fn yawed(yaw: RoughYaw, [x, y, z]: [Four; 3], [a, b, c]: [Four; 3]) -> ([Four; 3], [Four; 3]) {
     let (cos, sin) = (Four::all(yaw.cos), Four::all(yaw.sin));
@@ -238,7 +238,7 @@ fn yawed(yaw: RoughYaw, [x, y, z]: [Four; 3], [a, b, c]: [Four; 3]) -> ([Four; 3
     (centres, [wide, a.times(sin).plus(b.times(cos)), c])
 }
 
-/// Rotates boxes by any frame: centres relative to the origin, and half extents, axis by axis.
+/// Rotates boxes by any frame. Returns centres relative to the origin, and half extents, axis by axis.
 fn tilted(frame: &Frame, centres: [Four; 3], halves: [Four; 3]) -> ([Four; 3], [Four; 3]) {
     let images = [frame.x, frame.y, frame.z];
     let sum = |members: [Four; 3], of: fn(f32) -> f32| {
@@ -250,15 +250,15 @@ fn tilted(frame: &Frame, centres: [Four; 3], halves: [Four; 3]) -> ([Four; 3], [
     (sum(centres, |it| it), sum(halves, f32::abs))
 }
 
-/// Largest distance of a point of the piece from the origin of its body, mm, rounded outward.
+/// Returns the largest distance of a point of the piece from the origin of its body, mm, rounded outward.
 pub(crate) fn reach_of(piece: &Piece) -> f64 {
     (length(piece.centre) + piece.radius()) * (1.0 + 8.0 * f64::EPSILON)
 }
 
-/// A body that a question accepts: a [`Mover`], or a [`Shape`] that is split into pieces for one question.
+/// A body that questions accept: a [`Mover`], or a [`Shape`], which is split into pieces for each question.
 pub trait Moving {
-    /// Calls `ask` with the body split into pieces; returns `None` when the shape is flawed, which questions answer
-    /// with blocked.
+    /// Calls `ask` with the body split into pieces; returns `None` when the shape is flawed. Questions then answer
+    /// blocked.
     fn with_mover<A>(&self, ask: impl FnOnce(&Mover) -> A) -> Option<A>;
 }
 

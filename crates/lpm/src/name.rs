@@ -1,4 +1,4 @@
-//! Names of elements, stored one after another in one string without an allocation per name.
+//! Names of elements, stored one after another in one string, so that a name needs no allocation of its own.
 
 /// Place of the name of an element in [`Names`].
 #[derive(Debug, Clone, Copy)]
@@ -7,15 +7,15 @@ pub(crate) struct Name {
     length: u32,
 }
 
-/// The names of all elements. A released name leaves a gap; when the gaps outweigh the rest
-/// ([`Names::is_mostly_gaps`]) the model writes all names anew.
+/// Names of all elements. A released name leaves a gap; when the gaps outweigh the names ([`Names::is_mostly_gaps`]),
+/// the model writes all names anew.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Names {
     text: String,
     gaps: usize,
 }
 
-/// Total length of the gaps below which rewriting does not pay, bytes.
+/// Total length of the gaps, bytes, up to which rewriting does not pay.
 const SMALL: usize = 4096;
 
 impl Names {
@@ -37,19 +37,19 @@ impl Names {
     /// Releases a name.
     pub(crate) fn release(&mut self, name: &Name) {
         self.gaps += name.length as usize;
-        // The last name leaves no gap, so inserting and removing one element in turn costs nothing.
+        // The last name leaves no gap, so inserting and removing one element again and again costs nothing.
         if (name.start + name.length) as usize == self.text.len() {
             self.text.truncate(name.start as usize);
             self.gaps -= name.length as usize;
         }
     }
 
-    /// Whether the names should be rewritten into a fresh string.
+    /// Returns true when the names should be written anew.
     pub(crate) fn is_mostly_gaps(&self) -> bool {
         self.gaps > SMALL && 2 * self.gaps > self.text.len()
     }
 
-    /// Heap in use, bytes.
+    /// Returns the heap in use, bytes.
     pub(crate) fn heap_bytes(&self) -> usize {
         self.text.capacity()
     }

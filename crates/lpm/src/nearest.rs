@@ -1,4 +1,4 @@
-//! Least distance over a path: examines every pair whose boxes come near enough, the nearest boxes first.
+//! Least distance over a path: examines every pair whose boxes come near enough, the nearest first.
 
 use super::mover::{Group, MOST_OF_A_GROUP};
 use super::passage::{Passage, Pending, once_in_order};
@@ -6,7 +6,7 @@ use super::space::{Bundle, Cover, LANES, Sweep, Visit};
 use super::straight;
 use super::turning::Turning;
 
-/// The least distance, mm, with its piece and its fraction of the path.
+/// Least distance, mm, with the piece that has it and the fraction of the path at which it does.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Nearest {
     pub(crate) distance_mm: f64,
@@ -57,7 +57,7 @@ impl Visit for Near<'_> {
 }
 
 impl Passage<'_> {
-    /// Returns the least distance over the path up to `range_mm`; `None` when it is larger.
+    /// Returns the least distance over the path; `None` when it exceeds `range_mm`.
     pub(crate) fn least(&self, range_mm: f64) -> Option<Nearest> {
         let mut pending = self.within(range_mm);
         once_in_order(&mut pending);
@@ -81,7 +81,7 @@ impl Passage<'_> {
         least
     }
 
-    /// Returns the pairs whose boxes come within `range_mm` of each other, with the distance of the boxes.
+    /// Returns the pairs whose boxes come within `range_mm` of each other, with this distance.
     fn within(&self, range_mm: f64) -> Vec<Pending> {
         let mut pending = Vec::new();
         let run = self.path.displacement;

@@ -1,14 +1,15 @@
 //! Silhouettes for a drawing: the outline of a body seen from above or from the front.
 //!
-//! Every convex piece gives one convex polygon, counter-clockwise. The rim of a cylinder is drawn with [`RIM`]
-//! corners, less than 1 % of its radius off the true outline. For pictures only: no collision answer uses them.
+//! Every convex piece gives one convex polygon, counter-clockwise. The rim of a cylinder is drawn with [`RIM`] corners,
+//! which is less than 1 % of its radius off the true outline. These are for pictures only; no collision answer uses
+//! them.
 
 use super::pose::{Frame, Pose};
 use super::shape::Shape;
 use super::vector::{Vec3, add};
 use std::f64::consts::TAU;
 
-/// Corners of a drawn rim.
+/// Number of corners with which a rim is drawn.
 const RIM: usize = 24;
 
 /// Direction from which a drawing shows a body.
@@ -39,7 +40,7 @@ fn flat(corner: Vec3, view: View) -> [f64; 2] {
     }
 }
 
-/// Passes the corners of every convex piece, placed, to `give`.
+/// Passes the corners of every convex piece, at its place, to `give`.
 fn collect(shape: &Shape, frame: &Frame, position: Vec3, give: &mut impl FnMut(Vec<Vec3>)) {
     let place = |corner: Vec3| add(frame.apply(corner), position);
     match shape {
@@ -77,7 +78,7 @@ fn rim(radius: f64, height: f64) -> impl Iterator<Item = Vec3> {
     })
 }
 
-/// Convex hull by Andrew's monotone chain, counter-clockwise.
+/// Returns the convex hull, counter-clockwise (Andrew's monotone chain).
 fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     points.dedup();

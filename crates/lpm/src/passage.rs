@@ -15,15 +15,15 @@ pub(crate) struct Passage<'a> {
     pub(crate) body: &'a Mover,
     pub(crate) path: &'a Path,
     pub(crate) way: &'a Move<'a>,
-    /// Whether the path is straight and upright pieces stay upright, so that closed forms apply.
+    /// True when the path is straight and upright pieces stay upright, so that closed forms apply.
     pub(crate) level: bool,
     orientation: Orientation<'a>,
 }
 
-/// A piece of an element and a piece of the mover that await a search.
+/// A piece of an element and a piece of the mover that still need a search.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pending {
-    /// Sort key: the pair with the least is searched first.
+    /// Key by which pairs are sorted: the least is searched first.
     pub(crate) order: f64,
     pub(crate) element: u32,
     pub(crate) local: u32,
@@ -65,20 +65,20 @@ impl<'a> Passage<'a> {
         &self.body.pieces[index as usize]
     }
 
-    /// Whether the element of a piece is not ignored by the move.
+    /// Returns true unless the move ignores the element of this piece.
     #[inline]
     pub(crate) fn counts(&self, element: &Stationary) -> bool {
         self.way.ignore.is_empty() || !self.way.ignore.contains(&element.owner)
     }
 
-    /// Returns a piece of the mover at `t` of a level path, if the piece is upright.
+    /// Returns a piece of the mover at fraction `t` of a level path, if the piece is upright.
     #[inline]
     pub(crate) fn prism_at(&self, index: u32, t: f64) -> Option<Prism> {
         let own = self.body.prisms[index as usize].as_ref()?;
         Some(own.carried(self.path.turned(), self.path.origin(t)))
     }
 
-    /// Returns place and path of the body for computing its boxes, to be widened by `margin_mm`.
+    /// Returns place and path of the body, for boxes that are widened by `margin_mm`.
     #[inline(always)]
     pub(crate) fn whereabouts(&self, margin_mm: f64) -> Whereabouts<'a> {
         Whereabouts {
@@ -90,7 +90,7 @@ impl<'a> Passage<'a> {
     }
 }
 
-/// Sorts by order and removes repeated pairs, which have equal order.
+/// Sorts the pairs and removes repeated ones, which have equal keys.
 pub(crate) fn once_in_order(pending: &mut Vec<Pending>) {
     pending.sort_unstable_by(|a, b| {
         let pair = |pair: &Pending| (pair.element, pair.local);

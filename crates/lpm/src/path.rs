@@ -1,4 +1,4 @@
-//! The path of a mover: a straight translation, or linear position with the shortest turn.
+//! The path of a mover: a straight translation, or a linear change of position with the shortest turn.
 
 use super::answer::Move;
 use super::mover::Orientation;
@@ -21,7 +21,7 @@ pub(crate) struct Path {
 }
 
 impl Path {
-    /// Converts a move. Returns `None` when a number is not finite or the margin is invalid: such a move cannot be
+    /// Converts a move. Returns `None` when a number is not finite or the margin is invalid; such a move cannot be
     /// decided.
     pub(crate) fn of(way: &Move) -> Option<Path> {
         if !(way.margin_mm >= 0.0 && way.margin_mm <= f64::MAX) {
@@ -46,13 +46,13 @@ impl Path {
         })
     }
 
-    /// Origin of the mover at `t`, mm.
+    /// Returns the origin of the mover at fraction `t`, mm.
     #[inline]
     pub(crate) fn origin(&self, t: f64) -> Vec3 {
         along(self.from, t, self.displacement)
     }
 
-    /// A piece of the mover at its place at `t`.
+    /// Returns a piece of the mover at its place at fraction `t`.
     pub(crate) fn piece_at(&self, local: &Piece, t: f64) -> Piece {
         match &self.turn {
             None => local.placed(self.start(), self.origin(t)),
@@ -60,24 +60,24 @@ impl Path {
         }
     }
 
-    /// Sum of the magnitudes of everything that enters a position on the path, mm.
+    /// Returns the sum of the magnitudes of everything that enters a position on the path, mm.
     pub(crate) fn span(&self) -> f64 {
         reach(self.from) + reach(self.displacement)
     }
 
-    /// Whether the displacement was computed from both ends without rounding.
+    /// Returns true when the displacement was computed from both ends without rounding.
     #[inline]
     pub(crate) fn is_exact(&self) -> bool {
         is_exact_sum(self.to, negate(self.from))
     }
 
-    /// Orientation of the mover at the start; `None` for the identity.
+    /// Returns the orientation of the mover at the start; `None` for the identity.
     #[inline]
     pub(crate) fn turned(&self) -> Option<&Frame> {
         self.turned.as_ref()
     }
 
-    /// Orientation of the mover along the path.
+    /// Returns the orientation of the mover along the path.
     pub(crate) fn orientation(&self) -> Orientation<'_> {
         match (&self.turn, &self.turned) {
             (Some(_), _) => Orientation::Turning,
@@ -88,7 +88,7 @@ impl Path {
         }
     }
 
-    /// Orientation of the mover at the start, the identity included.
+    /// Returns the orientation of the mover at the start, also when it is the identity.
     pub(crate) fn start(&self) -> &Frame {
         self.turned.as_ref().unwrap_or(&Frame::IDENTITY)
     }

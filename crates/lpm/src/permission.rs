@@ -1,9 +1,10 @@
-//! Permissions of pairs: what a mover may do to each element, and where a move first violates one.
+//! Permissions of pairs: what a mover may do to each element, and where a move first violates a permission.
 //!
-//! A pair is forbidden within a margin, may touch, or is ignored. A question takes one margin for all elements, so
-//! elements are checked in groups of equal permission and the earliest violation counts. Bodies that may touch may
-//! also press into each other by up to a depth: the check takes that depth off the faces of the mover, so it
-//! reports exactly the contacts that go deeper.
+//! For a pair of mover and element, coming within a margin is forbidden, or touching is allowed, or the pair is
+//! ignored. A question takes one margin for all elements, so elements with equal permissions are checked together, and
+//! the earliest violation counts. Bodies that may touch may also press into each other, up to a depth. To check that,
+//! this depth is taken off the faces of the mover; the contacts that are then reported are exactly those that go
+//! deeper.
 
 use std::borrow::Cow;
 
@@ -13,21 +14,21 @@ use super::mover::Mover;
 use super::pose::Pose;
 use super::shape::{Flaw, Shape};
 
-/// Half extent left of a piece that is thinner than the depth taken off it, mm, so that no piece vanishes.
+/// Half extent that remains of a piece thinner than the depth taken off, mm, so that no piece vanishes.
 const CORE_MM: f64 = 1e-3;
 
-/// Distance beyond its margin up to which a forbidden pair is measured, mm.
+/// How far beyond its margin the distance of a forbidden pair is still measured, mm.
 const MEASURED_BEYOND_MM: f64 = 1.0;
 
 /// What a mover may do to an element.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Permission {
-    /// The mover must stay farther away than a margin.
+    /// The mover must stay farther away than the margin.
     Forbidden {
         /// Distance that must be exceeded, mm.
         margin_mm: f64,
     },
-    /// The mover may touch and press in by less than a depth.
+    /// The mover may touch the element and press into it by less than the depth.
     MayTouch {
         /// Depth taken off every face of the mover, mm, >= 0.
         depth_mm: f64,
@@ -37,7 +38,7 @@ pub enum Permission {
 }
 
 impl Permission {
-    /// Margin and depth, mm; `None` for an ignored pair.
+    /// Returns the margin and depth, mm; `None` for an ignored pair.
     fn asked_mm(self) -> Option<(f64, f64)> {
         match self {
             Permission::Forbidden { margin_mm } => Some((margin_mm, 0.0)),
@@ -50,7 +51,7 @@ impl Permission {
 /// A mover and its move.
 #[derive(Debug, Clone)]
 pub struct Passing<'a> {
-    /// The body, with the depth taken off its faces.
+    /// The mover, with the depth taken off its faces.
     pub mover: Cow<'a, Mover>,
     /// Pose at the start.
     pub from: Pose,
@@ -58,25 +59,25 @@ pub struct Passing<'a> {
     pub to: Pose,
 }
 
-/// The first violation of a permission on a move.
+/// First violation of a permission on a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Forbidden {
-    /// The contact with the element of that pair.
+    /// Contact with the element whose permission is violated.
     pub contact: Contact,
-    /// Least distance of the pair over the whole move, mm; at most 1 mm above the margin.
+    /// Least distance of mover and element over the whole move, mm; at most 1 mm above the margin.
     pub distance_mm: f64,
-    /// Margin of the pair, mm; 0 where it may touch.
+    /// Margin that is violated, mm; 0 for a pair that may touch.
     pub margin_mm: f64,
 }
 
 impl Model {
     /// Returns the first violation of a permission on a move; `None` is proof that the move is allowed.
     ///
-    /// The mover must not touch an element that `permissions` omits. The model calls `passing` once for each
-    /// different permission, with the depth (mm) to take off the faces of the mover ([`Shape::less`]).
+    /// An element that `permissions` omits must not be touched. The model calls `passing` once for each different
+    /// permission, with the depth (mm) to take off the faces of the mover ([`Shape::less`]).
     ///
     /// # Errors
-    /// Returns the errors of `passing`.
+    /// Fails as `passing` does.
     pub fn first_forbidden<'a>(
         &self,
         permissions: &[(ElementKey, Permission)],
@@ -102,7 +103,7 @@ impl Model {
         Ok(first)
     }
 
-    /// Adds to the permissions the default for every element that they omit.
+    /// Returns the permissions with those of the omitted elements added: they must not be touched.
     fn all_pairs(&self, permissions: &[(ElementKey, Permission)]) -> Vec<(ElementKey, Permission)> {
         let mut pairs = permissions.to_vec();
         pairs.sort_by_key(|pair| pair.0);
@@ -142,7 +143,7 @@ impl Model {
 }
 
 impl Shape {
-    /// The shape with `depth_mm` taken off every face of every block and cylinder; meshes stay whole.
+    /// Returns the shape with `depth_mm` taken off every face of every block and cylinder; meshes stay whole.
     pub fn less(&self, depth_mm: f64) -> Shape {
         let less = |half: f64| (half - depth_mm).max(CORE_MM.min(half));
         match self {
@@ -171,7 +172,8 @@ mod tests {
 
     const CUBE: Shape = Shape::Block { half: [1.0; 3] };
 
-    /// A cube goes from x = 0 to 10 towards a wall with its face at x = 5: they meet after 0.4 of the move.
+    /// Asks about a cube that goes from x = 0 to 10 towards a wall with its face at x = 5: they meet after 0.4 of the
+    /// move.
     fn asked(permission: Option<Permission>) -> Option<Forbidden> {
         let mut model = Model::new();
         let wall = Shape::Block {

@@ -1,23 +1,23 @@
-//! Convex pieces, of which every placed body consists.
+//! Convex pieces; every placed body consists of them.
 //!
-//! A block and a cylinder are one piece each, a compound has the pieces of its parts, a mesh one piece per
-//! triangle. The distance functions need only the support of a piece: how far it reaches along a direction, and a
-//! point where it does.
+//! A block and a cylinder are one piece each, a compound has the pieces of its parts, and a mesh has one piece per
+//! triangle. The distance functions need only the support of a piece: how far it reaches along a direction, and a point
+//! of it that lies as far.
 
 use super::pose::{Frame, Pose};
 use super::prism::Prism;
 use super::shape::Shape;
 use super::vector::{Vec3, add, along, cross, dot, length, negate, reach, scale, sub};
 
-/// Relative error bound of everything computed between the numbers of a scene and one evaluated plane, in units of
+/// Relative error bound of everything that is computed from the numbers of a scene to one evaluated plane, in units of
 /// the sum of all magnitudes that entered.
 ///
-/// Counted generously: a rotation matrix from a quaternion is good to 8 roundings; two nested compounds, a turn and
-/// a support sum to fewer than 40 more. 96 roundings of 2^-53 each leave a factor of two. At 1e6 mm this is below
+/// The count is generous: a rotation matrix from a quaternion takes 8 roundings; two nested compounds, a turn and a
+/// support sum take fewer than 40 more. 96 roundings of 2^-53 each are twice as many. At 1e6 mm this bound is below
 /// 1e-7 mm, well inside the 1e-6 mm by which a move may be blocked early.
 pub(crate) const NOISE: f64 = 96.0 * (f64::EPSILON / 2.0);
 
-/// Form of a piece about its centre.
+/// Form of a piece, relative to its centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Form {
     /// Half extents along the axes of the frame, mm.
@@ -29,20 +29,20 @@ pub(crate) enum Form {
         /// Half of the height, mm.
         half: f64,
     },
-    /// Corners relative to the centre, in parent coordinates rather than the frame, mm.
+    /// Corners relative to the centre, mm; along the axes of the parent, not of the frame.
     Triangle([Vec3; 3]),
 }
 
-/// A placed convex closed set.
+/// A convex closed set at a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Piece {
     pub(crate) centre: Vec3,
     pub(crate) frame: Frame,
     pub(crate) form: Form,
-    /// Sum of the magnitudes that were rounded in computing centre and extents, mm: the scale of rounding errors. A
-    /// place that was reached by exact sums adds nothing.
+    /// Sum of the magnitudes that were rounded when centre and extents were computed, mm; rounding errors scale with
+    /// it. A place that was reached by exact sums adds nothing.
     pub(crate) span: f64,
-    /// A block or cylinder whose own z axis is exactly vertical, so that closed forms apply.
+    /// True for a block or cylinder whose own z axis is exactly vertical, so that closed forms apply.
     pub(crate) upright: bool,
 }
 
@@ -62,7 +62,7 @@ impl Piece {
         }
     }
 
-    /// The piece moved with its parent frame, which is turned by `frame` and placed at `position`.
+    /// Returns the piece after its parent frame is turned by `frame` and placed at `position`.
     pub(crate) fn placed(&self, frame: &Frame, position: Vec3) -> Piece {
         let form = match self.form {
             Form::Block(_) | Form::Cylinder { .. } => self.form,
@@ -72,7 +72,7 @@ impl Piece {
         Piece::new(centre, frame.then(&self.frame), form, span)
     }
 
-    /// Centre and span of the piece moved with its parent frame.
+    /// Returns centre and span of the piece after its parent frame is moved in this way.
     #[inline]
     pub(crate) fn place(&self, frame: &Frame, position: Vec3) -> (Vec3, f64) {
         let turned = if frame.is_identity() {
@@ -90,7 +90,7 @@ impl Piece {
         (add(turned, position), span)
     }
 
-    /// How far the piece reaches along `n` from its centre: the support function.
+    /// Returns how far the piece reaches along `n` from its centre: the support function.
     pub(crate) fn extent(&self, n: Vec3) -> f64 {
         match self.form {
             Form::Block(half) => {
@@ -105,7 +105,7 @@ impl Piece {
         }
     }
 
-    /// A point of the piece, relative to its centre, where [`Piece::extent`] is reached.
+    /// Returns a point of the piece, relative to its centre, that reaches [`Piece::extent`].
     pub(crate) fn farthest(&self, n: Vec3) -> Vec3 {
         match self.form {
             Form::Block(half) => {
@@ -138,7 +138,7 @@ impl Piece {
         }
     }
 
-    /// Largest distance of a point of the piece from its centre, mm, rounded outward.
+    /// Returns the largest distance of a point of the piece from its centre, mm, rounded outward.
     pub(crate) fn radius(&self) -> f64 {
         let exact = match self.form {
             Form::Block(half) => length(half),
@@ -148,7 +148,7 @@ impl Piece {
         exact * (1.0 + 4.0 * f64::EPSILON)
     }
 
-    /// Bounding box `(low, high)` at its place, rounded outward by the noise of the piece.
+    /// Returns the bounding box `(low, high)` of the piece at its place, rounded outward by [`NOISE`].
     pub(crate) fn bounds(&self) -> (Vec3, Vec3) {
         if self.upright {
             return Prism::of(self).bounds();
@@ -166,7 +166,7 @@ impl Piece {
     }
 }
 
-/// Whether `a + b` was computed without rounding (error term of the sum after Knuth).
+/// Returns true when `a + b` is exact in f64 (error term of the sum after Knuth).
 #[inline]
 pub(crate) fn is_exact_sum(a: Vec3, b: Vec3) -> bool {
     (0..3).all(|axis| {
@@ -188,7 +188,7 @@ pub(crate) fn each_piece(shape: &Shape, mut show: impl FnMut(Piece)) {
     descend(shape, &Frame::IDENTITY, [0.0; 3], 0.0, &mut show);
 }
 
-/// Visits a shape and its parts. `span` is what the positions of the parents add to the scale of rounding.
+/// Visits a shape and its parts. `span` is what the positions of the parents add to [`Piece::span`].
 fn descend(shape: &Shape, frame: &Frame, centre: Vec3, span: f64, show: &mut impl FnMut(Piece)) {
     match shape {
         Shape::Block { half } => {
@@ -232,7 +232,7 @@ fn descend(shape: &Shape, frame: &Frame, centre: Vec3, span: f64, show: &mut imp
     }
 }
 
-/// Places a triangle; its centre is the middle of its bounding box, which keeps the offsets small.
+/// Places a triangle; its centre is the middle of its bounding box, so the corners stay near it.
 fn triangle_piece(corners: [Vec3; 3], frame: &Frame, origin: Vec3, span: f64) -> Piece {
     let placed = corners.map(|corner| add(frame.apply(corner), origin));
     let mut middle = [0.0; 3];

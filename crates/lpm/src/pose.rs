@@ -7,18 +7,18 @@ use super::vector::{Vec3, add, cross, dot, length, scale};
 pub struct Pose {
     /// Origin of the body, mm.
     pub position: [f64; 3],
-    /// Quaternion `[w, x, y, z]`, normalised wherever it is used; zero is a [`Flaw`](super::Flaw).
+    /// Quaternion `[w, x, y, z]`, normalised wherever it is used; a zero quaternion is a [`Flaw`](super::Flaw).
     pub rotation: [f64; 4],
 }
 
 impl Pose {
-    /// The parent frame itself.
+    /// Pose of the parent frame itself.
     pub const IDENTITY: Pose = Pose {
         position: [0.0; 3],
         rotation: [1.0, 0.0, 0.0, 0.0],
     };
 
-    /// An upright pose at `position` (mm).
+    /// Returns an upright pose at `position` (mm).
     pub fn at(position: [f64; 3]) -> Pose {
         Pose {
             position,
@@ -26,7 +26,7 @@ impl Pose {
         }
     }
 
-    /// A pose turned by `yaw_rad` about z at `position` (mm).
+    /// Returns a pose turned by `yaw_rad` about z at `position` (mm).
     pub fn yawed(position: [f64; 3], yaw_rad: f64) -> Pose {
         let (sin, cos) = (yaw_rad / 2.0).sin_cos();
         Pose {
@@ -35,20 +35,20 @@ impl Pose {
         }
     }
 
-    /// Whether the rotation is the identity.
+    /// Returns true when the rotation is the identity.
     #[inline(always)]
     pub(crate) fn is_unturned(&self) -> bool {
         let [_, x, y, z] = self.rotation;
         (x == 0.0) & (y == 0.0) & (z == 0.0)
     }
 
-    /// The same rotation at another position (mm).
+    /// Returns the same rotation at another position (mm).
     pub fn moved_to(self, position: [f64; 3]) -> Pose {
         Pose { position, ..self }
     }
 }
 
-/// Rotation as its three columns: the images of x, y and z.
+/// Rotation as a matrix: its three columns are the images of x, y and z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Frame {
     pub(crate) x: Vec3,
@@ -65,8 +65,8 @@ impl Frame {
 
     /// Converts a quaternion of any length but zero.
     ///
-    /// Dividing by the squared length instead of normalising first keeps quarter turns exact: `[0.7071067811865476,
-    /// 0, 0, 0.7071067811865475]` must not tilt or stretch a block.
+    /// Dividing by the squared length, instead of normalising first, keeps quarter turns exact:
+    /// `[0.7071067811865476, 0, 0, 0.7071067811865475]` must not tilt or stretch a block.
     #[inline]
     pub(crate) fn of(rotation: [f64; 4]) -> Frame {
         let [w, x, y, z] = rotation;
@@ -84,13 +84,13 @@ impl Frame {
         }
     }
 
-    /// Whether z is mapped exactly onto z or -z.
+    /// Returns true when z is mapped exactly onto z or -z.
     #[inline]
     pub(crate) fn is_vertical(&self) -> bool {
         self.z[0] == 0.0 && self.z[1] == 0.0 && self.z[2].abs() == 1.0
     }
 
-    /// Whether the rotation is exactly one about z, so that upright bodies stay upright.
+    /// Returns true when the rotation is exactly about z or turns z upside down, so that upright bodies stay upright.
     #[inline]
     pub(crate) fn is_upright(&self) -> bool {
         self.is_vertical() && self.x[2] == 0.0 && self.y[2] == 0.0
@@ -104,7 +104,7 @@ impl Frame {
         is_yaw.then_some(Yaw { cos, sin })
     }
 
-    /// Whether the rotation is the identity. Comparing x and z suffices for frames made by [`Frame::of`].
+    /// Returns true when the rotation is the identity. For frames made by [`Frame::of`] it suffices to compare x and z.
     #[inline]
     pub(crate) fn is_identity(&self) -> bool {
         self.x == Frame::IDENTITY.x && self.z == Frame::IDENTITY.z
@@ -173,19 +173,19 @@ impl Yaw {
     }
 }
 
-/// A turn about z in single precision: accurate enough for boxes only.
+/// A turn about z in single precision, accurate enough only for boxes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct RoughYaw {
     pub(crate) cos: f32,
     pub(crate) sin: f32,
 }
 
-/// How far the squared length of a quaternion may be from 1 for [`RoughYaw`] to skip the division: a sixtieth of
-/// what single precision loses.
+/// How far the squared length of a quaternion may be from 1 for [`RoughYaw`] to skip the division: a sixtieth of what
+/// rounding to single precision loses.
 const NEARLY_UNIT: f64 = 1e-9;
 
 impl RoughYaw {
-    /// Converts the quaternion `[w, 0, 0, z]`. Nearly all have length 1, which saves the time of a division.
+    /// Converts the quaternion `[w, 0, 0, z]`. Nearly all have length 1 and need no division, which saves time.
     #[inline(always)]
     pub(crate) fn of(w: f64, z: f64) -> RoughYaw {
         let (ww, zz) = (w * w, z * z);
@@ -204,16 +204,16 @@ impl RoughYaw {
 pub(crate) struct Turn {
     /// Unit axis in the parent frame.
     pub(crate) axis: Vec3,
-    /// Whole angle, radians, 0 to pi.
+    /// Whole angle of the turn, radians, 0 to pi.
     pub(crate) angle: f64,
     start: Frame,
 }
 
 impl Turn {
-    /// Returns the turn; `None` when both orientations agree (also as `q` and `-q`) and the move is a translation.
+    /// Returns the turn; `None` when both orientations agree (also as `q` and `-q`), so that the move is a translation.
     ///
-    /// Orientations agree when the angle between them is below 1e-15 rad, that is when the quaternions are
-    /// proportional up to rounding.
+    /// Orientations agree when the angle between them is below 1e-15 rad, that is, when the quaternions are
+    /// proportional but for rounding.
     pub(crate) fn between(from: [f64; 4], to: [f64; 4]) -> Option<Turn> {
         let (a, b) = (normalised(from), normalised(to));
         let (va, vb) = ([a[1], a[2], a[3]], [b[1], b[2], b[3]]);
@@ -235,7 +235,7 @@ impl Turn {
         })
     }
 
-    /// Orientation after the fraction `t` of the turn.
+    /// Returns the orientation after the fraction `t` of the turn.
     pub(crate) fn frame_at(&self, t: f64) -> Frame {
         let (sin, cos) = (self.angle * t).sin_cos();
         Frame {
@@ -264,7 +264,7 @@ mod tests {
 
     #[test]
     fn a_quarter_turn_keeps_a_block_upright() {
-        // As in typical files: the two members differ in the last place.
+        // As typical files write it: the two members differ in the last place.
         let w = std::f64::consts::FRAC_1_SQRT_2;
         let frame = Frame::of([w, 0.0, 0.0, w.next_down()]);
         assert_eq!(frame.z, [0.0, 0.0, 1.0]);

@@ -1,27 +1,27 @@
-//! Upright blocks and cylinders: an interval in z times a rectangle or a disc. [`meeting`](super::meeting) computes
-//! when two of them meet on a path, [`touch`](super::touch) where they touch.
+//! Upright blocks and cylinders: each is an interval in z times a rectangle or a disc. [`meeting`](super::meeting)
+//! computes when two of them meet on a path, [`touch`](super::touch) where they touch.
 
 use super::piece::{Form, NOISE, Piece, is_exact_sum};
 use super::pose::{Frame, Pose, Yaw};
 use super::shape::Shape;
 use super::vector::{Vec3, add, reach};
 
-/// An upright block or cylinder, reduced to what straight paths need.
+/// An upright block or cylinder, reduced to what closed forms need.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Prism {
     pub(crate) centre: Vec3,
-    /// Half extents of the footprint along `axis` and across it (0 for a disc), and of the height, mm.
+    /// Half extents, mm: of the footprint along `axis` and across it (both 0 for a disc), and of the height.
     pub(crate) half: Vec3,
     /// Radius of a disc, mm; 0 for a rectangle.
     pub(crate) radius: f64,
     /// First axis of the footprint, within 45 degrees of x.
     pub(crate) axis: [f64; 2],
-    /// The scale of rounding errors, mm; see [`Piece::span`].
+    /// Scale of rounding errors, mm; see [`Piece::span`].
     pub(crate) span: f64,
 }
 
 impl Prism {
-    /// Converts an upright piece.
+    /// Converts a piece, which must be upright.
     #[inline]
     pub(crate) fn of(piece: &Piece) -> Prism {
         let (half, radius, axis) = footprint(piece.form, [piece.frame.x[0], piece.frame.x[1]]);
@@ -34,7 +34,7 @@ impl Prism {
         }
     }
 
-    /// Converts a single block or cylinder; `None` unless it is upright at `pose`.
+    /// Converts a single block or cylinder; returns `None` unless it is upright at `pose`.
     #[inline]
     pub(crate) fn standing(shape: &Shape, pose: &Pose) -> Option<Prism> {
         let (half, radius, span) = match shape {
@@ -63,7 +63,8 @@ impl Prism {
         })
     }
 
-    /// The prism moved with its parent, which is placed at `position` and perhaps turned by an upright frame.
+    /// Returns the prism after its parent is placed at `position` and, if `frame` is given, turned by this upright
+    /// frame.
     #[inline(always)]
     pub(crate) fn carried(&self, frame: Option<&Frame>, position: Vec3) -> Prism {
         let mut placed = frame.map_or(*self, |frame| self.turned(frame));
@@ -74,7 +75,7 @@ impl Prism {
         placed
     }
 
-    /// The prism in a parent turned by an upright frame.
+    /// Returns the prism after its parent is turned by an upright frame.
     #[inline(always)]
     pub(crate) fn turned(&self, frame: &Frame) -> Prism {
         let mut turned = *self;
@@ -88,7 +89,7 @@ impl Prism {
         turned
     }
 
-    /// The prism in a parent turned about z; the first axis is not brought back near x.
+    /// Returns the prism after its parent is turned about z; its first axis may then be far from x.
     #[inline(always)]
     pub(crate) fn yawed(&self, yaw: Yaw) -> Prism {
         let [x, y, z] = self.centre;
@@ -101,7 +102,7 @@ impl Prism {
         }
     }
 
-    /// Returns the general piece of this prism; its footprint may be relabelled by quarter turns.
+    /// Returns this prism as a general piece; the axes of its footprint may be exchanged by quarter turns.
     pub(crate) fn piece(&self) -> Piece {
         let [x, y] = self.axis;
         let frame = Frame {
@@ -126,7 +127,7 @@ impl Prism {
         }
     }
 
-    /// Whether its place is exactly the one given by the numbers of the scene.
+    /// Returns true when the prism stands exactly where the numbers of the scene put it, without rounding.
     pub(crate) fn is_exact(&self) -> bool {
         let [a, b, c] = self.half;
         let own = if self.radius > 0.0 {
@@ -137,13 +138,13 @@ impl Prism {
         self.span == own && self.is_straight()
     }
 
-    /// Whether the footprint is aligned with x and y.
+    /// Returns true when the footprint is aligned with x and y.
     #[inline]
     pub(crate) fn is_straight(&self) -> bool {
         self.axis == [1.0, 0.0]
     }
 
-    /// Components of a vector along the axes of the footprint.
+    /// Returns the components of a vector along the axes of the footprint.
     #[inline]
     pub(crate) fn along(&self, v: Vec3) -> [f64; 2] {
         if self.is_straight() {
@@ -153,7 +154,7 @@ impl Prism {
         [v[0] * x + v[1] * y, v[1] * x - v[0] * y]
     }
 
-    /// Bounding box, rounded outward.
+    /// Returns the bounding box, rounded outward.
     #[inline]
     pub(crate) fn bounds(&self) -> (Vec3, Vec3) {
         let [u, v] = self.axis.map(f64::abs);
@@ -168,7 +169,7 @@ impl Prism {
     }
 }
 
-/// Half extents, radius and first axis of a footprint.
+/// Returns half extents, radius and first axis of a footprint.
 #[inline]
 fn footprint(form: Form, x: [f64; 2]) -> (Vec3, f64, [f64; 2]) {
     match form {
@@ -182,7 +183,7 @@ fn footprint(form: Form, x: [f64; 2]) -> (Vec3, f64, [f64; 2]) {
     }
 }
 
-/// Relabels the axes of a rectangle by quarter turns so that the first one lies nearest to x.
+/// Exchanges the axes of a rectangle by quarter turns so that the first one lies nearest to x.
 #[inline]
 fn beside_x([a, b, c]: Vec3, x: [f64; 2]) -> (Vec3, [f64; 2]) {
     let (half, x) = if x[0].abs() >= x[1].abs() {

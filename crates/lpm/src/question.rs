@@ -1,4 +1,4 @@
-//! The three questions to the model: any hit (the gate), first contact, clearance.
+//! The three questions to the model: is there any hit, where is the first contact, how large is the clearance.
 
 use super::answer::{Answer, Clearance, Contact, ElementKey, Move};
 use super::contact::{Findings, Wanted};
@@ -19,16 +19,16 @@ impl Model {
         answer.unwrap_or(UNDECIDABLE)
     }
 
-    /// Returns an element that the mover approaches within the margin during the move; `None` is proof that there
-    /// is none.
+    /// Returns an element of which the mover comes within the margin during the move; `None` is proof that there is
+    /// none.
     pub fn any_hit(&self, mover: &impl Moving, way: &Move) -> Option<ElementKey> {
         let answer = mover.with_mover(|body| self.ask::<AnyHit>(body, way));
         answer.unwrap_or(Some(ElementKey::UNDECIDABLE))
     }
 
-    /// Returns the least distance over the move up to `range_mm`; `None` when it is larger.
+    /// Returns the least distance over the move; `None` when it exceeds `range_mm`.
     ///
-    /// A move or a range that cannot be decided has distance 0 to [`ElementKey::UNDECIDABLE`].
+    /// For a move or a range that cannot be decided, the distance is 0 and the element [`ElementKey::UNDECIDABLE`].
     pub fn clearance(&self, mover: &impl Moving, way: &Move, range_mm: f64) -> Option<Clearance> {
         let nothing = |nearest| Clearance {
             distance_mm: 0.0,
@@ -66,13 +66,14 @@ impl Model {
         }))
     }
 
-    /// The element to which a piece belongs.
+    /// Returns the element to which a piece belongs.
     #[inline]
     fn owner(&self, piece: u32) -> ElementKey {
         self.pieces.at(piece).owner
     }
 
-    /// Returns a piece of an element that encloses the mover, or is enclosed by it, without touching.
+    /// Returns a piece of an element that encloses the mover, or is enclosed by it, while their surfaces need not
+    /// touch.
     #[inline]
     fn enclosed(&self, body: &Mover, way: &Move) -> Option<(u32, Hit)> {
         if self.hollow.is_empty() && !body.is_hollow() {
@@ -100,7 +101,7 @@ impl Model {
     }
 }
 
-/// The question of the gate: is there any contact, and with which element?
+/// First question: is there any contact, and with which element?
 struct AnyHit;
 
 impl Question for AnyHit {
@@ -131,7 +132,7 @@ impl Question for AnyHit {
     }
 }
 
-/// The question for the first contact: with which element, when and where?
+/// Second question: with which element is the first contact, when and where?
 struct FirstContact;
 
 impl Question for FirstContact {
@@ -163,7 +164,7 @@ impl Question for FirstContact {
     }
 }
 
-/// The answer to a move that cannot be decided.
+/// Answer to a move that cannot be decided.
 const UNDECIDABLE: Answer = Answer::Blocked(Contact {
     t_stop: 0.0,
     blocker: ElementKey::UNDECIDABLE,

@@ -1,9 +1,9 @@
-//! A body at rest: the check of poses, as in the paper.
+//! A body at rest: checks a pose, as in the paper.
 //!
-//! Nothing moves, so there is no path and no order: boxes of pieces are compared first, then heights and
-//! footprints. Two upright pieces are clear when their heights or footprints lie apart by more than the slack of
-//! [`meeting`](super::meeting), by the argument given there. Tilted bodies, bodies that enclose a space and margins
-//! are left to the check of a path of length zero.
+//! Nothing moves, so there is no path and no order in time: boxes of pieces are compared first, then heights and
+//! footprints. Two upright pieces are clear when their heights or their footprints are farther apart than the slack of
+//! [`meeting`](super::meeting), which gives the argument. Tilted bodies, bodies that enclose a space, and moves with a
+//! margin are left to the check of a path of length zero.
 
 use super::answer::{ElementKey, Move};
 use super::meeting::slack;
@@ -18,20 +18,20 @@ use super::stationary::Stored;
 use super::touch::lie_apart;
 use super::vector::{Vec3, add, reach, sub};
 
-/// A question with a shortcut for a body at rest. Each answer is built directly as a return value: extracting it
-/// from another value costs a copy that waits for the first write.
+/// A question with a shortcut for a body at rest. Each answer is built directly as a return value: to extract it from
+/// another value would cost a copy that waits for the first write.
 pub(crate) trait Question {
     type Answer;
-    /// The answer when nothing is met.
+    /// Answer when nothing is met.
     const CLEAR: Self::Answer;
-    /// The answer when an element may be met; `apart` runs from the centre of its piece to that of the mover.
+    /// Returns the answer when an element may be met; `apart` runs from the centre of its piece to that of the mover.
     fn met(owner: ElementKey, element: &Prism, mover: &Prism, apart: Vec3) -> Self::Answer;
-    /// The general answer, for any body and any path.
+    /// Returns the general answer, for any body and any path.
     fn on_the_way(model: &Model, body: &Mover, way: &Move) -> Self::Answer;
 }
 
 impl Model {
-    /// Answers at once where the body stays in place and closed forms suffice; else checks the path.
+    /// Answers at once when the body stays in place and closed forms suffice; else checks the path.
     #[inline(always)]
     pub(crate) fn ask<Q: Question>(&self, body: &Mover, way: &Move) -> Q::Answer {
         let rest = Rest {
@@ -53,11 +53,11 @@ impl Model {
     }
 }
 
-/// Result for one stationary piece.
+/// What the shortcut finds about one stationary piece.
 enum Judged<A> {
     Clear,
     Met(A),
-    /// The piece is not upright: the shortcut cannot decide.
+    /// The piece is not upright, so the shortcut cannot decide.
     NotUpright,
 }
 
@@ -69,8 +69,8 @@ struct Rest<'a> {
 }
 
 impl Rest<'_> {
-    /// Answers for a body turned by the quaternion `[w, 0, 0, z]`, or unturned for `None`. Compiled separately for
-    /// both cases, so that unturned bodies carry no yaw.
+    /// Answers for a body turned by the quaternion `[w, 0, 0, z]`; `None`: unturned. The compiler makes a version for
+    /// each case, so an unturned body costs no rotation.
     #[inline(always)]
     fn among<Q: Question>(&self, turn: Option<(f64, f64)>) -> Q::Answer {
         let yaw = turn.map(|(w, z)| Yaw::of(w, z));
@@ -116,7 +116,7 @@ impl Rest<'_> {
         }
     }
 
-    /// Compares pieces of a group with a stationary piece whose box their boxes meet.
+    /// Compares those pieces of a group whose boxes meet the box of a stationary piece with this piece.
     #[inline(always)]
     fn judged<Q: Question>(
         &self,
@@ -150,8 +150,8 @@ impl Rest<'_> {
         Judged::Clear
     }
 
-    /// Returns the vector between the centres of two upright pieces when they may share a point; `None` is proof
-    /// that they do not. `mover` is already turned but not yet placed.
+    /// Returns the vector between the centres of two upright pieces when they may share a point; `None` is proof that
+    /// they do not. `mover` is already turned, but not yet at its place.
     #[inline(always)]
     fn sharing(&self, element: &Prism, mover: &Prism) -> Option<Vec3> {
         let origin = self.way.from.position;

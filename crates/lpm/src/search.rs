@@ -1,4 +1,4 @@
-//! Pairs without a closed form: searches each once, in the order in which their boxes meet.
+//! Pairs without a closed form: each is searched once, in the order in which the boxes of the pairs meet.
 
 use super::contact::{Findings, Found};
 use super::passage::{Passage, Pending, once_in_order};

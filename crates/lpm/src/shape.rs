@@ -1,10 +1,10 @@
-//! Bodies: block, cylinder, compound (block-cylinder elements) and mesh.
+//! Bodies: block, cylinder, compound (several bodies as one) and mesh.
 //!
 //! Bodies are closed sets: their surface belongs to them, so touching is contact.
 
 use super::pose::Pose;
 
-/// Largest coordinate or size that the error bounds cover, mm.
+/// Largest coordinate or size for which the error bounds hold, mm.
 pub const LARGEST_COORDINATE_MM: f64 = 1e6;
 
 /// Greatest nesting depth of compounds; [`Shape::check`] refuses deeper ones.
@@ -27,24 +27,24 @@ pub enum Shape {
     },
     /// Several bodies in one frame that move as one; parts may overlap.
     Compound(
-        /// Parts with their place in the frame of the compound.
+        /// Parts, each with its pose in the frame of the compound.
         Vec<(Pose, Shape)>,
     ),
-    /// A body of triangles.
+    /// A body made of triangles.
     Mesh(Mesh),
 }
 
-/// Triangles over shared vertices. A closed surface is solid; an open one consists of its triangles only. Slivers
-/// and triangles shrunk to a segment or a point are legal.
+/// Triangles over shared vertices. A closed surface is solid; an open one consists of its triangles only. Thin
+/// triangles, and triangles that are only a segment or a point, are legal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
-    /// Corners, mm.
+    /// Vertices, mm.
     pub vertices: Vec<[f64; 3]>,
-    /// Three indices into `vertices` each.
+    /// Triangles, each as three indices into `vertices`.
     pub triangles: Vec<[usize; 3]>,
 }
 
-/// Reason for refusing a body or a pose; the message contains the path inside the body.
+/// Reason why a body or a pose is refused; `path` names the member at fault inside it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Flaw {
     /// A size is not a finite number above 0 and at most 1e6 mm.
@@ -78,7 +78,7 @@ pub enum Flaw {
     Index {
         /// Path of the member of the mesh.
         path: String,
-        /// The index.
+        /// Index that the triangle names.
         found: usize,
         /// Number of vertices.
         vertices: usize,
@@ -88,22 +88,22 @@ pub enum Flaw {
     Structure {
         /// Path of the member of the shape.
         path: String,
-        /// Fault found.
+        /// What was found.
         found: &'static str,
-        /// Structure expected.
+        /// What was expected.
         expected: &'static str,
     },
 }
 
 impl Shape {
-    /// Accepts exactly the bodies that the error bounds cover.
+    /// Checks that the error bounds hold for this body.
     ///
     /// # Errors
-    /// Returns the first [`Flaw`] with its path inside the shape (`half[1]`, `parts[2].radius`).
+    /// Fails with the first [`Flaw`] and its path inside the shape (`half[1]`, `parts[2].radius`).
     #[inline]
     pub fn check(&self) -> Result<(), Flaw> {
         match self {
-            // The fast path builds no path strings.
+            // The usual case first, without building strings for paths.
             Shape::Block { half: [a, b, c] } if is_size(a) & is_size(b) & is_size(c) => Ok(()),
             Shape::Cylinder { radius, height } if is_size(radius) & is_size(height) => Ok(()),
             _ => check_shape(self, "", 0),
@@ -112,11 +112,11 @@ impl Shape {
 }
 
 impl Pose {
-    /// Accepts positions within 1e6 mm and quaternions with a squared length above 1e-200 and at most 1e200.
-    /// [`Pose::rescaled`] brings any other finite non-zero quaternion into this range.
+    /// Checks that the position is within 1e6 mm, and that the squared length of the quaternion is above 1e-200 and at
+    /// most 1e200. [`Pose::rescaled`] brings any other finite non-zero quaternion into this range.
     ///
     /// # Errors
-    /// Returns [`Flaw::Coordinate`] or [`Flaw::Rotation`].
+    /// Fails with [`Flaw::Coordinate`] or [`Flaw::Rotation`].
     #[inline]
     pub fn check(&self) -> Result<(), Flaw> {
         if self.is_sound() {
@@ -126,8 +126,8 @@ impl Pose {
         }
     }
 
-    /// Scales a quaternion that is too long or too short for [`Pose::check`] by a power of two, so that it
-    /// describes exactly the same rotation. Zero and non-finite quaternions stay unchanged.
+    /// Scales a quaternion that is too long or too short for [`Pose::check`] by a power of two, which leaves the
+    /// rotation exactly the same. Zero and non-finite quaternions stay unchanged.
     #[must_use]
     pub fn rescaled(self) -> Pose {
         let [w, x, y, z] = self.rotation;
@@ -135,8 +135,8 @@ impl Pose {
             return self;
         }
         let largest = self.rotation.map(f64::abs).into_iter().fold(0.0, f64::max);
-        // The IEEE 754 exponent has a bias of 1023: this factor brings the largest member to 1 to 4 (a subnormal
-        // one to at least 2^-51).
+        // The exponent in IEEE 754 has a bias of 1023: this factor brings the largest member to 1 to 4 (a subnormal one
+        // to at least 2^-51).
         let exponent = (2046 - (largest.to_bits() >> 52).min(2046)).max(1);
         let scale = f64::from_bits(exponent << 52);
         Pose {
@@ -145,14 +145,14 @@ impl Pose {
         }
     }
 
-    /// Whether [`Pose::check`] accepts the pose.
+    /// Returns true when [`Pose::check`] accepts the pose.
     #[inline]
     pub(crate) fn is_sound(&self) -> bool {
         let [w, x, y, z] = self.rotation;
         self.is_placed() & is_turn(w * w + x * x + y * y + z * z)
     }
 
-    /// Whether [`Pose::check`] accepts the position.
+    /// Returns true when [`Pose::check`] accepts the position.
     #[inline]
     pub(crate) fn is_placed(&self) -> bool {
         let [x, y, z] = self.position.map(f64::abs);
@@ -221,8 +221,8 @@ fn check_mesh(mesh: &Mesh, path: &str) -> Result<(), Flaw> {
     Ok(())
 }
 
-/// Whether a quaternion of this squared length is a usable rotation. Outside the range it has lost digits to under-
-/// or overflow; NaN and infinity are outside as well.
+/// Returns true when a quaternion of this squared length is a usable rotation. Outside the range it has lost digits to
+/// underflow or overflow; NaN and infinity lie outside as well.
 #[inline(always)]
 pub(crate) fn is_turn(squared: f64) -> bool {
     is_between(squared, [1e-200, 1e200])
@@ -233,9 +233,9 @@ fn is_size(found: &f64) -> bool {
     is_between(*found, [0.0, LARGEST_COORDINATE_MM])
 }
 
-/// Whether a number lies above the first bound, which is not negative, and at most at the second, by one
-/// comparison: the bit patterns of non-negative numbers sort like the numbers, and those of negative numbers and
-/// NaN come after all others.
+/// Returns true when a number lies above the first bound, which is not negative, and is at most the second. One
+/// comparison decides: the bit patterns of non-negative numbers sort like the numbers, and those of negative numbers
+/// and NaN come after all others.
 #[inline(always)]
 fn is_between(found: f64, [above, most]: [f64; 2]) -> bool {
     let first = above.to_bits() + 1;

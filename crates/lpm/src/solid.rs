@@ -1,14 +1,14 @@
 //! Closed meshes are solid: tests whether a point lies inside.
 //!
-//! Triangles reveal surfaces that meet. Only a body wholly inside a closed mesh (or around it) escapes them, and it
-//! stays there as long as no surfaces meet; so testing one point of each connected piece at the start of a move is
-//! enough.
+//! Triangles show where surfaces meet. Only a body wholly inside a closed mesh (or around it) meets none of them, and
+//! it stays inside as long as no surfaces meet; so it is enough to test one point of each connected part at the start
+//! of a move.
 //!
 //! The test counts how often a ray crosses each closed surface of the mesh ([`closed_surfaces`]). A point inside a
-//! surface is inside the mesh, except in holes: surfaces within another one and of opposite orientation. For a
-//! surface with walls inside it, crossings decide nothing; there a point is outside only if some ray crosses
-//! nothing. A ray that passes an edge or a corner within rounding is replaced by another direction; when every
-//! direction fails, the point counts as inside.
+//! surface is inside the mesh, except in a hole: a surface within another one and of opposite orientation. For a
+//! surface with walls inside it the number of crossings decides nothing; there a point counts as outside only if some
+//! ray crosses nothing. A ray that passes an edge or a corner within rounding is replaced by one in another direction;
+//! when every direction fails, the point counts as inside.
 
 use std::collections::BTreeSet;
 
@@ -16,7 +16,7 @@ use super::closed::{Corners, Surface, closed_surfaces};
 use super::pose::Frame;
 use super::vector::{Vec3, add, cross, dot, reach, sub};
 
-/// Directions of rays, chosen without any symmetry that a machine part might share.
+/// Directions of rays, chosen so that no machine part is likely to share a symmetry with them.
 const RAYS: [Vec3; 6] = [
     [0.842_713, 0.311_907, 0.438_851],
     [-0.237_119, 0.915_203, 0.325_741],
@@ -26,10 +26,10 @@ const RAYS: [Vec3; 6] = [
     [-0.078_511, 0.337_639, -0.938_001],
 ];
 
-/// Relative rounding of one signed volume (five products and sums of differences).
+/// Relative rounding of one signed volume, which takes five products and sums of differences.
 const VOLUME_NOISE: f64 = 32.0 * f64::EPSILON;
 
-/// The closed surfaces of one mesh, in the frame of its body or placed.
+/// Closed surfaces of one mesh, in the frame of its body or at their place.
 #[derive(Debug, Clone)]
 pub(crate) struct Solid {
     shells: Vec<Shell>,
@@ -41,7 +41,7 @@ struct Shell {
     triangles: Vec<[Vec3; 3]>,
     low: Vec3,
     high: Vec3,
-    /// See [`Surface::is_even`].
+    /// True as [`Surface::is_even`] says.
     is_even: bool,
     is_oriented: bool,
     is_hole: bool,
@@ -67,7 +67,7 @@ impl Solid {
             .flat_map(|part| closed_surfaces(vertices, part));
         let shells = surfaces.map(shell);
         let mut sized: Vec<(f64, Shell)> = shells.map(|shell| (shell.volume(), shell)).collect();
-        // Larger shells come first, so a shell comes after those that surround it.
+        // Sorted so that a shell comes after those that surround it: the larger first.
         sized.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
         for inner in 1..sized.len() {
             let (larger, rest) = sized.split_at_mut(inner);
@@ -100,7 +100,7 @@ impl Solid {
         }
     }
 
-    /// Whether the solid contains `point`; points nearer to the surface than rounding count as inside.
+    /// Returns true when `point` lies inside the solid, or so near to its surface that rounding leaves doubt.
     pub(crate) fn holds(&self, point: Vec3) -> bool {
         let (mut around, mut holes) = (0, 0);
         for shell in &self.shells {
@@ -134,7 +134,7 @@ impl Shell {
         }
     }
 
-    /// Six times the volume; negative when the triangles face inward.
+    /// Returns six times the volume; negative when the triangles face inward.
     fn volume(&self) -> f64 {
         let origin = self.low;
         let cone = |corners: &[Vec3; 3]| {
@@ -144,7 +144,7 @@ impl Shell {
         self.triangles.iter().map(cone).sum()
     }
 
-    /// Whether the other shell lies entirely inside.
+    /// Returns true when the other shell lies entirely inside this one.
     fn surrounds(&self, other: &Shell) -> bool {
         let mut corners = other.triangles.iter().flatten();
         corners.all(|corner| self.surely_holds(*corner))
@@ -162,7 +162,7 @@ impl Shell {
         (0..3).all(|axis| point[axis] >= self.low[axis] && point[axis] <= self.high[axis])
     }
 
-    /// Returns `None` when no ray decides.
+    /// Returns whether `point` is inside the shell; `None` when no ray decides.
     fn is_inside(&self, point: Vec3) -> Option<bool> {
         let mut crossings = RAYS.iter().filter_map(|ray| self.crossings(point, *ray));
         let first = crossings.next()?;
@@ -181,7 +181,7 @@ impl Shell {
     }
 }
 
-/// Whether the ray from the origin crosses the triangle; `None` within rounding of its edges.
+/// Returns whether the ray from the origin crosses the triangle; `None` when it passes an edge within rounding.
 fn crosses([a, b, c]: [Vec3; 3], ray: Vec3) -> Option<bool> {
     let size = reach(a).max(reach(b)).max(reach(c));
     let noise = VOLUME_NOISE * size * size;
@@ -198,7 +198,7 @@ fn crosses([a, b, c]: [Vec3; 3], ray: Vec3) -> Option<bool> {
     if sides.iter().any(|side| side.abs() <= noise) {
         return None;
     }
-    // With equal signs the line crosses the triangle; the ray does when the triangle's plane lies ahead.
+    // When all signs are equal, the line crosses the triangle; the ray does when the plane of the triangle lies ahead.
     let volume = dot(cross(a, b), c);
     let ahead = volume * (sides[0] + sides[1] + sides[2]);
     if volume.abs() <= noise * size {

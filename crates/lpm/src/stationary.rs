@@ -1,7 +1,7 @@
 //! The pieces of the stationary elements in one block of memory, reduced to what questions read.
 //!
-//! An upright piece is stored as its [`Prism`] alone, which describes it completely. Tilted pieces and triangles
-//! need a whole [`Piece`] each, stored separately.
+//! An upright piece is stored as its [`Prism`], which describes it completely. A tilted piece or a triangle needs a
+//! whole [`Piece`], which is stored separately.
 
 use super::answer::ElementKey;
 use super::piece::{Piece, each_piece};
@@ -10,7 +10,7 @@ use super::prism::Prism;
 use super::shape::Shape;
 use super::space::{Cover, Entering};
 
-/// Stands for no piece.
+/// Number that stands for no piece.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// A placed stationary piece.
@@ -23,16 +23,16 @@ pub(crate) struct Stationary {
     pub(crate) sibling: u32,
 }
 
-/// Form in which a piece is stored.
+/// How a piece is stored.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Stored {
-    /// Upright: closed forms apply.
+    /// Upright piece: closed forms apply.
     Upright(Prism),
-    /// Tilted or a triangle: index of the whole piece.
+    /// Tilted piece or triangle: index of the whole piece.
     Askew(u32),
 }
 
-/// All stationary pieces by the numbers that the space uses.
+/// All stationary pieces, by the numbers that the broad phase uses.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Pieces {
     pieces: Vec<Stationary>,
@@ -42,8 +42,8 @@ pub(crate) struct Pieces {
 }
 
 impl Pieces {
-    /// Adds the pieces of a checked shape, enters their boxes into `space` and returns the number of the first
-    /// piece in the chain of siblings.
+    /// Adds the pieces of a checked shape and enters their boxes into `space`. Returns the number of the first piece in
+    /// their chain of siblings.
     #[inline]
     pub(crate) fn insert(
         &mut self,
@@ -52,7 +52,7 @@ impl Pieces {
         pose: &Pose,
         owner: ElementKey,
     ) -> u32 {
-        // Nearly all elements are one upright block or cylinder and skip the general piece.
+        // Nearly every element is one upright block or cylinder and needs no general piece.
         if let Some(prism) = Prism::standing(shape, pose) {
             let cover = Cover::of(prism.bounds());
             return self.enter(space, Stored::Upright(prism), &cover, owner, NONE);
@@ -106,7 +106,7 @@ impl Pieces {
         &self.pieces[number as usize]
     }
 
-    /// Returns the whole piece, for searches.
+    /// Returns a piece in its whole form, for searches.
     pub(crate) fn piece(&self, number: u32) -> Piece {
         match &self.at(number).form {
             Stored::Upright(prism) => prism.piece(),
@@ -119,7 +119,7 @@ impl Pieces {
         self.pieces.reserve(count);
     }
 
-    /// Heap in use, bytes.
+    /// Returns the heap that the pieces use, bytes.
     pub(crate) fn heap_bytes(&self) -> usize {
         self.pieces.capacity() * size_of::<Stationary>()
             + self.askew.capacity() * size_of::<Piece>()

@@ -1,16 +1,16 @@
-//! Straight moves: first contact and least distance of two convex pieces, exact and continuous.
+//! Straight moves: first contact and least distance of two convex pieces, for the whole path at once.
 //!
-//! While one convex piece is translated past another, their distance is a convex function of the path, and each
-//! separating plane found on the way gives a tangent below it: along the move the separation by a fixed plane is
-//! linear. So Newton's method from the left never oversteps the first contact ([`first_within`]), and the crossing
-//! of a falling and a rising tangent is a proven lower bound of the least distance ([`least`]). There are no steps
-//! of fixed size: a ten metre move over a foil costs the same as a short one.
+//! While one convex piece is translated past another, their distance is a convex function of the path. Each separating
+//! plane that is found gives a tangent below this function, because the separation by a fixed plane is linear along the
+//! move. So Newton's method from the left never oversteps the first contact ([`first_within`]), and the crossing of a
+//! falling and a rising tangent is a proven lower bound of the least distance ([`least`]). No step has a fixed size: a
+//! move of ten metres over a foil costs the same as a short one.
 
 use super::distance::{Gap, RESOLUTION_MM, gap};
 use super::piece::{NOISE, Piece};
 use super::vector::{Vec3, dot, reach, scale};
 
-/// Most tangents per pair. Newton needs 3 to 8, a grazing pass (double root) up to 30.
+/// Most tangents per pair. Newton's method needs 3 to 8; a grazing pass, which has a double root, up to 30.
 const MOST_TANGENTS: usize = 128;
 
 /// First contact of a pair within the margin.
@@ -22,7 +22,7 @@ pub(crate) struct Hit {
 }
 
 impl Hit {
-    /// A contact at the start of the move, with one body inside the other.
+    /// Returns a contact at the start of the move, for one body that lies inside the other.
     pub(crate) fn inside(point: Vec3) -> Hit {
         let gap = Gap {
             lower: 0.0,
@@ -33,7 +33,7 @@ impl Hit {
     }
 }
 
-/// Constants of one translated pair along its move.
+/// What stays constant along the move of one translated pair.
 struct Slope {
     displacement: Vec3,
     /// Rounding bound of a shifted plane, mm.
@@ -48,14 +48,15 @@ impl Slope {
         }
     }
 
-    /// Distance lost to this plane along the whole move, mm.
+    /// Returns by how much the separation by this plane shrinks along the whole move, mm.
     fn closing(&self, gap: &Gap) -> f64 {
         -dot(gap.normal, self.displacement)
     }
 }
 
-/// Returns the first `t` up to `until` where the distance is within `margin` (mm); `None` is proof that there is
-/// none. Undecidable cases count as a hit. The caller has proven that there is none before `start`.
+/// Returns the first fraction `t` up to `until` at which the distance is within `margin` (mm); `None` is proof that
+/// there is none. A case that cannot be decided counts as a hit. The caller has proven that there is none before
+/// `start`.
 pub(crate) fn first_within(
     element: &Piece,
     mover: &Piece,
@@ -75,8 +76,8 @@ pub(crate) fn first_within(
             return Some(Hit { t, gap });
         }
         let closing = slope.closing(&gap) + slope.slack;
-        // When the separation grows, or shrinks too slowly to reach the margin in time, this plane keeps the mover
-        // clear to the end.
+        // When the separation grows, or shrinks too slowly to reach the margin in time, this plane proves the move
+        // clear to its end.
         let next = t + excess / closing * (1.0 - 4.0 * f64::EPSILON);
         if closing <= 0.0 || next > until {
             return None;
@@ -91,7 +92,7 @@ pub(crate) fn first_within(
     Some(Hit { t, gap })
 }
 
-/// Returns the least distance over the move as `(t, distance)`, or `None` when it is proven to be above `cutoff` (mm).
+/// Returns the least distance over the move as `(t, distance)`; `None` when it is proven to exceed `cutoff` (mm).
 pub(crate) fn least(
     element: &Piece,
     mover: &Piece,
@@ -138,7 +139,7 @@ pub(crate) fn least(
     within(best, cutoff)
 }
 
-/// Separation by one plane along the move: `value` at `t`, falling by `fall` per whole move.
+/// Separation by one plane along the move: it is `value` at `t` and falls by `fall` over the whole move.
 #[derive(Debug, Clone, Copy)]
 struct Tangent {
     t: f64,
@@ -161,7 +162,7 @@ impl Tangent {
         (self.t, self.value.max(0.0))
     }
 
-    /// Fraction and height at which the falling tangent crosses the rising one.
+    /// Returns fraction and height at which the falling tangent crosses the rising one.
     fn crossing(&self, right: &Tangent) -> (f64, f64) {
         let width = right.t - self.t;
         let drop = self.fall - right.fall;

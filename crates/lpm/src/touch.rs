@@ -1,17 +1,17 @@
 //! Place and normal of the contact of two upright pieces, in closed form.
 //!
 //! At the first contact the mover has just reached one of the figures of [`meeting`](super::meeting): a slab of the
-//! height, a side or a round corner. The contact is with the figure in which the mover is least deep; for bodies
-//! that overlap from the start this gives the shortest separation.
+//! height, a side, or a round corner. The contact is with the figure that the mover has entered least deeply; for
+//! bodies that overlap from the start, this gives the shortest way to separate them.
 
 use super::distance::Gap;
 use super::prism::Prism;
 use super::vector::{Vec3, add};
 
-/// The side or corner of the footprints in which the mover is least deep.
+/// Side or corner of the footprints that the mover has entered least deeply.
 #[derive(Debug, Clone, Copy)]
 struct Side {
-    /// Signed distance beyond the side, mm; negative for a depth.
+    /// Distance of the mover beyond the side, mm; negative when it has entered.
     beyond: f64,
     /// Unit vector from the element to the mover.
     normal: [f64; 2],
@@ -19,8 +19,8 @@ struct Side {
     at: [f64; 2],
 }
 
-/// Returns true only as proof that the footprints of two pieces, whose centres lie `apart`, are farther from each
-/// other than `by` (mm, above 0, rounding included). Compares squares and combines conditions without branches: a
+/// Returns true only as proof that the footprints of two pieces, whose centres lie `apart`, are farther from each other
+/// than `by` (mm, above 0, rounding included). Compares squares and combines conditions without branches, because a
 /// mispredicted branch costs more.
 #[inline(always)]
 pub(crate) fn lie_apart(element: &Prism, mover: &Prism, apart: Vec3, by: f64) -> bool {
@@ -39,15 +39,15 @@ pub(crate) fn lie_apart(element: &Prism, mover: &Prism, apart: Vec3, by: f64) ->
     over(0) * over(0) + over(1) * over(1) > within * within
 }
 
-/// Whether both pieces are rectangles without a common axis.
+/// Returns true when both pieces are rectangles without a common axis.
 #[inline(always)]
 fn are_askew(element: &Prism, mover: &Prism) -> bool {
     let differ = (element.axis[0] != mover.axis[0]) | (element.axis[1] != mover.axis[1]);
     (element.radius + mover.radius == 0.0) & differ
 }
 
-/// Returns the contact of two pieces whose centres lie `apart`, from the element to the mover. Selects the side by
-/// arithmetic because branches here are unpredictable.
+/// Returns the contact of two pieces; `apart` runs from the centre of the element to that of the mover. Selects the
+/// side by arithmetic, because branches here are unpredictable.
 #[inline(always)]
 pub(crate) fn touch(element: &Prism, mover: &Prism, apart: Vec3) -> Gap {
     let side = side(element, mover, apart);
@@ -80,7 +80,7 @@ fn side(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
     rounded(element, mover, framed, apart)
 }
 
-/// Rectangles with common axes, discs, or one of each; `framed` supplies the axes.
+/// Returns the side for rectangles with common axes, discs, or one of each; `framed` is the piece whose axes are used.
 #[inline(always)]
 fn rounded(element: &Prism, mover: &Prism, framed: &Prism, apart: Vec3) -> Side {
     let p = into(framed, [apart[0], apart[1]]);
@@ -110,7 +110,7 @@ fn rounded(element: &Prism, mover: &Prism, framed: &Prism, apart: Vec3) -> Side 
     }
 }
 
-/// Two rectangles turned against each other: any of four sides may be the one touched.
+/// Returns the side for two rectangles turned against each other; each of them has two sides that may be touched.
 #[inline(always)]
 fn askew(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
     let seen = Askew::of(element, mover, apart);
@@ -128,15 +128,15 @@ fn askew(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
     }
 }
 
-/// Two rectangles turned against each other, in the axes of both.
+/// Two rectangles turned against each other, described along the axes of both.
 struct Askew {
-    /// Vector from the element to the mover, in the axes of the element and in those of the mover, mm.
+    /// Vector from the element to the mover, along the axes of the element and along those of the mover, mm.
     in_element: [f64; 2],
     in_mover: [f64; 2],
-    /// First axis of the mover in the axes of the element.
+    /// First axis of the mover, along the axes of the element.
     cos: f64,
     sin: f64,
-    /// How far the mover lies beyond the sides of the element, and the element beyond those of the mover, mm.
+    /// How far the mover lies beyond the sides of the element, and the element beyond the sides of the mover, mm.
     over_element: [f64; 2],
     over_mover: [f64; 2],
 }
@@ -165,12 +165,12 @@ impl Askew {
         }
     }
 
-    /// A corner of the mover touches a side of the element. Returns depth, normal and point in the axes of the element.
+    /// Returns depth, normal and point, along the axes of the element, when a corner of the mover touches its side.
     #[inline(always)]
     fn on_a_side(&self, element: &Prism, mover: &Prism) -> (f64, [f64; 2], [f64; 2]) {
         let [a, b, _] = element.half;
         let [first, second] = self.over_element;
-        // Offset of the touching corner from the centre of the mover along the side.
+        // Offset of the touching corner from the centre of the mover, along the side.
         let corner = |sign: f64, towards: [f64; 2], along: [f64; 2]| {
             let of = |axis: usize| along[axis] * mover.half[axis].copysign(sign * towards[axis]);
             -(of(0) + of(1))
@@ -188,7 +188,7 @@ impl Askew {
         }
     }
 
-    /// A corner of the element touches a side of the mover. Returns the same values.
+    /// Returns the same values when a corner of the element touches a side of the mover.
     #[inline(always)]
     fn on_a_corner(&self, element: &Prism) -> (f64, [f64; 2], [f64; 2]) {
         let [first, second] = self.over_mover;
@@ -204,8 +204,8 @@ impl Askew {
     }
 }
 
-/// Returns the middle of the overlap of two intervals about 0 and about `apart`, or, without overlap, the end of
-/// the first nearest to the second.
+/// Returns the middle of the overlap of two intervals, about 0 and about `apart`; without an overlap, the end of the
+/// first interval that is nearer to the second.
 #[inline(always)]
 fn shared(half: f64, other: f64, apart: f64) -> f64 {
     let low = larger(-half, apart - other);
@@ -213,7 +213,7 @@ fn shared(half: f64, other: f64, apart: f64) -> f64 {
     within((low + high) / 2.0, half)
 }
 
-/// Clamps to at most `half` from 0.
+/// Limits `x` to the range from `-half` to `half`.
 #[inline(always)]
 fn within(x: f64, half: f64) -> f64 {
     smaller(larger(x, -half), half)
@@ -229,10 +229,10 @@ fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// Converts a vector into the axes of a footprint.
+/// Converts a vector from the common frame into the axes of a footprint.
 #[inline(always)]
 fn into(framed: &Prism, v: [f64; 2]) -> [f64; 2] {
-    // Most footprints are aligned, so this branch predicts well.
+    // Most footprints are aligned with x and y, so this branch predicts well.
     if framed.is_straight() {
         return v;
     }

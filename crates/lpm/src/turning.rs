@@ -1,14 +1,13 @@
-//! Turning moves: conservative advancement with a second-order bound.
+//! Turning moves: advances by steps that a second-order bound proves clear (conservative advancement).
 //!
-//! Let a mover turn by `theta` about the unit axis `u` during the whole move. Relative to the origin of the mover,
-//! its point `y` obeys after a further fraction `h`
-//! `n·y(t+h) >= n·y + h theta (n x u)·y - h^2 theta^2 rho / 2`, where `rho` is its distance from the axis.
-//! The least value of the first two terms over the whole piece is again a support value, in the direction
-//! `n + h theta (n x u)`. So one plane clears a whole stretch of the move, and a grazing pass takes steps of the square
-//! root of its gap instead of the gap itself.
+//! Let a mover turn by `theta` about the unit axis `u` during the whole move. Relative to the origin of the mover, a
+//! point `y` of it obeys after a further fraction `h` `n·y(t+h) >= n·y + h theta (n x u)·y - h^2 theta^2 rho / 2`,
+//! where `rho` is the distance of `y` from the axis. The least value of the first two terms over the whole piece is
+//! again a value of the support function, in the direction `n + h theta (n x u)`. So one plane clears a whole stretch
+//! of the move, and on a grazing pass a step is as long as the square root of the gap, not as the gap itself.
 //!
-//! A distance within [`band_mm`] of the margin, which lies between 1e-7 and 5e-4 mm, counts as contact; so does
-//! running out of steps.
+//! A distance within [`band_mm`] of the margin counts as contact; this band is between 1e-7 and 5e-4 mm wide. Running
+//! out of steps counts as contact too.
 
 use super::distance::{Gap, gap, noise};
 use super::path::Path;
@@ -17,42 +16,43 @@ use super::pose::Turn;
 use super::straight::Hit;
 use super::vector::{Vec3, along, cross, dot, length, negate, scale, sub};
 
-/// Most planes per pair. With [`band_mm`] 20,000 are enough for any turn.
+/// Most planes per pair. Because of [`band_mm`], 20,000 are enough for any turn.
 const MOST_PLANES: usize = 40_000;
-/// Rounds of chord and bisection per stretch; after each, the lower end is still proven.
+/// Rounds of chord and bisection per stretch; after each round the lower end is still proven.
 const STRETCH_ROUNDS: usize = 8;
-/// Resolution of the least distance of turning moves, mm.
+/// Resolution to which the least distance of a turning move is found, mm.
 const LEAST_RESOLUTION_MM: f64 = 2e-4;
 
-/// Spacing of the first samples for a least distance, as a fraction of the move.
+/// Spacing of the first samples in the search for a least distance, as a fraction of the move.
 const SAMPLE: f64 = 1.0 / 32.0;
-/// Rounds of ternary search; each takes a third off a valley of two samples, 1e-8 of the move in the end.
+/// Rounds of ternary search in a valley two samples wide; each takes a third off, which leaves 1e-8 of the move.
 const VALLEY_ROUNDS: usize = 40;
 
-/// Distance beyond the margin that counts as contact, mm: chosen so that the steps of a grazing pass are never
-/// shorter than a ten-thousandth of the move.
+/// Returns the distance beyond the margin that counts as contact, mm; with it, no step of a grazing pass is shorter
+/// than a ten-thousandth of the move.
 fn band_mm(turn: &Turn, rho: f64) -> f64 {
     (0.5e-8 * turn.angle * turn.angle * rho).clamp(1e-7, 5e-4)
 }
 
-/// A pair of pieces of which the mover turns.
+/// A piece of an element and a piece of a turning mover.
 pub(crate) struct Turning<'a> {
     pub(crate) element: &'a Piece,
-    /// Piece in the frame of the mover.
+    /// Piece of the mover, in the frame of the mover.
     pub(crate) local: &'a Piece,
     pub(crate) path: &'a Path,
     pub(crate) turn: &'a Turn,
 }
 
 impl Turning<'_> {
-    /// Largest distance of a point of the piece from the axis through the origin, mm.
+    /// Returns the largest distance of a point of the piece from the axis through the origin, mm.
     fn rho(&self) -> f64 {
         let placed = self.path.piece_at(self.local, 0.0);
         let arm = sub(placed.centre, self.path.origin(0.0));
         (length(cross(self.turn.axis, arm)) + self.local.radius()) * (1.0 + 16.0 * f64::EPSILON)
     }
 
-    /// Returns the first `t` up to `until` within `margin` (mm) plus the band; `None` is proof that there is none.
+    /// Returns the first fraction `t` up to `until` at which the distance is within `margin` (mm) plus the band; `None`
+    /// is proof that there is none.
     pub(crate) fn first_within(&self, margin: f64, until: f64) -> Option<Hit> {
         let rho = self.rho();
         let band = band_mm(self.turn, rho);
@@ -77,12 +77,12 @@ impl Turning<'_> {
         Some(Hit { t, gap })
     }
 
-    /// Returns the least distance over the move as `(t, distance)`, to within [`LEAST_RESOLUTION_MM`] or the band,
-    /// whichever is larger; `None` above `cutoff`.
+    /// Returns the least distance over the move as `(t, distance)`; `None` when it exceeds `cutoff`. The error is at
+    /// most [`LEAST_RESOLUTION_MM`] or the band, whichever is larger.
     ///
-    /// Starts from a good guess and proves in one sweep that no distance is lower than the guess by the resolution.
-    /// A distance that is lower by more than half the resolution becomes the new guess; so every plane has the
-    /// other half in hand to advance.
+    /// The search starts from a good guess and proves, in one sweep over the move, that no distance is lower than the
+    /// guess by the resolution. A distance lower than the guess by more than half the resolution becomes the new guess,
+    /// so every plane has the other half left for its step.
     pub(crate) fn least(&self, cutoff: f64) -> Option<(f64, f64)> {
         let rho = self.rho();
         let resolution = LEAST_RESOLUTION_MM.max(band_mm(self.turn, rho));
@@ -111,7 +111,7 @@ impl Turning<'_> {
             t += stretch;
             hint = Some(gap.normal);
         }
-        // Out of planes: the true least distance may be anywhere below the values seen.
+        // No planes are left: the true least distance may be anywhere below the values seen.
         Some((t, 0.0))
     }
 
@@ -119,7 +119,7 @@ impl Turning<'_> {
         (t, self.gap_at(t, None).1.lower.max(0.0))
     }
 
-    /// Returns the lowest of evenly spaced samples, descended into its valley.
+    /// Returns the lowest of evenly spaced samples, after a descent into its valley.
     fn guess(&self) -> (f64, f64) {
         let steps = (1.0 / SAMPLE) as usize;
         let samples = (0..=steps).map(|step| self.lower_at(step as f64 * SAMPLE));
@@ -129,7 +129,7 @@ impl Turning<'_> {
         self.descended(best.0 - SAMPLE, best.0 + SAMPLE, best)
     }
 
-    /// Uses ternary search, not derivatives: the valley may have a sharp bottom.
+    /// Descends into a valley by ternary search; without derivatives, because the valley may have a sharp bottom.
     fn descended(&self, from: f64, to: f64, start: (f64, f64)) -> (f64, f64) {
         let (mut from, mut to, mut best) = (from.max(0.0), to.min(1.0), start);
         for _ in 0..VALLEY_ROUNDS {
@@ -155,7 +155,7 @@ impl Turning<'_> {
         (mover, gap)
     }
 
-    /// How far the move can continue while the plane of `gap` proves more than `margin`, as a fraction.
+    /// Returns the fraction by which the move can continue while the plane of `gap` proves more than `margin`.
     fn stretch(&self, mover: &Piece, gap: &Gap, rho: f64, t: f64, margin: f64) -> f64 {
         let plane = Plane::new(self, mover, gap, rho, t);
         let mut low = (0.0, plane.proves(0.0) - margin);
@@ -179,14 +179,14 @@ impl Turning<'_> {
     }
 }
 
-/// One plane and the motion of the pair relative to it.
+/// One plane, and how the pair moves relative to it.
 struct Plane<'a> {
     mover: &'a Piece,
     normal: Vec3,
-    /// Separation at `h = 0` of the plane from the mover's origin, rounding bound subtracted, mm.
+    /// Separation of the plane from the origin of the mover at `h = 0`, minus the rounding bound, mm.
     base: f64,
     arm: Vec3,
-    /// Change per unit `h` of the origin and of the support direction.
+    /// Change of this separation per unit of `h`, mm; `swing` is the change of the direction of support.
     rate: f64,
     swing: Vec3,
     bend: f64,
@@ -209,7 +209,7 @@ impl<'a> Plane<'a> {
         }
     }
 
-    /// Proven separation after a further fraction `h` of the move, mm.
+    /// Returns the proven separation after a further fraction `h` of the move, mm.
     fn proves(&self, h: f64) -> f64 {
         let support = along(self.normal, h, self.swing);
         let nearest = dot(support, self.arm) - self.mover.extent(negate(support));

@@ -1,4 +1,4 @@
-//! Three-dimensional vector arithmetic on plain arrays, in millimetres or as pure directions.
+//! Arithmetic of three-dimensional vectors on plain arrays: lengths in millimetres, or directions without unit.
 
 /// A point, a displacement or a direction.
 pub(crate) type Vec3 = [f64; 3];
@@ -18,7 +18,7 @@ pub(crate) fn scale(a: Vec3, factor: f64) -> Vec3 {
     [a[0] * factor, a[1] * factor, a[2] * factor]
 }
 
-/// `a + factor * b`.
+/// Returns `a + factor * b`.
 #[inline]
 pub(crate) fn along(a: Vec3, factor: f64, b: Vec3) -> Vec3 {
     [
@@ -47,15 +47,15 @@ pub(crate) fn length(a: Vec3) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Sum of the magnitudes of the members: a cheap upper bound of the length.
+/// Returns the sum of the magnitudes of the members: a cheap upper bound of the length.
 #[inline]
 pub(crate) fn reach(a: Vec3) -> f64 {
     a[0].abs() + a[1].abs() + a[2].abs()
 }
 
-/// Unit vector along `a`; `None` when `a` is too short to have a direction, or not finite.
+/// Returns the unit vector along `a`; `None` when `a` is too short to have a direction, or not finite.
 ///
-/// Scales by the largest member first, so that vectors as short as 1e-150 mm keep all the digits of their direction.
+/// The vector is scaled by its largest member first, so vectors as short as 1e-150 mm keep all digits of direction.
 #[inline]
 pub(crate) fn unit(a: Vec3) -> Option<Vec3> {
     let largest = a[0].abs().max(a[1].abs()).max(a[2].abs());

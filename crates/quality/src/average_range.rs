@@ -1,17 +1,17 @@
 //! Gauge repeatability and reproducibility by averages and ranges (AIAG MSA): the method for hand calculation,
 //! which many customers still require beside the analysis of variance.
 //!
-//! `EV = R K1`, `AV = sqrt((Xdiff K2)^2 - EV^2 / (parts trials))`, `PV = Rp K3`, with R the mean range of the
-//! trials, Xdiff the range of the operators' means, Rp the range of the parts' means; K = 1 / d2*. The method has
-//! no interaction term: interaction adds to the reproducibility.
+//! `EV = R K1`, `AV = sqrt((Xdiff K2)^2 - EV^2 / (parts trials))`, `PV = Rp K3`. R is the mean range of the trials,
+//! Xdiff the range of the operators' means, Rp the range of the parts' means; K1, K2 and K3 are 1 / d2*. The method has
+//! no term for interaction, so interaction adds to the reproducibility.
 
 use super::crossing;
 use super::gauge_rr::{GaugeRr, GaugeRrError, Reading, deviations};
 use super::squares::{Means, mean};
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// K1 and K2 by the number of trials or operators, from 2 (AIAG MSA, 4th edition; Duncan's d2*). K2 for two
-/// operators is the root of 1/2.
+/// K1 by the number of trials, and K2 by the number of operators, from 2 (AIAG MSA, 4th edition; Duncan's d2*). K2 for
+/// two operators is the root of 1/2.
 const K_OF_RANGE: [f64; 2] = [0.8862, 0.5908];
 const K_OF_OPERATORS: [f64; 2] = [FRAC_1_SQRT_2, 0.5231];
 /// K3 by the number of parts, from 2.
@@ -30,7 +30,7 @@ const K_OF_PARTS: [f64; 9] = [
 /// Evaluates a complete crossed study of 2 or 3 trials, up to 3 operators and 2 to 10 parts.
 ///
 /// # Errors
-/// Returns the errors of [`super::gauge_rr::anova`], and an error for a study larger than the published factors.
+/// Fails as [`super::gauge_rr::anova`] does, and when the study is larger than the tables of published factors.
 pub fn average_and_range(readings: &[Reading]) -> Result<GaugeRr, GaugeRrError> {
     let cells = crossing::cells(readings)?;
     let (parts, operators) = (cells.len(), cells[0].len());

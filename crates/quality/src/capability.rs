@@ -1,27 +1,27 @@
 //! Capability of a process to keep its limits: Cp, Cpk, Pp, Ppk, each with its 95 % interval.
 //!
-//! - Cp and Cpk use the short-term deviation: mean moving range / d2, with d2 = 1.128 for pairs. Pp and Ppk use the
-//!   deviation of all values.
+//! - Cp and Cpk use the short-term standard deviation: mean moving range / d2, with d2 = 1.128 for pairs. Pp and Ppk
+//!   use the standard deviation of all values.
 //! - Interval of Cp and Pp: `c sqrt(chi2(q; n-1) / (n-1))` for q = 0.025 and 0.975, exact for normal values.
 //! - Interval of Cpk and Ppk: Bissell (1990), `c -+ z sqrt(1 / (9 n) + c^2 / (2 (n - 1)))`.
-//! - One limit gives Cpk and Ppk only; Cp and Pp need two.
-//! - Skewed values (contact resistance, bounce) use the three percentiles of ISO 22514-2 instead:
-//!   `(high - x50) / (x99.865 - x50)` and `(x50 - low) / (x50 - x0.135)`, see [`by_percentiles`].
+//! - With one limit there are only Cpk and Ppk; Cp and Pp need both limits.
+//! - For skewed values (contact resistance, bounce), [`by_percentiles`] uses the three percentiles of ISO 22514-2
+//!   instead: `(high - x50) / (x99.865 - x50)` and `(x50 - low) / (x50 - x0.135)`.
 
 use super::ordered::Ordered;
 use serde::Serialize;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-/// d2 for moving ranges of two neighbours (ASTM manual of control charts, table of factors).
+/// d2 of moving ranges between two neighbours (ASTM manual of control charts, table of factors).
 pub const D2_PAIR: f64 = 1.128;
 
 /// Quantile of the normal distribution for a two-sided 95 % interval.
 const Z_95: f64 = 1.959_963_984_540_054;
 
-/// Probability of a normal value more than three deviations below the mean.
+/// Probability that a normal value lies more than three standard deviations below the mean.
 const TAIL: f64 = 0.001_349_898_031_630_095;
 
-/// Least number of values whose percentile at [`TAIL`] needs no extrapolation: 1 / 0.00135.
+/// Least number of values for which the percentile at [`TAIL`] needs no extrapolation: 1 / 0.00135.
 const ENOUGH_FOR_TAILS: usize = 741;
 
 /// Limits of a value, in its unit; either may be missing.
@@ -33,7 +33,7 @@ pub struct Limits {
     pub high: Option<f64>,
 }
 
-/// Two-sided 95 % interval of an index.
+/// Two-sided 95 % interval of a capability index.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Interval {
     /// Lower end.
@@ -42,30 +42,30 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// An index with its interval.
+/// A capability index with its interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Index {
     /// Estimate.
     pub value: f64,
-    /// 95 % interval; `None` below two values.
+    /// 95 % interval; `None` with fewer than two values.
     pub interval: Option<Interval>,
 }
 
-/// Capability indices; `None` for an index that lacks a limit, values or spread.
+/// Capability indices; an index is `None` when it lacks a limit, values or spread.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Capability {
-    /// Short-term index of the width; needs both limits.
+    /// Width between the limits against the short-term deviation; needs both limits.
     pub cp: Option<Index>,
-    /// Short-term index towards the nearer limit.
+    /// Distance from the mean to the nearer limit against the short-term deviation.
     pub cpk: Option<Index>,
-    /// Index of the width from the deviation of all values; needs both limits.
+    /// Width between the limits against the deviation of all values; needs both limits.
     pub pp: Option<Index>,
-    /// Index towards the nearer limit from the deviation of all values.
+    /// Distance from the mean to the nearer limit against the deviation of all values.
     pub ppk: Option<Index>,
 }
 
 impl Capability {
-    /// Computes the indices. `within` is the short-term deviation, `overall` the deviation of all `n` values.
+    /// Computes the indices. `within` is the short-term standard deviation, `overall` that of all `n` values.
     pub fn of(
         limits: Limits,
         n: u64,
@@ -92,8 +92,8 @@ impl Capability {
     }
 }
 
-/// Returns the index towards the nearer limit for values of any distribution, from their percentiles. Returns
-/// `None` without a limit or below 741 values, where the outer percentiles would be extrapolated.
+/// Returns the index towards the nearer limit from percentiles, for values of any distribution. Returns `None` without
+/// a limit, and with fewer than 741 values, whose outer percentiles would have to be extrapolated.
 pub fn by_percentiles(limits: Limits, values: &Ordered) -> Option<f64> {
     if values.len() < ENOUGH_FOR_TAILS {
         return None;
@@ -186,7 +186,7 @@ mod tests {
 
     #[test]
     fn the_interval_of_cp_matches_published_quantiles() {
-        // chi-square with 49 degrees of freedom: 31.5549 and 70.2224.
+        // chi-square with 49 degrees of freedom has these quantiles: 31.5549 and 70.2224.
         let found = of(Some(4.0), Some(13.0)).cp.unwrap().interval.unwrap();
         assert!((found.low - 1.5 * (31.5549_f64 / 49.0).sqrt()).abs() < 1e-5);
         assert!((found.high - 1.5 * (70.2224_f64 / 49.0).sqrt()).abs() < 1e-5);
@@ -206,7 +206,7 @@ mod tests {
 
     #[test]
     fn a_skewed_process_is_judged_by_its_own_percentiles() {
-        // Exponential values by inversion, with exactly known percentiles; the median is ln 2.
+        // Exponential values, drawn by inversion, have percentiles that are known exactly; the median is ln 2.
         let n = 100_000;
         let at = |k: u32| -(1.0 - (f64::from(k) + 0.5) / f64::from(n)).ln();
         let values = Ordered::of(&(0..n).map(at).collect::<Vec<f64>>());

@@ -1,15 +1,15 @@
-//! Control charts: individuals and moving range, means and ranges of subgroups, fractions of defectives.
+//! Control charts: of individuals and moving ranges, of means and ranges of subgroups, of the share of defectives.
 //!
-//! Limits lie three deviations from the centre. The deviation always comes from short-term variation: the mean
-//! moving range of neighbours, the mean range of subgroups, or the binomial distribution. A negative limit of a
-//! range or fraction becomes zero. [`super::rules`] has the run rules.
+//! Limits lie three standard deviations from the centre. The deviation always comes from short-term variation: from the
+//! mean moving range of neighbours, the mean range of subgroups, or the binomial distribution. The lower limit of a
+//! range or a share is never below zero. The run rules are in [`super::rules`].
 
 use super::capability::D2_PAIR;
 use super::rules::{self, Rules, Signal};
 use super::spread::{self, Spread};
 use serde::Serialize;
 
-/// Factors of a subgroup of n: (n, A2, D3, D4), from the ASTM manual of control charts.
+/// Factors for subgroups of n values: (n, A2, D3, D4), from the ASTM manual of control charts.
 const FACTORS: [(usize, f64, f64, f64); 9] = [
     (2, 1.880, 0.0, 3.267),
     (3, 1.023, 0.0, 2.575),
@@ -22,14 +22,14 @@ const FACTORS: [(usize, f64, f64, f64); 9] = [
     (10, 0.308, 0.223, 1.777),
 ];
 
-/// One control chart. Every point carries its own limits, because those of a p chart differ from point to point.
+/// One control chart. Every point has limits of its own, because on a chart of shares they differ from point to point.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Chart {
     /// Kind of chart: `individuals`, `moving range`, `means`, `ranges`, `share`.
     pub kind: &'static str,
     /// Points in order of time.
     pub points: Vec<Point>,
-    /// Centre line.
+    /// Value of the centre line.
     pub centre: f64,
     /// Violations of the run rules.
     pub signals: Vec<Signal>,
@@ -46,7 +46,7 @@ pub struct Point {
     pub high: f64,
 }
 
-/// Returns charts of individuals and moving ranges; `None` below two values.
+/// Returns a chart of individuals and one of moving ranges; `None` with fewer than two values.
 pub fn individuals(values: &[f64], rules: Rules) -> Option<[Chart; 2]> {
     let centre = Spread::of(values).mean()?;
     let range = spread::mean_moving_range(values)?;
@@ -67,8 +67,8 @@ pub fn individuals(values: &[f64], rules: Rules) -> Option<[Chart; 2]> {
     ])
 }
 
-/// Returns charts of means and ranges of subgroups of `size` consecutive values, 2 to 10; an incomplete last
-/// subgroup is left out. Returns `None` for another size or below two subgroups.
+/// Returns a chart of means and one of ranges, for subgroups of `size` consecutive values, 2 to 10; leaves out an
+/// incomplete last subgroup. Returns `None` for another size, and with fewer than two subgroups.
 pub fn subgroups(values: &[f64], size: usize, rules: Rules) -> Option<[Chart; 2]> {
     let &(_, a2, d3, d4) = FACTORS.iter().find(|(n, ..)| *n == size)?;
     let groups: Vec<Spread> = values.chunks_exact(size).map(Spread::of).collect();
@@ -89,8 +89,8 @@ pub fn subgroups(values: &[f64], size: usize, rules: Rules) -> Option<[Chart; 2]
     ])
 }
 
-/// Returns the chart of the fraction of defectives from `(number tested, number defective)` per lot or hour,
-/// without groups of no tested part. Returns `None` when no group is left.
+/// Returns the chart of the share of defectives. Each group is `(number tested, number defective)` of a lot or an hour;
+/// groups without a tested part are left out. Returns `None` when no group is left.
 pub fn shares(groups: &[(u64, u64)]) -> Option<Chart> {
     let all: u64 = groups.iter().map(|(n, _)| n).sum();
     if all == 0 {

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Readings indexed by part, operator, trial.
 pub(super) type Cells = Vec<Vec<Vec<f64>>>;
 
-/// Arranges the readings. Fails when the study is too small, incomplete, or has a reading twice.
+/// Arranges the readings. Fails when the study is too small or incomplete, or has a reading twice.
 pub(super) fn cells(readings: &[Reading]) -> Result<Cells, GaugeRrError> {
     let names = |of: fn(&Reading) -> &str| readings.iter().map(of).collect::<BTreeSet<&str>>();
     let (parts, operators) = (names(|it| &it.part), names(|it| &it.operator));
@@ -44,7 +44,7 @@ pub(super) fn cells(readings: &[Reading]) -> Result<Cells, GaugeRrError> {
         .collect()
 }
 
-/// Bound for readings: squares of smaller readings, and sums of them, stay finite in f64.
+/// Largest reading allowed: the squares of such readings, and sums of them, stay finite in f64.
 const LARGEST: f64 = 1e150;
 
 fn found(readings: &[Reading]) -> Result<BTreeMap<(&str, &str, &str), f64>, GaugeRrError> {

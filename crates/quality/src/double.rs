@@ -1,7 +1,7 @@
 //! Double-double arithmetic: sums and products in twice the digits of `f64`, as an unevaluated pair `high + low`.
 //!
-//! Limited to the needs of the statistics: error-free addition and multiplication of two `f64`, and the operations
-//! on pairs built from them. About 31 decimal digits.
+//! Only what the statistics need: addition and multiplication of two `f64` without error, and the operations on pairs
+//! that are built from them. The precision is about 31 decimal digits.
 
 /// The number `high + low`, with `low` at most half a unit in the last place of `high`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -10,7 +10,7 @@ pub(super) struct Double {
     low: f64,
 }
 
-/// Returns the sum and its exact rounding error (two-sum, for any magnitudes).
+/// Returns the sum together with its exact rounding error (the two-sum algorithm, for any magnitudes).
 fn two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
     let b_seen = high - a;
@@ -20,7 +20,7 @@ fn two_sum(a: f64, b: f64) -> Double {
     }
 }
 
-/// Like [`two_sum`], for `|a| >= |b|` only.
+/// Returns the same as [`two_sum`] with fewer operations; only for `|a| >= |b|`.
 fn quick(a: f64, b: f64) -> Double {
     let high = a + b;
     Double {

@@ -1,24 +1,24 @@
-//! Overall equipment effectiveness (OEE), with the losses of time.
+//! Overall equipment effectiveness (OEE), and how much time each kind of loss takes.
 //!
-//! OEE = availability x performance x quality, where each factor is the share of one of these times in the one before:
+//! OEE = availability x performance x quality. Of the four times below, each factor divides one by the time before it:
 //!
 //! 1. planned: from the start of a run to its end;
-//! 2. running: planned less the time in alarm;
-//! 3. net: the time for the tested parts at the ideal cycle;
-//! 4. valuable: the time for the good parts at the ideal cycle.
+//! 2. running: planned time without the time in alarm;
+//! 3. net: the time that the tested parts take at the ideal cycle;
+//! 4. valuable: the time that the good parts take at the ideal cycle.
 //!
-//! So every second is either valuable or belongs to exactly one of the three losses.
+//! So every second is either valuable or belongs to exactly one of three losses.
 
 use serde::Serialize;
 
-/// Times and part counts of a period of production.
+/// Times and numbers of parts in a period of production.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Observed {
     /// Time planned for production, s.
     pub planned_s: f64,
     /// Part of the planned time in which an alarm stopped the line, s.
     pub stopped_s: f64,
-    /// Shortest cycle that the line can achieve, s.
+    /// Shortest time per part that the line can achieve, s.
     pub ideal_cycle_s: f64,
     /// Number of parts tested.
     pub parts: u64,
@@ -35,17 +35,17 @@ pub struct Effectiveness {
     pub performance: f64,
     /// Valuable / net.
     pub quality: f64,
-    /// Product of the three.
+    /// Product of the three factors.
     pub oee: f64,
-    /// Loss by alarms, s.
+    /// Time lost by alarms, s.
     pub stopped_s: f64,
-    /// Loss by waiting and slow cycles, s.
+    /// Time lost by waiting and by slow cycles, s.
     pub slow_s: f64,
-    /// Loss by parts that did not pass, s.
+    /// Time lost on parts that did not pass, s.
     pub rejected_s: f64,
 }
 
-/// Computes the effectiveness; `None` when no time ran or no part was tested.
+/// Computes the effectiveness; `None` when there was no running time or no part was tested.
 pub fn effectiveness(observed: Observed) -> Option<Effectiveness> {
     let running = observed.planned_s - observed.stopped_s;
     let net = observed.ideal_cycle_s * observed.parts as f64;
@@ -85,7 +85,7 @@ mod tests {
         assert!((all - 28_800.0).abs() < 1e-9);
     }
 
-    /// The worked shift of Vorne's text on OEE: 480 min less 60 min of breaks, 47 min down, ideal cycle 1.0 s,
+    /// Worked example of Vorne's text on OEE, one shift: 480 min less 60 min of breaks, 47 min down, ideal cycle 1.0 s,
     /// 19,271 pieces, 423 rejected.
     #[test]
     fn a_published_shift_has_its_published_factors() {

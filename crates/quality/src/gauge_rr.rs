@@ -1,8 +1,9 @@
 //! Gauge repeatability and reproducibility by analysis of variance with interaction.
 //!
 //! In a crossed study every operator measures every part the same number of times, at least twice. The sum of squares
-//! is split into parts, operators, their interaction and the residual; the interaction is pooled with the residual when
-//! its F test gives p > 0.25. Negative components of variance count as zero. All results are standard deviations.
+//! is split among parts, operators, their interaction and the residual. When the F test of the interaction gives p >
+//! 0.25, the interaction is pooled with the residual. Negative components of variance count as zero. All results are
+//! standard deviations.
 
 use super::crossing;
 use super::squares::{Sizes, Squares};
@@ -12,7 +13,7 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 /// Value of p above which the interaction counts as chance (AIAG MSA, 4th edition, appendix on ANOVA).
 const POOL_ABOVE: f64 = 0.25;
 
-/// Factor from the ratio of deviations to the number of distinct categories (AIAG: 1.41).
+/// Factor by which the ratio of part to gauge deviation becomes the number of distinct categories (AIAG: 1.41).
 const CATEGORIES: f64 = 1.41;
 
 /// One reading of the study.
@@ -28,7 +29,7 @@ pub struct Reading {
     pub value: f64,
 }
 
-/// Standard deviations of the sources of variation.
+/// Standard deviation of each source of variation, in the unit of the readings.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct GaugeRr {
     /// `anova`, or `average and range`.
@@ -37,17 +38,18 @@ pub struct GaugeRr {
     pub repeatability: f64,
     /// Variation between operators.
     pub reproducibility: f64,
-    /// Variation between operators that depends on the part; 0 when pooled.
+    /// Variation between operators that depends on the part; 0 when the interaction is pooled.
     pub interaction: f64,
-    /// Repeatability, reproducibility and interaction combined.
+    /// Repeatability and reproducibility with interaction, combined: the variation of the gauge.
     pub grr: f64,
     /// Variation between parts.
     pub part: f64,
-    /// Gauge and part variation combined.
+    /// Variation of gauge and parts combined.
     pub total: f64,
     /// `grr` in per cent of `total`; `None` when nothing varies.
     pub pct_grr: Option<f64>,
-    /// Number of distinct categories, at least 1; `None` without gauge variation.
+    /// Number of distinct categories of parts that the gauge can tell apart, at least 1; `None` without gauge
+    /// variation.
     pub ndc: Option<u64>,
     /// p of the F test of the interaction; `None` with one operator.
     pub interaction_p: Option<f64>,
@@ -61,23 +63,23 @@ pub enum GaugeRrError {
         "found {parts} parts, {operators} operators, {trials} trials; expected 2 parts, 1 operator and 2 trials at least"
     )]
     TooSmall {
-        /// Parts found.
+        /// Number of parts found.
         parts: usize,
-        /// Operators found.
+        /// Number of operators found.
         operators: usize,
-        /// Trials found.
+        /// Number of trials found.
         trials: usize,
     },
-    /// The study is larger than the published factors of averages and ranges.
+    /// The study is larger than the tables of published factors for averages and ranges.
     #[error(
         "found {parts} parts, {operators} operators, {trials} trials; averages and ranges have factors for up to 10, 3 and 3 (use anova for more)"
     )]
     NoFactors {
-        /// Parts found.
+        /// Number of parts found.
         parts: usize,
-        /// Operators found.
+        /// Number of operators found.
         operators: usize,
-        /// Trials found.
+        /// Number of trials found.
         trials: usize,
     },
     /// A combination of part, operator and trial has no reading.
@@ -102,7 +104,7 @@ pub enum GaugeRrError {
         /// Identifier of the trial.
         trial: String,
     },
-    /// A reading is not finite, or too large for its square to be.
+    /// A reading is not finite, or so large that its square is not finite.
     #[error("part {part:?}, operator {operator:?}, trial {trial:?}: expected a number below 1e150")]
     TooLarge {
         /// Identifier of the part.
@@ -114,7 +116,7 @@ pub enum GaugeRrError {
     },
 }
 
-/// Evaluates a complete crossed study.
+/// Evaluates a complete crossed study by analysis of variance.
 pub fn anova(readings: &[Reading]) -> Result<GaugeRr, GaugeRrError> {
     let cells = crossing::cells(readings)?;
     let sizes = Sizes::of(&cells);
@@ -144,13 +146,13 @@ fn components(sizes: &Sizes, squares: &Squares) -> GaugeRr {
     )
 }
 
-/// Mean squares with which the sources of variation are compared.
+/// Mean squares by which those of the sources of variation are divided in the F tests.
 struct Denominators {
-    /// For parts and operators: the interaction, or the pooled residual.
+    /// For parts and operators: mean square of the interaction, or of the pooled residual.
     main: f64,
-    /// For the interaction: the residual, or the pooled residual.
+    /// For the interaction: mean square of the residual, or of the pooled residual.
     error: f64,
-    /// p of the interaction; `None` with one operator.
+    /// p of the F test of the interaction; `None` with one operator.
     interaction_p: Option<f64>,
 }
 
@@ -179,7 +181,8 @@ impl Denominators {
     }
 }
 
-/// Returns the probability that F with these degrees of freedom exceeds `f`; 0 when all repeats agree.
+/// Returns the probability that F with these degrees of freedom exceeds `f`; 0 for an infinite `f`, which results when
+/// all repetitions agree.
 fn upper_tail(f: f64, above: f64, below: f64) -> f64 {
     if f.is_infinite() {
         return 0.0;

@@ -2,7 +2,7 @@
 use super::super::average_range::average_and_range;
 use super::*;
 
-/// The worked example of AIAG's Measurement Systems Analysis: 3 appraisers, 3 trials, 10 parts.
+/// Worked example of AIAG's Measurement Systems Analysis: 3 appraisers, 3 trials, 10 parts.
 const AIAG: [[[f64; 10]; 3]; 3] = [
     [
         [

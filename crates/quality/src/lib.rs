@@ -1,13 +1,13 @@
-//! Statistics of quality: pure arithmetic without clock or files.
+//! Statistics of quality: arithmetic only, without clock or files.
 //!
-//! - [`spread`]: mean, standard deviation, lag-1 autocorrelation, accurate even when the values differ only in
-//!   their last digits. [`ordered`]: quantiles, histogram.
+//! - [`spread`]: mean, standard deviation and lag-1 autocorrelation, accurate even when the values differ only in their
+//!   last digits. [`ordered`]: quantiles, histogram.
 //! - [`capability`]: capability indices of a process, with confidence intervals.
-//! - [`chart`]: control charts. [`rules`]: patterns of their points that are unlikely by chance.
+//! - [`chart`]: control charts. [`rules`]: patterns of points that are unlikely by chance.
 //! - [`effectiveness`]: overall equipment effectiveness and losses of time.
-//! - [`summary`]: moments and capability of one parameter, as `history stats` prints them.
-//! - [`tally`]: moments and histogram of values that arrive one at a time.
-//! - [`gauge_rr`], [`average_range`]: share of the gauge in the observed variation.
+//! - [`summary`]: mean, spread and capability of one parameter, as `history stats` prints them.
+//! - [`tally`]: mean, spread and histogram of values that arrive one at a time.
+//! - [`gauge_rr`], [`average_range`]: how much of the observed variation the gauge causes.
 
 pub mod average_range;
 pub mod capability;

@@ -1,7 +1,7 @@
 //! Values in ascending order: exact quantiles and the histogram.
 //!
-//! Quantiles interpolate between neighbouring order statistics at `(n - 1) p` (type 7 of Hyndman and Fan,
-//! "inclusive" in spreadsheets), so that p = 0, 1/2 and 1 give minimum, median and maximum.
+//! A quantile is interpolated between the two sorted values around the place `(n - 1) p` (type 7 of Hyndman and Fan,
+//! "inclusive" in spreadsheets), so p = 0, 1/2 and 1 give minimum, median and maximum.
 
 use serde::Serialize;
 
@@ -9,7 +9,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Ordered(Vec<f64>);
 
-/// Number of values in classes of equal width.
+/// Histogram: number of values in each of several classes of equal width.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Histogram {
     /// Lower edge of the first class.
@@ -21,25 +21,25 @@ pub struct Histogram {
 }
 
 impl Ordered {
-    /// Sorts a copy of the finite values and leaves out the others.
+    /// Sorts a copy of the finite values; leaves out the others.
     pub fn of(values: &[f64]) -> Self {
         let mut values: Vec<f64> = values.iter().copied().filter(|it| it.is_finite()).collect();
         values.sort_unstable_by(f64::total_cmp);
         Self(values)
     }
 
-    /// Number of values.
+    /// Returns the number of values.
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Whether there are no values.
+    /// Returns true when there are no values.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Returns the value below which the fraction `p` (0 to 1) of the values lies; `None` without values or for
-    /// another `p`.
+    /// Returns the value below which the fraction `p` (0 to 1) of the values lies; `None` when there are no values, or
+    /// when `p` is outside 0 to 1.
     pub fn quantile(&self, p: f64) -> Option<f64> {
         let last = self.0.len().checked_sub(1)?;
         if !(0.0..=1.0).contains(&p) {
@@ -52,7 +52,8 @@ impl Ordered {
         Some(low + (place - below) * (high - low))
     }
 
-    /// Returns about `classes` classes over all values, with edges on round numbers; `None` when all values are equal.
+    /// Returns a histogram of all values with about `classes` classes, whose edges are round numbers; `None` when all
+    /// values are equal.
     pub fn histogram(&self, classes: usize) -> Option<Histogram> {
         let (&low, &high) = (self.0.first()?, self.0.last()?);
         let width = round_step((high - low) / classes.max(1) as f64)?;
@@ -71,7 +72,8 @@ impl Ordered {
     }
 }
 
-/// Returns the least of 1, 2, 5 times a power of ten that is at least `step`; `None` unless `step` is above zero.
+/// Returns the least number, 1, 2 or 5 times a power of ten, that is at least `step`; `None` unless `step` is above
+/// zero.
 pub fn round_step(step: f64) -> Option<f64> {
     if !(step.is_finite() && step > 0.0) {
         return None;

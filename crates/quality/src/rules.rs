@@ -1,17 +1,19 @@
 //! Run rules: patterns of points on a control chart that are unlikely by chance.
 //!
-//! | rule | Nelson | Western Electric |
-//! |---|---|---|
-//! | 1: beyond three deviations | yes | yes |
-//! | 2: on one side of the centre in a row | 9 | 8 |
-//! | 3: rising or falling in a row | 6 | |
-//! | 4: up and down in turn | 14 | |
-//! | 5: two of three beyond two deviations, one side | yes | yes |
-//! | 6: four of five beyond one deviation, one side | yes | yes |
-//! | 7: all within one deviation | 15 | |
-//! | 8: none within one deviation, both sides | 8 | |
+//! A number is how many points in a row make the pattern; deviations are standard deviations from the centre.
 //!
-//! A rule signals once, at the point that completes its pattern.
+//! | rule: points | Nelson | Western Electric |
+//! |---|---|---|
+//! | 1: one beyond three deviations | yes | yes |
+//! | 2: all on one side of the centre | 9 | 8 |
+//! | 3: rising all the time, or falling all the time | 6 | |
+//! | 4: alternately up and down | 14 | |
+//! | 5: two of three beyond two deviations on one side | yes | yes |
+//! | 6: four of five beyond one deviation on one side | yes | yes |
+//! | 7: all within one deviation | 15 | |
+//! | 8: none within one deviation, on both sides | 8 | |
+//!
+//! A rule gives one signal per pattern, at the point that completes it.
 
 use super::chart::Point;
 use serde::{Deserialize, Serialize};
@@ -26,7 +28,7 @@ pub enum Rules {
     WesternElectric,
 }
 
-/// The completion of a rule's pattern.
+/// Signal of a rule: a point that completes its pattern.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Signal {
     /// Index of the point that completes the pattern, from 0.
@@ -35,9 +37,10 @@ pub struct Signal {
     pub rule: u8,
 }
 
-/// Returns the signals of a set of rules, in the order of the points. `sigma` is the standard deviation of one point.
+/// Returns the signals of a set of rules, in the order of the points. `sigma` is the standard deviation of a point.
 pub fn signals(points: &[f64], centre: f64, sigma: f64, rules: Rules) -> Vec<Signal> {
-    // Deviations from the centre in units of `sigma`; with `sigma` zero, points off the centre are infinitely far.
+    // Deviations from the centre in units of `sigma`; when `sigma` is zero, points off the centre are infinitely far
+    // away.
     let z: Vec<f64> = points
         .iter()
         .map(|it| {
@@ -56,14 +59,15 @@ pub fn signals(points: &[f64], centre: f64, sigma: f64, rules: Rules) -> Vec<Sig
     found
 }
 
-/// Returns rule 1 for points outside their own limits, for charts whose limits differ from point to point.
+/// Returns a signal of rule 1 for each point outside its own limits; for charts whose limits differ from point to
+/// point.
 pub fn beyond_own_limits(points: &[Point]) -> Vec<Signal> {
     let beyond = |it: &Point| it.value > it.high || it.value < it.low;
     let places = points.iter().enumerate().filter(|(_, it)| beyond(it));
     places.map(|(at, _)| Signal { at, rule: 1 }).collect()
 }
 
-/// Returns the rules whose pattern the last point completes.
+/// Returns the numbers of the rules whose pattern the last point completes.
 fn completed(z: &[f64], rules: Rules) -> Vec<u8> {
     let side = match rules {
         Rules::Nelson => 9,
@@ -96,31 +100,32 @@ fn completed(z: &[f64], rules: Rules) -> Vec<u8> {
     numbers
 }
 
-/// Whether the last `n` points have the pattern.
+/// Returns true when the last `n` points have the pattern.
 fn last(z: &[f64], n: usize, pattern: impl Fn(&[f64]) -> bool) -> bool {
     z.len() >= n && pattern(&z[z.len() - n..])
 }
 
-/// Whether the last `n` points are the first to have the pattern: a longer run signals once.
+/// Returns true when the last `n` points have the pattern and the `n` before did not, so that a longer run signals
+/// once.
 fn run(z: &[f64], n: usize, pattern: impl Fn(&[f64]) -> bool) -> bool {
     last(z, n, &pattern) && !last(&z[..z.len() - 1], n, &pattern)
 }
 
-/// Whether at least `n` points lie beyond `far` on one side.
+/// Returns true when at least `n` points lie beyond `far` on the same side.
 fn one_side(z: &[f64], n: usize, far: f64) -> bool {
     let above = z.iter().filter(|&&it| it > far).count();
     let below = z.iter().filter(|&&it| it < -far).count();
     above >= n || below >= n
 }
 
-/// Whether the last point is one of at least `n` beyond `far` on its side.
+/// Returns true when the last point lies beyond `far`, and with it at least `n` points on its side.
 fn ending(z: &[f64], n: usize, far: f64) -> bool {
     let Some(&end) = z.last() else { return false };
     let with_it = z.iter().filter(|&&it| it * end > 0.0 && it.abs() > far);
     end.abs() > far && with_it.count() >= n
 }
 
-/// Whether `relate` holds for every two consecutive steps.
+/// Returns true when `relate` holds for every two consecutive steps from point to point.
 fn steps(z: &[f64], relate: impl Fn(f64, f64) -> bool) -> bool {
     z.windows(3).all(|it| relate(it[1] - it[0], it[2] - it[1]))
 }
@@ -129,7 +134,7 @@ fn steps(z: &[f64], relate: impl Fn(f64, f64) -> bool) -> bool {
 mod tests {
     use super::*;
 
-    /// Returns the signals about a centre of 0 with a deviation of 1, as points and rules.
+    /// Returns the signals for a centre of 0 and a standard deviation of 1, as (point, rule).
     fn signals_of(points: &[f64], rules: Rules) -> Vec<(usize, u8)> {
         let found = signals(points, 0.0, 1.0, rules);
         found.into_iter().map(|it| (it.at, it.rule)).collect()

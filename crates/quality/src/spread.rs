@@ -1,19 +1,19 @@
-//! Mean, variance and lag-1 autocorrelation in two passes, in double-double precision.
+//! Mean, variance and lag-1 autocorrelation, in two passes over the values and in double-double precision.
 //!
-//! The sum of squares minus the square of the sum loses all digits when the spread is small relative to the mean.
-//! Here the first pass finds the mean and the second sums deviations from it, both as `Double`; the remaining
-//! error comes from storing decimal data in binary.
+//! The textbook formula, sum of squares minus square of the sum, loses all digits when the spread is small beside the
+//! mean. Here the first pass finds the mean and the second sums the deviations from it, both as `Double`; the error
+//! that remains comes from storing decimal data in binary.
 //!
-//! Merging shards: `M2 = M2a + M2b + d^2 na nb / (na + nb)` with `d` the difference of means (Chan,
-//! Golub and LeVeque 1983), in the same arithmetic.
+//! Two sets of values are merged by `M2 = M2a + M2b + d^2 na nb / (na + nb)`, with `d` the difference of their means
+//! (Chan, Golub and LeVeque 1983), in the same arithmetic.
 
 use super::double::Double;
 
-/// Number of independent partial sums. An addition in double-double precision takes as long as four that the
-/// processor overlaps.
+/// Number of independent partial sums: one addition in double-double precision takes as long as four that the processor
+/// overlaps.
 const SIDE_BY_SIDE: usize = 4;
 
-/// Sums the terms 0 to `n` - 1.
+/// Returns the sum of the terms 0 to `n` - 1.
 fn total(n: usize, term: impl Fn(usize) -> Double) -> Double {
     let mut sums = [Double::default(); SIDE_BY_SIDE];
     let whole = n - n % SIDE_BY_SIDE;
@@ -26,7 +26,7 @@ fn total(n: usize, term: impl Fn(usize) -> Double) -> Double {
     rest.chain(sums).fold(Double::default(), Double::plus)
 }
 
-/// Moments of a set of finite values. A value that is not finite makes every figure `None`.
+/// Number, mean and squared deviations of a set of values. A value that is not finite makes every figure `None`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Spread {
     n: u64,
@@ -36,7 +36,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Computes the moments of all values.
+    /// Computes the figures of all values.
     pub fn of(values: &[f64]) -> Self {
         if values.is_empty() {
             return Self::default();
@@ -60,7 +60,7 @@ impl Spread {
         }
     }
 
-    /// Computes the moments of both sets together.
+    /// Computes the figures of both sets together.
     pub fn merged(self, other: Self) -> Self {
         let (Some((low, high)), Some((other_low, other_high))) = (self.range, other.range) else {
             return if self.n == 0 { other } else { self };
@@ -81,32 +81,32 @@ impl Spread {
         }
     }
 
-    /// Number of values.
+    /// Returns the number of values.
     pub fn n(&self) -> u64 {
         self.n
     }
-    /// Mean; `None` without values.
+    /// Returns the mean; `None` without values.
     pub fn mean(&self) -> Option<f64> {
         finite(self.range.map(|_| self.mean.value()))
     }
-    /// Standard deviation with n - 1; `None` below two values.
+    /// Returns the standard deviation with n - 1; `None` with fewer than two values.
     pub fn sd(&self) -> Option<f64> {
         let degrees = self.n.checked_sub(1).filter(|&it| it > 0)?;
         let variance = finite(Some(self.squares.over(degrees as f64).value()))?;
         Some(variance.max(0.0).sqrt())
     }
-    /// Least value.
+    /// Returns the least value.
     pub fn min(&self) -> Option<f64> {
         finite(self.range.map(|(low, _)| low))
     }
-    /// Greatest value.
+    /// Returns the greatest value.
     pub fn max(&self) -> Option<f64> {
         finite(self.range.map(|(_, high)| high))
     }
 }
 
-/// Returns the lag-1 autocorrelation in the given order, given the moments `all` of the same values; `None` below two values
-/// or when all are equal.
+/// Returns the lag-1 autocorrelation of `values` in their order; `all` are the figures of the same values. Returns
+/// `None` with fewer than two values, and when all are equal.
 pub fn lag1_about(all: &Spread, values: &[f64]) -> Option<f64> {
     let squares = all.squares.value();
     let deviation = |value: f64| Double::new(value).minus(all.mean);
@@ -119,14 +119,14 @@ pub fn lag1_about(all: &Spread, values: &[f64]) -> Option<f64> {
         .filter(|it| it.is_finite())
 }
 
-/// Returns the mean absolute difference of neighbours; `None` below two values.
+/// Returns the mean absolute difference of neighbours; `None` with fewer than two values.
 pub fn mean_moving_range(values: &[f64]) -> Option<f64> {
     let pairs = values.len().checked_sub(1).filter(|&it| it > 0)?;
     let sum = total(pairs, |n| Double::new((values[n + 1] - values[n]).abs()));
     finite(Some(sum.over(pairs as f64).value()))
 }
 
-/// Returns the middle value, or the mean of the two middle ones.
+/// Returns the middle value, or the mean of the two middle ones; `None` without values.
 pub fn median(values: &[f64]) -> Option<f64> {
     let mut values = values.to_vec();
     let middle = values.len() / 2;

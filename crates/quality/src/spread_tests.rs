@@ -5,14 +5,14 @@ fn lag1(values: &[f64]) -> Option<f64> {
     lag1_about(&Spread::of(values), values)
 }
 
-/// Number of correct decimal digits of `found`.
+/// Returns the number of correct decimal digits in `found`.
 fn digits(found: f64, certified: f64) -> f64 {
     -((found - certified).abs() / certified.abs())
         .max(1e-16)
         .log10()
 }
 
-/// NumAcc2, 3 and 4 of the NIST reference data sets: one value, then two alternating values.
+/// Returns one of NIST's reference data sets NumAcc2, 3 and 4: one value, then two values in turn.
 fn numacc(first: f64, low: f64, high: f64) -> Vec<f64> {
     let rest = (0..1000).map(|n| if n % 2 == 0 { low } else { high });
     std::iter::once(first).chain(rest).collect()
@@ -55,7 +55,7 @@ fn numacc4_has_the_digits_that_f64_data_allow() {
     assert!(digits(lag1(&values).unwrap(), -0.999) > 8.0);
 }
 
-/// Checks a NIST statistical reference data set against its certified mean, deviation and lag-1 autocorrelation.
+/// Checks the figures of a NIST reference data set against its certified mean, deviation and lag-1 autocorrelation.
 fn certified(text: &str, n: usize, mean: f64, sd: f64, autocorrelation: f64) {
     let values: Vec<f64> = text
         .split_whitespace()

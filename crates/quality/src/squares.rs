@@ -1,6 +1,6 @@
 //! Sums of squares of a crossed study.
 //!
-//! Subtracts means before squaring, which loses no digits when readings differ only in their last places.
+//! Means are subtracted before squaring, so no digits are lost when readings differ only in their last places.
 
 use super::crossing::Cells;
 
@@ -26,7 +26,7 @@ impl Sizes {
     }
 }
 
-/// Sums of squares by source of variation.
+/// Sum of squares of each source of variation.
 pub(super) struct Squares {
     pub parts: f64,
     pub operators: f64,
@@ -54,7 +54,7 @@ impl Squares {
     }
 }
 
-/// Means of the readings.
+/// Means over all readings, and by part, operator and cell.
 pub(super) struct Means {
     cell: Vec<Vec<f64>>,
     pub part: Vec<f64>,

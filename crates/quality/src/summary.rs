@@ -1,4 +1,4 @@
-//! Statistics of one parameter, with the keys of `history stats --json`.
+//! Statistics of one parameter; the fields are the keys of `history stats --json`.
 
 use super::capability::{Capability, D2_PAIR, Index, Limits};
 use super::spread::{self, Spread};
@@ -7,7 +7,7 @@ use serde::Serialize;
 /// Statistics of one parameter. A figure that cannot be computed is `None`, null in JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
-    /// Parameter key.
+    /// Key of the parameter.
     pub param: String,
     /// Number of values.
     pub n: u64,
@@ -21,20 +21,20 @@ pub struct Summary {
     pub max: Option<f64>,
     /// Median.
     pub median: Option<f64>,
-    /// Lag-1 autocorrelation in the given order.
+    /// Lag-1 autocorrelation, in order of time.
     pub lag1: Option<f64>,
-    /// Cp, from the mean moving range.
+    /// Cp, with the short-term deviation from the mean moving range.
     pub cp: Option<f64>,
-    /// Cpk, from the mean moving range.
+    /// Cpk, with the short-term deviation from the mean moving range.
     pub cpk: Option<f64>,
     /// Lower end of the two-sided 95 % interval of `cpk`.
     pub cpk_low95: Option<f64>,
-    /// Ppk, from `sd`.
+    /// Ppk, with `sd`.
     pub ppk: Option<f64>,
 }
 
 impl Summary {
-    /// Computes the statistics of values in order of time.
+    /// Computes the statistics of `values`, which must be in order of time.
     pub fn of(param: &str, values: &[f64], limits: Limits) -> Self {
         let spread = Spread::of(values);
         let within = spread::mean_moving_range(values).map(|range| range / D2_PAIR);

@@ -1,18 +1,18 @@
-//! Moments and a histogram of values that arrive one at a time, in constant memory.
+//! Mean, spread and histogram of values that arrive one at a time, in constant memory.
 //!
-//! Values are collected in shards of 1,000, whose moments are merged without loss. The first shard fixes the
-//! classes: about twelve over its range, and twelve more beyond each end. Values farther out count in the outermost
-//! classes.
+//! Values are collected in portions of 1,000, whose figures are merged without loss. The first portion fixes the
+//! classes of the histogram: about twelve over its range, and twelve more beyond each end. A value farther out counts
+//! in the outermost class.
 
 use super::ordered::{Histogram, Ordered};
 use super::spread::Spread;
 
-/// Number of values between two merges.
+/// Number of values in a portion.
 const SHARD: usize = 1_000;
-/// Number of classes over the range of the first shard.
+/// Approximate number of classes over the range of the first portion.
 const CLASSES: usize = 12;
 
-/// Running moments and histogram.
+/// Figures and histogram of the values so far.
 #[derive(Debug, Clone, Default)]
 pub struct Tally {
     merged: Spread,
@@ -32,7 +32,7 @@ impl Tally {
         }
     }
 
-    /// Returns moments and histogram of all values; the histogram is `None` when all values are equal.
+    /// Returns figures and histogram of all values; the histogram is `None` when all values are equal.
     pub fn finish(mut self) -> (Spread, Option<Histogram>) {
         self.merge();
         (self.merged, self.classes.map(trimmed))
@@ -54,7 +54,7 @@ impl Tally {
     }
 }
 
-/// Returns the same classes, empty, with twelve more at each end.
+/// Returns the same classes, empty, with twelve more classes at each end.
 fn wider(it: Histogram) -> Histogram {
     Histogram {
         from: it.from - CLASSES as f64 * it.width,

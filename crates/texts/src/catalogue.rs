@@ -1,4 +1,4 @@
-//! The two catalogues, parsed once.
+//! The two catalogues, English and Chinese; each is parsed once.
 
 use crate::Lang;
 use fluent_bundle::concurrent::FluentBundle;
@@ -18,10 +18,10 @@ static ZH: LazyLock<FluentResource> =
 static EN_BUNDLE: LazyLock<Bundle> = LazyLock::new(|| bundle("en", &EN));
 static ZH_BUNDLE: LazyLock<Bundle> = LazyLock::new(|| bundle("zh-CN", &ZH));
 
-/// A text without arguments in both languages.
+/// A text without arguments, in both languages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Plain {
-    /// Id: family and code.
+    /// Id of the text: family and code, for example `bin-coil`.
     pub id: &'static str,
     /// English text.
     pub en: &'static str,
@@ -59,7 +59,7 @@ fn of(lang: Lang) -> &'static Bundle {
     }
 }
 
-/// Returns true when the catalogues have the text; a test keeps their ids equal.
+/// Returns true when the English catalogue has the text; a test makes sure that the Chinese one then has it too.
 pub(crate) fn has(id: &str) -> bool {
     EN_BUNDLE.has_message(id)
 }
@@ -84,7 +84,7 @@ pub(crate) fn plain_text(lang: Lang, id: &str, attribute: Option<&str>) -> &'sta
     found.unwrap_or_default()
 }
 
-/// Fills in the arguments; `None` when one is missing.
+/// Fills in the arguments of a text; `None` when one is missing.
 pub(crate) fn filled(lang: Lang, pattern: &'static Text, args: &FluentArgs<'_>) -> Option<String> {
     let mut errors = Vec::new();
     let text = of(lang).format_pattern(pattern, Some(args), &mut errors);

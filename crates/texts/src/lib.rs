@@ -1,8 +1,8 @@
 //! Texts of the page, of paper and of answers, in English and Chinese.
 //!
-//! `locale/en.ftl` and `locale/zh.ftl` hold the texts in Fluent: literals and `{ $argument }` only. The id of a text is
-//! family and code, `alarm-door_open`; attributes (`.cause`, `.action`) hold further texts of the same code. A missing id,
-//! attribute or argument is a bug and fails an assertion.
+//! `locale/en.ftl` and `locale/zh.ftl` hold the texts in Fluent, made of literals and `{ $argument }` only. The id of a
+//! text is its family and its code, for example `alarm-door_open`; attributes (`.cause`, `.action`) hold further texts
+//! of the same code. A missing id, attribute or argument is a bug and fails an assertion.
 //!
 //! ```
 //! use texts::{Lang, Message};
@@ -51,8 +51,8 @@ impl Lang {
         catalogue::plain_text(self, id, Some(attribute))
     }
 
-    /// Returns the name of `code` in its family, or `code` itself when the catalogue lacks it: bins and parameter keys can be
-    /// named by the plant.
+    /// Returns the name of `code` in its family; returns `code` itself when the catalogue lacks it, because a plant may
+    /// name bins and parameter keys of its own.
     pub fn name<'a>(self, family: &str, code: &'a str) -> &'a str {
         let id = format!("{family}-{code}");
         if catalogue::has(&id) {

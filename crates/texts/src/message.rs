@@ -1,4 +1,4 @@
-//! Messages: codes with arguments, which programs compare and a catalogue turns into text.
+//! Messages: a code with arguments, which programs can compare and the catalogue turns into text.
 
 use crate::catalogue::Text as Pattern;
 use crate::{Lang, catalogue};
@@ -8,12 +8,13 @@ use serde::{Deserialize, Serialize, Serializer};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-/// Arguments by name. Values of the names in [`NAMES`] are codes, which a text of their own family replaces.
+/// Arguments by name. The value of an argument in [`NAMES`] is a code; the text shows the name of this code.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Args(BTreeMap<Cow<'static, str>, String>);
 
-/// Arguments whose values are codes: `bin` = `coil` becomes the text `bin-coil`, `needed_role` uses the family `role`.
+/// Arguments whose values are codes: `bin` = `coil` shows the text `bin-coil`; `needed_role` shows a text of family
+/// `role`.
 const NAMES: [&str; 11] = [
     "alarm",
     "bin",
@@ -28,10 +29,10 @@ const NAMES: [&str; 11] = [
     "needed_role",
 ];
 
-/// Argument whose value names the attribute that replaces the text of a code.
+/// Name of the argument that selects an attribute of a text in place of the text itself.
 const CASE: &str = "case";
 
-/// A code with arguments, independent of language. It serialises as `{"code", "args", "en", "zh"}`.
+/// A code with arguments, the same in every language. It serialises as `{"code", "args", "en", "zh"}`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Message {
     family: &'static str,
@@ -40,17 +41,17 @@ pub struct Message {
 }
 
 impl Args {
-    /// Returns the argument of this name.
+    /// Returns the value of the argument with this name.
     pub fn get(&self, name: &str) -> Option<&str> {
         self.0.get(name).map(String::as_str)
     }
 
-    /// Returns the names in alphabetical order.
+    /// Returns the names of all arguments in alphabetical order.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.0.keys().map(AsRef::as_ref)
     }
 
-    /// Returns true without arguments.
+    /// Returns true when there are no arguments.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
@@ -73,7 +74,7 @@ impl Args {
             .collect()
     }
 
-    /// Returns the text of a code, which may contain the other arguments: `motion-axis_bin` contains `bin`.
+    /// Returns the text of a code; this text may contain the other arguments, as `motion-axis_bin` contains `bin`.
     fn named<'a>(&'a self, lang: Lang, name: &str, code: &'a str) -> Cow<'a, str> {
         let family = name.rsplit('_').next().unwrap_or(name);
         let id = format!("{family}-{code}");
@@ -110,13 +111,13 @@ impl Message {
         self
     }
 
-    /// Chooses the text of the code for this case.
+    /// Selects the attribute `case` of the text; a text without this attribute stays as it is.
     #[must_use]
     pub fn case(self, case: &'static str) -> Self {
         self.with(CASE, case)
     }
 
-    /// Returns the code, without family.
+    /// Returns the code, without its family.
     pub fn code(&self) -> &str {
         &self.code
     }
@@ -131,7 +132,7 @@ impl Message {
         format!("{}-{}", self.family, self.code)
     }
 
-    /// Returns the text; an assertion fails without one.
+    /// Returns the text; panics when the catalogue lacks it or an argument is missing.
     pub fn say(&self, lang: Lang) -> String {
         let said = self.try_say(lang);
         assert!(
@@ -143,7 +144,7 @@ impl Message {
         said.unwrap_or_default()
     }
 
-    /// Returns the text; `None` when an argument is missing, as in messages that another version has stored.
+    /// Returns the text; `None` when an argument is missing, as may happen with a message that another version stored.
     pub fn try_say(&self, lang: Lang) -> Option<String> {
         catalogue::filled(lang, self.pattern(lang)?, &self.args.fluent(lang))
     }
@@ -154,7 +155,8 @@ impl Message {
         catalogue::filled(lang, pattern, &self.args.fluent(lang))
     }
 
-    /// Falls back to the text without case: a text that contains another one carries the case of the inner one.
+    /// Returns the text for the selected case, or else the text itself: the case may be meant for a text inside this
+    /// one.
     fn pattern(&self, lang: Lang) -> Option<&'static Pattern> {
         let case = catalogue::pattern(lang, &self.id(), self.args.get(CASE));
         case.or_else(|| catalogue::pattern(lang, &self.id(), None))

@@ -15,11 +15,11 @@ macro_rules! quantity {
         pub struct $name(pub f64);
 
         impl $name {
-            /// Returns the magnitude.
+            /// Returns the value without its sign.
             pub fn abs(self) -> Self {
                 Self(self.0.abs())
             }
-            /// Whether the value is neither NaN nor infinite; a verdict needs a finite value.
+            /// Returns true when the value is neither NaN nor infinite; a verdict needs such a value.
             pub fn is_finite(self) -> bool {
                 self.0.is_finite()
             }
@@ -70,29 +70,29 @@ quantity!(/** Time as a measured quantity (an operate time), not an instant of t
 quantity!(/** Temperature on the Celsius scale. */ Celsius, "C");
 quantity!(/** Length. */ Millimetre, "mm");
 
-/// Unit of a bare number, such as a reading, a limit or a factor whose type carries no unit.
+/// Unit of a number whose type does not tell it, such as a reading, a limit or a factor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Unit {
-    /// A pure number.
+    /// A pure number, without unit.
     One,
-    /// Resistance.
+    /// Resistance, ohm.
     Ohm,
-    /// Resistance of contacts.
+    /// Resistance of contacts, milliohm.
     Milliohm,
-    /// Electric potential.
+    /// Voltage, volt.
     Volt,
-    /// Time.
+    /// Time, millisecond.
     Millisecond,
-    /// Delay of a gate.
+    /// Delay of a gate, microsecond.
     Microsecond,
-    /// Slope of a ramp.
+    /// Slope of a ramp, volt per second.
     VoltPerSecond,
-    /// Inverse of a measuring current.
+    /// Inverse of a measuring current, milliohm per volt.
     MilliohmPerVolt,
 }
 
 impl Unit {
-    /// Symbol in files, rows and JSON, in ASCII.
+    /// Returns the symbol in files, rows and JSON: ASCII only.
     pub const fn symbol(self) -> &'static str {
         match self {
             Self::One => "1",
@@ -106,7 +106,7 @@ impl Unit {
         }
     }
 
-    /// Symbol on paper and pages.
+    /// Returns the symbol on paper and pages.
     pub const fn sign(self) -> &'static str {
         match self {
             Self::Ohm => "Ω",
@@ -131,20 +131,20 @@ impl Serialize for Unit {
 }
 
 impl Volt {
-    /// Ohm's law: the resistance across which `current` drops this voltage.
+    /// Returns the resistance across which `current` drops this voltage (Ohm's law).
     pub fn over(self, current: Ampere) -> Ohm {
         Ohm(self.0 / current.0)
     }
 }
 
-/// An instant on the rig clock: microseconds since the clock started with the program.
+/// An instant of rig time: microseconds since the clock was created.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize,
 )]
 #[serde(transparent)]
 pub struct RigTime(pub u64);
 
-/// A duration on the rig clock, microseconds.
+/// A duration of rig time, microseconds.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize,
 )]
@@ -156,7 +156,8 @@ impl Span {
     pub const fn ms(ms: u64) -> Self {
         Self(ms * 1000)
     }
-    /// Converts seconds, rounded to the microsecond; negative values and NaN become zero, values too large the greatest span.
+    /// Converts seconds, rounded to the microsecond. Negative values and NaN become zero; a value that is too large
+    /// becomes the greatest span.
     pub fn seconds(seconds: f64) -> Self {
         Self((seconds * 1e6).round().max(0.0) as u64)
     }
@@ -167,7 +168,7 @@ impl Span {
 }
 
 impl RigTime {
-    /// Time since `earlier`; zero when `earlier` is in the future.
+    /// Returns the time since `earlier`; zero when `earlier` is later than this instant.
     pub fn since(self, earlier: RigTime) -> Span {
         Span(self.0.saturating_sub(earlier.0))
     }

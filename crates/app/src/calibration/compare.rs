@@ -8,8 +8,8 @@ use units::Unit;
 /// Coverage factor of printed uncertainties: about 95 %.
 pub const K: f64 = 2.0;
 
-/// Coverage factor of a comparison. All fifteen factors must agree: with 2, every second unchanged rig would fail (1 -
-/// 0.95^15); with 3, one in 25 (1 - 0.9973^15), and fewer because both measurements share error terms.
+/// Coverage factor of a comparison. All fifteen factors must agree: with 2, about every second unchanged rig would fail
+/// (1 - 0.95^15); with 3, at most one in 25 (1 - 0.9973^15), fewer because both measurements share error terms.
 pub const K_JOINT: f64 = 3.0;
 
 /// A factor measured again, beside the stored one.
@@ -28,7 +28,7 @@ pub struct FactorComparison {
 }
 
 impl FactorComparison {
-    /// Checks that both values agree within the uncertainty; NaN never agrees.
+    /// Returns true when both values agree within the uncertainty; NaN never agrees.
     pub fn agrees(&self) -> bool {
         (self.found - self.expected).abs() <= self.expanded_u
     }
@@ -49,7 +49,7 @@ impl fmt::Display for FactorComparison {
     }
 }
 
-/// Pairs the factors of both calibrations by name; leaves out one that either calibration lacks.
+/// Pairs the factors of both calibrations by name; leaves out a factor that one of the calibrations lacks.
 pub fn compare(found: &Calibration, expected: &Calibration) -> Vec<FactorComparison> {
     let expected = expected.facts().factors;
     let of_both = |found: Named| {

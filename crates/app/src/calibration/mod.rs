@@ -1,9 +1,10 @@
 //! Determines the calibration factors of a rig from its references and reference parts, or verifies them.
 //!
-//! Both measure the reference parts as a run does before its lot, and no part of a lot after them. A calibration stores
-//! the factors found. A verification stores none: each factor found must lie within the combined expanded uncertainty
-//! of the stored one (k = 3, because fifteen must agree at once), and the history marks the stored calibration with
-//! the outcome. A rig whose calibration is overdue or failed takes no lot until a new calibration.
+//! Calibration and verification measure the reference parts as a run does before its lot, but no part of a lot
+//! afterwards. A calibration stores the factors found. A verification stores no factors: each factor found must lie
+//! within the combined expanded uncertainty of the stored one (k = 3, because fifteen must agree at once), and the
+//! history marks the stored calibration with the outcome. A rig whose calibration is overdue or failed its verification
+//! runs no lot until it is calibrated again.
 
 mod compare;
 
@@ -19,7 +20,7 @@ use machine::dut::Calibration;
 use std::path::Path;
 use std::sync::OnceLock;
 
-/// Lot under which the history keeps the reference parts.
+/// Name of the lot under which the history keeps the reference parts.
 const LOT: &str = "calibration";
 
 /// Outcome of a calibration or a verification.
@@ -41,7 +42,8 @@ pub enum Calibrated {
 /// Calibrates the rig, or verifies its calibration. The coil voltage of `recipe` selects the reference parts.
 ///
 /// # Errors
-/// Fails on bad input: a recipe without a coil, no reference part of its voltage, no valid calibration to verify.
+/// Fails when the recipe has no coil, when no reference part has its coil voltage, when there is no valid calibration
+/// to verify, or as [`super::run_lot`] does.
 pub fn calibrate(
     files: &Files,
     source: &RigSource,
@@ -145,14 +147,14 @@ fn keep(db: &Path, found: Calibration) -> anyhow::Result<Calibrated> {
 /// Formats microseconds since 1970 as a date in UTC.
 ///
 /// # Errors
-/// Fails outside the calendar's range.
+/// Fails when `us` lies outside the range of the calendar.
 pub fn date(us: i64) -> anyhow::Result<String> {
     let at = jiff::Timestamp::from_microsecond(us).context("date of the calibration")?;
     Ok(at.strftime("%Y-%m-%dT%H:%M:%SZ").to_string())
 }
 
-/// Returns why the stored calibration allows no lot; `None` when it is valid, or absent (the run then calibrates
-/// first).
+/// Returns why the stored calibration permits no lot; `None` when the calibration is valid, or when there is none (the
+/// run then calibrates first).
 pub(super) fn refusal(db: &Path, nominal_v: f64) -> anyhow::Result<Option<String>> {
     let Some(record) = open(db)?.latest_calibration_of(false, nominal_v)? else {
         return Ok(None);

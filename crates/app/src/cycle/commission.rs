@@ -1,5 +1,5 @@
-//! Compares every module's name and settings with the wiring before anything moves. The outputs are still safe, so no
-//! emergency stop waits, and each line repeats a request as often as the bus settings allow.
+//! Compares the name and the settings of every module with the wiring, before anything moves. The outputs are still
+//! safe, so no emergency stop has to be seen in time, and a request may be repeated as often as the bus settings allow.
 
 use super::traffic::{Purpose, Traffic};
 use bus::Pace;
@@ -22,12 +22,12 @@ struct Leftover {
 enum Setting {
     /// The host watchdog has tripped: the outputs are at their safe values and the watchdog is off.
     Tripped,
-    /// The converter still has the channel mask of the references.
+    /// The analog input module still reads only the channels of the references.
     Masked,
 }
 
-/// Reads all settings, all lines in parallel; returns the first mismatch or silent module as an alarm. Restores and
-/// logs what an interrupted run of the controller left behind.
+/// Reads all settings, on all lines in parallel; returns the first mismatch or the first silent module as an alarm.
+/// Restores the settings that an interrupted run of the controller left behind, and logs each.
 pub async fn verify(
     wiring: &Wiring,
     pace: &Pace,
@@ -84,7 +84,7 @@ async fn restore(
     Ok(())
 }
 
-/// Returns the leftover behind a mismatch; `None` when the controller did not cause it.
+/// Returns the leftover that explains a mismatch; `None` when the controller did not cause the mismatch.
 fn leftover(wiring: &Wiring, module: ModuleId, mismatch: &Mismatch) -> Option<Leftover> {
     let wired = wiring.module(module);
     let of_references = wiring.mask_of(module, &dut::reference_inputs(wiring));

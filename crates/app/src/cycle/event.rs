@@ -14,9 +14,9 @@ use units::RigTime;
 /// An event of a run, sent in the order of occurrence.
 #[derive(Debug, Clone)]
 pub enum Event {
-    /// The outer machine entered a state.
+    /// The machine as a whole entered a state (PackML).
     State(packml::State),
-    /// A part has its verdict.
+    /// A part was judged; it has a verdict now.
     Judged(Box<Judged>),
     /// The beam of a bin saw the part.
     Landed(Landed),
@@ -24,18 +24,18 @@ pub enum Event {
     Left(NestExit),
     /// A judged part goes to retest despite its verdict.
     Interrupted(Interrupted),
-    /// An alarm came, at this rig time.
+    /// An alarm occurred, at this rig time.
     Alarm(Alarm, RigTime),
     /// The list of active or unacknowledged alarms changed.
     ListedAlarms(Vec<ListedAlarm>, RigTime),
-    /// Calibration and reference parts are complete.
+    /// The rig is calibrated: references and reference parts are measured.
     Calibrated(Box<Calibration>),
-    /// A reference check has its result.
+    /// A reference check ended with this result, at this rig time.
     Checked(Checked, RigTime),
-    /// An order has its answer.
+    /// The station answered an order, at this rig time.
     Ordered(Box<AnsweredOrder>, RigTime),
-    /// Parts moved inside the machine: contents for the next run, and uses of wearing parts since the start.
+    /// Parts moved inside the machine: contents for the next run, and use counts of the wearing parts since the start.
     Inside(Inside, Uses),
-    /// The lot itself began, after calibration and reference parts.
+    /// The lot itself began, after calibration and reference parts, at this rig time.
     LotBegan(RigTime),
 }

@@ -1,4 +1,4 @@
-//! Shows what the guard decides about motions that a person may want next, and the one that it refused last.
+//! Shows how the guard decides on the motions that a person may order next, and on the one that it refused last.
 
 use super::Cycle;
 use machine::guard::{Position, Refusal, Situation};
@@ -7,7 +7,7 @@ use machine::station::orders;
 use machine::view::{MotionView, RefusedView, StrokeView};
 use units::RigTime;
 
-/// Largest distance shown, mm.
+/// Largest distance between bodies that is shown, mm.
 const RANGE_MM: f64 = 25.0;
 
 impl Cycle {
@@ -31,7 +31,7 @@ impl Cycle {
         .collect()
     }
 
-    /// Returns a refused motion with its blocker.
+    /// Returns a refused motion with the body that blocks it.
     pub(super) fn refused_motion(
         &self,
         movement: Move,

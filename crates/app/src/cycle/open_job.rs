@@ -4,7 +4,7 @@ use machine::instrument::act::JobDone;
 use machine::rig::wiring::ModuleId;
 use units::RigTime;
 
-/// An open measuring job; it ends with its last transaction.
+/// A measuring job under way; it ends when its last transaction ends.
 #[derive(Debug, Default)]
 pub(super) struct OpenJob {
     parts: usize,
@@ -18,20 +18,20 @@ impl OpenJob {
         self.parts += 1;
     }
 
-    /// Replaces the transaction of a lost write by its repetition, which begins later.
+    /// Closes the transaction of a lost write; the job then waits for the repetition of this write, which begins later.
     pub(super) fn rewrites(&mut self, module: ModuleId) {
         self.parts = self.parts.saturating_sub(1);
         self.rewrites.push(module);
     }
 
-    /// Returns true once for a module whose write was lost.
+    /// Returns true if the job waits for this module's write to be repeated; the wait is over with this call.
     pub(super) fn waits_for(&mut self, module: ModuleId) -> bool {
         let before = self.rewrites.len();
         self.rewrites.retain(|known| *known != module);
         before != self.rewrites.len()
     }
 
-    /// Closes one transaction and keeps the first trouble; returns the job's result after the last one.
+    /// Closes one transaction and keeps the first trouble; after the last transaction, returns the result of the job.
     pub(super) fn part_done(&mut self, at: RigTime, trouble: Option<String>) -> Option<JobDone> {
         self.parts = self.parts.saturating_sub(1);
         self.last = at;

@@ -1,4 +1,4 @@
-//! Receives orders of screens, hands them to the station, returns the answers; drives motions by hand.
+//! Receives orders from screens, hands them to the station, sends back the answers, and drives motions ordered by hand.
 
 use super::{Cycle, Event, publish};
 use machine::handling::moves::Move;
@@ -12,7 +12,7 @@ use units::RigTime;
 pub const PANEL: &str = "panel";
 
 impl Cycle {
-    /// Collects new orders; answers denied and unreadable ones at once.
+    /// Collects new orders and returns those for the station; refuses denied and unreadable ones at once.
     pub(super) fn orders(&mut self, now: RigTime) -> Vec<Order> {
         while let Ok(asked) = self.links.orders.try_recv() {
             self.pending_orders.push(asked);
@@ -45,7 +45,7 @@ impl Cycle {
         }
     }
 
-    /// Records the orders of the machine's buttons, which have no screen to answer.
+    /// Records the orders given with buttons at the machine; no screen waits for an answer to them.
     pub(super) fn pressed(&self, output: &mut TurnOutput, now: RigTime) {
         for (command, answer) in output.pressed.drain(..) {
             let answered = AnsweredOrder {
@@ -75,7 +75,7 @@ impl Cycle {
         asked.answer(said);
     }
 
-    /// Drives a motion by hand; a refusal is the answer to the order, not an alarm.
+    /// Drives a motion ordered by hand; a refusal is the answer to the order, not an alarm.
     pub(super) fn jog(&mut self, movement: Move, now: RigTime) -> Result<(), Refused> {
         let situation = self.station.situation(now, &self.image);
         let cleared = self

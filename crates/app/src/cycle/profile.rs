@@ -2,20 +2,20 @@
 
 use std::time::Instant;
 
-/// Wall time of each phase over all turns, seconds; bus, history and simulator take the rest of the run.
+/// Wall time of each phase, summed over all turns, seconds; bus, history and simulator take the rest of the run.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Profile {
     /// Number of turns.
     pub turns: u64,
-    /// Storing answers in the image.
+    /// Time of `scan`, which stores answers in the image.
     pub scan_s: f64,
-    /// Stepping the station.
+    /// Time of `step`, which steps the station.
     pub step_s: f64,
-    /// Clearing motions by the guard.
+    /// Time of `clear`, which passes motions through the guard.
     pub clear_s: f64,
-    /// Turning outputs into commands.
+    /// Time of `apply`, which turns outputs into commands.
     pub apply_s: f64,
-    /// Building the view for screens.
+    /// Time of `publish`, which builds the view for screens.
     pub publish_s: f64,
 }
 

@@ -19,7 +19,7 @@ use units::{RigTime, Span};
 /// Shortest time between two views.
 pub const PACE: Span = Span::ms(50);
 
-/// Parses an order; the error says what the station expects.
+/// Parses an order; an error says which word it has and which words are known.
 pub fn read(order: &view::Order) -> Result<Order, Refused> {
     let expected = |member, known: Vec<&'static str>, found: Option<&str>| Refused::UnknownWord {
         member,

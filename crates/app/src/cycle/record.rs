@@ -1,4 +1,4 @@
-//! Sends the events of a turn to the record.
+//! Sends the events of a turn to the history.
 
 use super::{Cycle, Event};
 use machine::station::turn::TurnOutput;

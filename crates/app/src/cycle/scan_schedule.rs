@@ -1,25 +1,25 @@
-//! Schedules the scan of a line.
+//! Chooses what the scan of a line polls next.
 //!
-//! The poll of the module with the emergency-stop contact is every second transaction, and even a write waits for it.
-//! The turns between alternate between the watched beam and the other modules; every sixteenth reads the reset status of a
-//! module; when an actuator is not where it should be, the scan reads the reset status of all modules first. Each
-//! list has a counter of its own, so no list starves another.
+//! Every second transaction polls the module with the emergency-stop contact; even a write waits for that poll. The
+//! transactions between them alternate between the beam of the awaited bin and the other modules, and every sixteenth
+//! of them reads the reset status of a module. When an actuator is not where it should be, the scan first reads the
+//! reset status of all modules. Each list has a counter of its own, so no list starves another.
 
 use dcon::Command;
 
-/// One turn in this many, polls of the contact excluded, reads the reset status of a module.
+/// One transaction in this many, polls of the contact not counted, reads the reset status of a module.
 const RESET_EVERY: usize = 16;
 
-/// The scan of one line.
+/// Schedule of the scan of one line.
 #[derive(Debug)]
 pub(super) struct ScanSchedule {
-    /// Poll of the emergency-stop contact, every second transaction; `None` on other lines.
+    /// Poll of the module with the emergency-stop contact; `None` on a line without this contact.
     priority: Option<Command>,
     /// Polls of the other modules.
     others: Vec<Command>,
-    /// Reset status of every module with outputs.
+    /// Commands that read the reset status, one for every module with outputs.
     pub(super) resets: Vec<Command>,
-    /// The last transaction was not the poll of the contact.
+    /// True when the next transaction must poll the contact, because the last one did not.
     contact_is_due: bool,
     turn: usize,
     next_other: usize,
@@ -29,7 +29,7 @@ pub(super) struct ScanSchedule {
     beam_was_last: bool,
 }
 
-/// Next transaction of a scan.
+/// What the scan polls next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum ScanPoll {
     /// The poll of the contact; the next turn follows at once.
@@ -57,13 +57,13 @@ impl ScanSchedule {
         }
     }
 
-    /// Returns the poll of the contact when it is due.
+    /// Returns the poll of the contact when it is due; the contact is then no longer due.
     pub(super) fn contact(&mut self) -> Option<Command> {
         let is_due = std::mem::take(&mut self.contact_is_due);
         self.priority.filter(|_| is_due)
     }
 
-    /// Notes a transaction other than the poll of the contact.
+    /// Notes that a transaction did not poll the contact, which is therefore due next.
     pub(super) fn note_other(&mut self) {
         self.contact_is_due = true;
     }
@@ -75,7 +75,7 @@ impl ScanSchedule {
         }
     }
 
-    /// Returns the next poll; `None` on a line without modules to poll.
+    /// Returns the next poll; `None` when the line has nothing to poll. `beam` polls the beam of the awaited bin.
     pub(super) fn next(&mut self, beam: Option<Command>) -> Option<ScanPoll> {
         if let Some(command) = self.contact() {
             return Some(ScanPoll::Priority(command));
@@ -100,7 +100,7 @@ impl ScanSchedule {
     }
 }
 
-/// Returns the entries of `list` in turn, cyclically.
+/// Returns the next entry of `list`, the first again after the last; `next` holds the position.
 fn round(list: &[Command], next: &mut usize) -> Option<Command> {
     let command = *list.get(*next % list.len().max(1))?;
     *next = (*next + 1) % list.len();
@@ -125,7 +125,7 @@ mod tests {
         Digital::ReadEvents { channel }.to(Address(0x11))
     }
 
-    /// Counts each command in `turns` turns.
+    /// Counts how often each command comes in `turns` transactions.
     fn counted(
         scan_schedule: &mut ScanSchedule,
         beam: Option<Command>,

@@ -9,7 +9,7 @@ use units::Span;
 const SAFE_WITHIN: Span = Span::ms(2000);
 
 impl Cycle {
-    /// Verifies every module against the wiring; restores modules whose watchdog tripped while the host was silent.
+    /// Compares every module with the wiring; restores modules whose watchdog tripped while no controller ran.
     pub(super) async fn verify(&mut self) {
         self.quiet().await;
         assert!(self.traffic.is_quiet(), "verified while a line is in use");
@@ -30,7 +30,7 @@ impl Cycle {
         self.outputs.everything_safe();
     }
 
-    /// Waits until no transaction is under way; starts no scan.
+    /// Waits until no transaction is under way; stops the scan.
     async fn quiet(&mut self) {
         self.traffic.only_writes();
         while !self.traffic.is_quiet() {

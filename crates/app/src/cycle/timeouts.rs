@@ -1,9 +1,9 @@
-//! Counts consecutive failures of scans and writes, up to the number of tries in the bus settings.
+//! Counts consecutive failures of scans and writes; the bus settings say how many tries are allowed.
 
 use dcon::{Address, Command};
 use machine::rig::wiring::{LineId, ModuleId, Wiring};
 
-/// Failures in a row: of scans by address, of writes by module.
+/// Consecutive failures: of scans by line and address, of writes by module.
 #[derive(Debug)]
 pub(super) struct Timeouts {
     tries: u8,
@@ -20,7 +20,7 @@ impl Timeouts {
         }
     }
 
-    /// Counts a failed scan; returns the count once it reaches the limit.
+    /// Counts a failed scan; returns the number of consecutive failures once it reaches the limit, else `None`.
     pub(super) fn scan_failed(&mut self, line: LineId, command: &Command) -> Option<u8> {
         let address = command.address();
         let known = self
@@ -56,7 +56,7 @@ impl Timeouts {
         self.writes[module.0] = 0;
     }
 
-    /// Resets all counts of writes: at the end the cycle writes every module until it confirms.
+    /// Resets the counts of writes; at the end of a run the cycle repeats every write until the module confirms it.
     pub(super) fn reset_writes(&mut self) {
         self.writes.fill(0);
     }

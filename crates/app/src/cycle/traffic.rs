@@ -17,7 +17,7 @@ use std::task::Poll;
 use tokio::sync::mpsc;
 use units::{RigTime, Span};
 
-/// Longest queue of a line: several times all requests of a verification.
+/// Most commands that wait for one line: several times those of a verification.
 const MAX_QUEUE: usize = 2_000;
 
 fn reset_questions(wiring: &Wiring, line: LineId) -> Vec<Command> {
@@ -29,8 +29,8 @@ fn reset_questions(wiring: &Wiring, line: LineId) -> Vec<Command> {
         .collect()
 }
 
-/// Returns the modules of a line that carry machine inputs or beams, by address; acts of a test read those of a
-/// fixture.
+/// Returns the modules of a line, by address, that carry inputs of the machine or beams of bins. Inputs of a fixture
+/// are not scanned; a test reads them itself.
 fn scanned_modules(wiring: &Wiring, line: LineId) -> Vec<ModuleId> {
     let machine = DigitalIn::ALL.iter().copied().map(DigitalInput::from);
     let beams = wiring.axis.bins().map(|bin| wiring.axis.beam(bin));
@@ -40,34 +40,34 @@ fn scanned_modules(wiring: &Wiring, line: LineId) -> Vec<ModuleId> {
     modules.into_iter().filter(here).collect()
 }
 
-/// The cycle's ends of the queues of a line.
+/// The two queue ends of one line that the cycle holds.
 #[derive(Debug)]
 pub struct LineEnds {
-    /// The line.
+    /// Line that the queues belong to.
     pub line: LineId,
-    /// Requests to the line's task; holds one.
+    /// Carries requests to the task of the line; holds one.
     pub requests: mpsc::Sender<Request>,
-    /// Answers of the line's task.
+    /// Carries the answers from the task of the line.
     pub answers: mpsc::Receiver<Answer>,
 }
 
 /// Purpose of a transaction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
-    /// An output write.
+    /// Writes outputs.
     Write {
-        /// The written module.
+        /// Module that is written.
         module: ModuleId,
-        /// The measuring job waits for this write.
+        /// True when the measuring job waits for this write.
         job: bool,
     },
-    /// A transaction of the measuring job.
+    /// Belongs to the measuring job.
     Job,
-    /// A poll of the motion sensors.
+    /// Polls sensors of the machine.
     Scan,
-    /// A request of the verification at the start.
+    /// Verifies a setting at the start of a run.
     Check,
-    /// The host-OK message that feeds the modules' watchdogs.
+    /// Feeds the host watchdogs of the modules with the broadcast "host OK".
     Heartbeat,
 }
 
@@ -85,25 +85,25 @@ struct Slot {
 /// Queues and open transactions of all lines.
 pub struct Traffic {
     slots: Vec<Slot>,
-    /// Lines with points of a fixture.
+    /// Measuring lines: those that carry points of a fixture.
     measuring: Vec<LineId>,
     heartbeat: Span,
     scan_period: Span,
     job: Option<OpenJob>,
     beam: Option<Command>,
-    /// An actuator is not where it should be: the scan reads the modules' reset status first.
+    /// True while an actuator is not where it should be; the scan then reads the reset status of the modules first.
     restart_check: bool,
     beam_line: LineId,
     scanning: bool,
     check_tries: u8,
-    /// Safe writes are queued; they go before the poll of the contact.
+    /// True once safe writes are queued; they go even before the poll of the emergency-stop contact.
     making_safe: bool,
     ticket: u64,
     now: RigTime,
 }
 
 impl Traffic {
-    /// Starts with empty queues and every heartbeat due.
+    /// Creates the traffic of the lines, with empty queues and every heartbeat due.
     pub fn new(wiring: &Arc<Wiring>, lines: Vec<LineEnds>) -> Self {
         let estop = wiring.emergency_stop_module();
         let estop_line = wiring.module(estop).line;
@@ -145,12 +145,12 @@ impl Traffic {
         }
     }
 
-    /// Returns the lines with points of a fixture.
+    /// Returns the measuring lines: those that carry points of a fixture.
     pub fn measuring_lines(&self) -> &[LineId] {
         &self.measuring
     }
 
-    /// Returns the reset-status command of every module with outputs on the measuring lines.
+    /// Returns, for every module with outputs on a measuring line, the command that reads its reset status.
     pub fn measuring_resets(&self) -> Vec<(LineId, Command)> {
         let slots = self.slots.iter();
         let measuring = slots.filter(|slot| self.measuring.contains(&slot.ends.line));
@@ -170,17 +170,17 @@ impl Traffic {
             .map_or(1, |slot| slot.tries)
     }
 
-    /// Sets the time of this turn.
+    /// Sets the time at which this turn began.
     pub fn note_time(&mut self, now: RigTime) {
         self.now = now;
     }
 
-    /// Starts the scan of the motion sensors.
+    /// Starts the scan of the machine's sensors, on all lines.
     pub fn start_scan(&mut self) {
         self.scanning = true;
     }
 
-    /// Allows only writes and heartbeats from now on.
+    /// Stops the scan; queued commands and heartbeats still go.
     pub fn only_writes(&mut self) {
         self.scanning = false;
     }
@@ -203,8 +203,8 @@ impl Traffic {
         self.beam = command;
     }
 
-    /// Turns the restart check on or off. When it turns on, the scan reads the reset status of every scanned module at
-    /// once, so that the answers arrive before the debounce time of a sensor ends.
+    /// Turns the restart check on or off. Once it is on, the scan reads the reset status of every scanned module first,
+    /// so that the answers arrive before the debounce time of a sensor ends.
     pub fn check_restarts(&mut self, restart_check: bool) {
         if restart_check && !self.restart_check {
             for slot in &mut self.slots {
@@ -214,14 +214,14 @@ impl Traffic {
         self.restart_check = restart_check;
     }
 
-    /// Makes the job wait for the repetition of a lost write.
+    /// Makes the measuring job wait until the lost write to this module is repeated.
     pub fn rewrite_for_job(&mut self, module: ModuleId) {
         if let Some(job) = &mut self.job {
             job.rewrites(module);
         }
     }
 
-    /// Returns true once for a module whose lost write the job waits for.
+    /// Returns true if the measuring job waits for this module's write to be repeated; the wait is over with this call.
     pub fn is_rewrite_for_job(&mut self, module: ModuleId) -> bool {
         self.job.as_mut().is_some_and(|job| job.waits_for(module))
     }
@@ -232,8 +232,8 @@ impl Traffic {
         self.job = Some(OpenJob::default());
     }
 
-    /// Drops the job and all queued commands, writes too: safe writes replace them. Returns the modules of the dropped
-    /// writes.
+    /// Drops the measuring job and all queued commands. Queued writes are dropped too, because safe writes replace
+    /// them; returns the modules of these writes.
     pub fn drop_all(&mut self) -> Vec<ModuleId> {
         self.job = None;
         self.making_safe = true;
@@ -246,14 +246,14 @@ impl Traffic {
         written.collect()
     }
 
-    /// Returns the result of a job that needed no transaction.
+    /// Returns the result of a measuring job that needed no transaction.
     pub fn job_if_empty(&mut self, now: RigTime) -> Option<JobDone> {
         let done = self.job.as_ref()?.if_empty(now)?;
         self.job = None;
         Some(done)
     }
 
-    /// Closes one transaction of the job; returns the job's result after the last one.
+    /// Closes one transaction of the measuring job; after the last one, returns the result of the job.
     pub fn job_part_done(&mut self, at: RigTime, trouble: Option<String>) -> Option<JobDone> {
         let done = self.job.as_mut()?.part_done(at, trouble)?;
         self.job = None;
@@ -288,8 +288,8 @@ impl Traffic {
                 command,
                 tries,
             };
-            // The queue holds one request and the slot is idle, so there is room; a closed queue means the line's task
-            // ended.
+            // The queue holds one request and no transaction is under way, so there is room; a closed queue means that
+            // the line's task has ended.
             if slot.ends.requests.try_send(request).is_ok() {
                 slot.busy = Some(purpose);
             }
@@ -371,7 +371,7 @@ impl Traffic {
         .await;
     }
 
-    /// Returns when an idle line next has a heartbeat or a scan due.
+    /// Returns the first instant at which a heartbeat or a scan is due on an idle line.
     pub fn next_due(&self, now: RigTime) -> Option<RigTime> {
         self.slots
             .iter()

@@ -1,10 +1,10 @@
-//! Generates a history as large as that of weeks in a plant, for trying queries and reports.
+//! Generates a history as large as weeks of production would make it, for trying queries and reports.
 //!
-//! Parts follow the lot of the default world (means, scatter, 4 % defects) and the recipe judges them by the rules of a
-//! run. They come in lots of [`LOT`] at the pace of the rig and end at [`GenerateOptions::until`]. Five per cent of the values have
-//! a second attempt. Only rejects carry raw replies: a rig keeps about thirty replies per part, which would make the
-//! file three times as large and no query slower. The history marks the runs as simulated. The same seed gives the same
-//! values.
+//! The values follow the lot of the default world (means, scatter, 4 % defects), and the recipe judges them by the
+//! rules of a run. The parts come in lots of [`LOT`], one every [`CYCLE_US`], and end at [`GenerateOptions::until`].
+//! Five per cent of the values have a second attempt. Only rejects carry raw replies: a rig keeps about thirty replies
+//! per part, which would make the file three times as large and would slow no query. The history marks the runs as
+//! simulated. The same seed gives the same values.
 
 mod parts;
 
@@ -14,7 +14,7 @@ use parts::PartGenerator;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Parts per lot: four hours of the line.
+/// Parts per lot: production of four hours.
 const LOT: u64 = 10_000;
 /// Parts per transaction.
 pub const BATCH: u64 = 1_000;
@@ -41,11 +41,11 @@ pub struct Generated {
     pub parts: u64,
     /// Number of measurement rows.
     pub measurements: u64,
-    /// Wall time of the transactions, disk flushes included, drawing of values excluded.
+    /// Wall time of the database transactions, disk flushes included; drawing the values is not counted.
     pub writing: Duration,
 }
 
-/// Writes the parts into `db`, which may hold others already; calls `done_so_far` with the number of parts written.
+/// Writes the parts into `db`, which may already hold others; calls `done_so_far` with the number of parts written.
 ///
 /// # Errors
 /// Fails on an invalid recipe, or when the history cannot be written.

@@ -7,12 +7,12 @@ use machine::gauge::{Budget, Limit, Reading, judge};
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
-/// Share of parts with a defect, as in the default world.
+/// Share of parts with a defect, 0 to 1, as in the default world.
 const DEFECTS: f64 = 0.04;
-/// Share of values with a second attempt.
+/// Share of values with a second attempt, 0 to 1.
 const REPEATED: f64 = 0.05;
 
-/// One characteristic of the generated parts.
+/// One characteristic, with what is needed to draw its values.
 struct Generated {
     of: Characteristic,
     limit: Limit,
@@ -30,7 +30,7 @@ pub(super) struct PartGenerator {
 }
 
 impl PartGenerator {
-    /// Creates a generator of parts of this recipe.
+    /// Creates a generator for parts of this recipe.
     pub fn new(recipe: &Recipe, seed: u64) -> Self {
         let MadeUp { scatter, looks } = recipe.device.made_up(&recipe.limits);
         let characteristics = scatter.into_iter().map(|(of, scatter)| Generated {
@@ -47,7 +47,8 @@ impl PartGenerator {
         }
     }
 
-    /// Draws part `seq` of a lot that began at `begin_us`, microseconds since 1970; `cycle_us` separates two parts.
+    /// Draws part `seq` of a lot that began at `begin_us` (microseconds since 1970), with `cycle_us` microseconds from
+    /// part to part.
     pub fn part(&mut self, lot: &str, seq: u64, begin_us: i64, cycle_us: i64) -> PartRecord {
         let at_us = begin_us + cycle_us * i64::try_from(seq).unwrap_or(i64::MAX / cycle_us);
         let defect = (self.random.unit() < DEFECTS)

@@ -1,5 +1,5 @@
-//! Imports a file of an older system, CSV or a spreadsheet by its extension: the whole file or none of it, and the same file
-//! into the same lot only once.
+//! Imports a file of an older system, CSV or spreadsheet by its extension. A file is imported whole or not at all, and
+//! only once into the same lot.
 
 mod sheet;
 #[cfg(test)]
@@ -14,17 +14,17 @@ use std::path::Path;
 /// A file to import.
 #[derive(Debug)]
 pub struct Source<'a> {
-    /// Path; the extension tells a spreadsheet from CSV.
+    /// Path of the file; its extension says whether it is a spreadsheet or CSV.
     pub file: &'a Path,
     /// Content of the file.
     pub bytes: &'a [u8],
-    /// Sheet of the spreadsheet; the first when absent.
+    /// Name of the sheet to read from a spreadsheet; `None`: the first sheet.
     pub sheet: Option<&'a str>,
-    /// Columns of the file with the keys that they stand for.
+    /// Pairs of a column's name in the file and the key that the column stands for.
     pub maps: &'a [(String, String)],
 }
 
-/// The run that holds the parts of a file.
+/// The run that was made for the parts of a file.
 #[derive(Debug)]
 pub struct Imported {
     /// Number of parts.
@@ -36,7 +36,7 @@ pub struct Imported {
 /// Puts the parts of a file into a new run of `lot`.
 ///
 /// # Errors
-/// Fails when the file is not readable as records, is in the lot already, or has an unknown column or an invalid cell.
+/// Fails when the file has no readable records, an unknown column or an invalid cell, or when it is in the lot already.
 pub fn import(db: &Path, source: &Source, lot: &str) -> anyhow::Result<Imported> {
     let name = || source.file.display().to_string();
     let records = records(source).with_context(name)?;
@@ -65,7 +65,7 @@ fn records(source: &Source) -> anyhow::Result<Vec<csv::Record>> {
     Ok(csv::read(text(source.bytes)?)?)
 }
 
-/// Numbers the parts in order of the file; a row without a time gets that of the import.
+/// Numbers the parts in the order of the file; a row without a time gets the time of the import.
 fn numbered(rows: Vec<ImportRow>, lot: &str, now_us: i64) -> Vec<PartRecord> {
     let part = |(seq, row): (u64, ImportRow)| {
         let judged_at_us = if row.timed {

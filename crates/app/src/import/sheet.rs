@@ -1,8 +1,7 @@
-//! The first (or a named) sheet of a spreadsheet as records: xlsx, xlsm, xlsb, xls, ods.
+//! Reads the first sheet of a spreadsheet, or a named one, as records: xlsx, xlsm, xlsb, xls, ods.
 //!
-//! Numbers come as the shortest text that reads back the same, dates as RFC 3339 in the zone of this
-//! computer (a spreadsheet has no zone). Empty rows are skipped; the others keep
-//! their row numbers.
+//! A number becomes the shortest text that reads back as the same number. A date becomes RFC 3339 in the time zone of
+//! this computer, because a spreadsheet has none. Empty rows are skipped; the others keep their row numbers.
 
 use anyhow::Context;
 use calamine::{Data, Reader, open_workbook_auto};
@@ -12,16 +11,16 @@ use jiff::Timestamp;
 use jiff::tz::TimeZone;
 use std::path::Path;
 
-/// Extensions of spreadsheets.
+/// File name extensions of spreadsheets.
 const ENDINGS: [&str; 5] = ["xlsx", "xlsm", "xlsb", "xls", "ods"];
 
-/// Returns true for the name of a spreadsheet.
+/// Returns true when the file has an extension of a spreadsheet.
 pub(super) fn is_spreadsheet(file: &Path) -> bool {
     let ending = file.extension().map(std::ffi::OsStr::to_ascii_lowercase);
     ending.is_some_and(|it| ENDINGS.iter().any(|known| it == *known))
 }
 
-/// Returns the header and the rows with content.
+/// Returns the header and the rows that are not empty.
 pub(super) fn records(
     file: &Path,
     sheet: Option<&str>,
@@ -61,7 +60,7 @@ fn text(cell: &Data, zone: &TimeZone) -> String {
     }
 }
 
-/// Returns days of a spreadsheet as RFC 3339; `None` beyond the calendar.
+/// Converts a spreadsheet's date, in days, to RFC 3339; `None` beyond the range of the calendar.
 fn instant(days: f64, zone: &TimeZone) -> Option<String> {
     let microseconds = ((days - EPOCH_DAYS) * 86_400e6).round() as i64;
     let civil = Timestamp::from_microsecond(microseconds)

@@ -1,4 +1,4 @@
-//! Facts about spreadsheets of an older system.
+//! Tests the import of spreadsheets from an older system.
 #![allow(clippy::unwrap_used)]
 
 use super::sheet::{is_spreadsheet, records};

@@ -1,4 +1,4 @@
-//! Builds a cycle from configuration, recipe and calibration.
+//! Builds the cycle of a run from configuration, recipe and calibration.
 
 use super::LotContext;
 use super::prior_state::PriorState;
@@ -72,14 +72,14 @@ pub(super) fn cycle(
     };
     let mechanism = Mechanism::new(strokes, wiring.strokes, size_of(context.recipe));
     let mut station = Station::new(plan, device, wiring.axis.clone(), mechanism);
-    // An unattended run cannot acknowledge alarms of an earlier one.
+    // An unattended run raises no alarms of earlier runs again, because nobody is there to acknowledge them.
     for left in alarms.into_iter().filter(|_| attended) {
         raise_again(&mut station, left, context.epoch_us);
     }
     Ok(Cycle::new(wiring, pace, station, guard, lines, links))
 }
 
-/// Returns the machine as a screen draws it, with parts of the size in `recipe`.
+/// Returns the drawing of the machine for screens, with parts of the size in `recipe`.
 pub fn mimic(plant: &Plant, recipe: &Recipe) -> anyhow::Result<Mimic> {
     let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
     let ride = |(it, way): (Actuator, [f64; 3])| (it.name().to_owned(), way);
@@ -95,7 +95,7 @@ pub fn mimic(plant: &Plant, recipe: &Recipe) -> anyhow::Result<Mimic> {
     })
 }
 
-/// Raises an unacknowledged alarm of an earlier run again.
+/// Raises an alarm again that an earlier run left unacknowledged.
 fn raise_again(station: &mut Station, left: UnacknowledgedAlarm, epoch_us: i64) {
     let Some(code) = AlarmCode::from_name(&left.code) else {
         return tracing::warn!(code = left.code, "skipped an unknown alarm");

@@ -1,4 +1,4 @@
-//! Input of a run: configuration, recipe, order, rig and purpose.
+//! Everything a run needs: configuration, recipe, order, rig and purpose.
 
 use crate::order::LotOrder;
 use crate::source::RigSource;
@@ -8,18 +8,19 @@ use machine::station::packml::State;
 use std::sync::Arc;
 use units::RigTime;
 
-/// Lot of parts found inside the rig between lots.
+/// Name of the lot that takes the parts found inside the rig between lots.
 pub const FOUND_LOT: &str = "found in the rig";
 
 /// Purpose of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
-    /// Calibration when it is due, reference parts, then the parts of the lot.
+    /// To calibrate if that is due, to measure reference parts, then to test the parts of the lot.
     Lot,
-    /// No lot: the machine rests in this state and discharges parts found inside as lot [`FOUND_LOT`].
+    /// To control the machine between lots: it rests in this state, and discharges parts found inside as lot
+    /// [`FOUND_LOT`].
     BetweenLots(State),
-    /// References and reference parts only, even with a valid calibration; the history keeps no calibration of this
-    /// run.
+    /// To measure the references and the reference parts only, even if a calibration is valid; the run itself stores no
+    /// calibration in the history.
     Calibration,
 }
 
@@ -38,7 +39,7 @@ impl Purpose {
     }
 }
 
-/// Input of a run.
+/// Everything a run needs.
 #[derive(Debug, Clone, Copy)]
 pub struct LotContext<'a> {
     /// Configuration of the plant.
@@ -56,7 +57,7 @@ pub struct LotContext<'a> {
 }
 
 impl<'a> LotContext<'a> {
-    /// Starts rig time at the epoch of a live rig, else now.
+    /// Creates the context; rig time zero is the epoch of a live rig, or now on any other rig.
     pub fn new(
         plant: &'a Plant,
         (order, recipe): (&'a LotOrder, &'a Arc<Recipe>),

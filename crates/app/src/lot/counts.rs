@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 pub struct Counts {
     /// Judged parts of the lot by verdict.
     pub verdicts: BTreeMap<&'static str, u64>,
-    /// Parts of the lot that a beam has confirmed, by bin.
+    /// Parts of the lot that were seen by the beam of a bin, by bin.
     pub bins: BTreeMap<String, u64>,
     /// Alarms of the run.
     pub alarms: u64,
@@ -19,7 +19,7 @@ impl Counts {
         *self.verdicts.entry(verdict).or_insert(0) += 1;
     }
 
-    /// Removes a part whose verdict became invalid.
+    /// Counts one part less with this verdict, because the verdict became invalid.
     pub(super) fn remove(&mut self, verdict: &str) {
         if let Some(count) = self.verdicts.get_mut(verdict) {
             *count -= 1;
@@ -41,7 +41,7 @@ impl Counts {
         (elapsed_s > 0.0).then(|| self.parts() as f64 / elapsed_s * 3600.0)
     }
 
-    /// Formats pace and yield in one line.
+    /// Formats pace and yield as one line of text.
     pub fn pace_and_yield(&self, per_hour: Option<f64>) -> String {
         let good = 100.0 * self.of("pass") as f64 / self.parts().max(1) as f64;
         format!("{:.0} parts/h, yield {good:.1} %", per_hour.unwrap_or(0.0))

@@ -12,21 +12,21 @@ use tokio::sync::mpsc;
 /// Event of a run, in order of occurrence.
 #[derive(Debug)]
 pub enum LotEvent {
-    /// The run begins; the rig has received nothing yet.
+    /// The run begins; nothing has been sent to the rig yet.
     Begun,
     /// An event of the control cycle.
     Cycle(Event),
-    /// A judged part is done: it has landed, or the run is over and it never will.
+    /// A judged part needs no more: it has landed in a bin, or the run is over and it never will (`None`).
     PartDone(Box<PartUnderWay>, Option<Landed>),
-    /// These files hold the last traffic of every line before an alarm.
+    /// These files hold the traffic of every line before an alarm.
     TracesKept(Vec<PathBuf>),
     /// The run is over.
     Ended(Box<Summary>),
 }
 
-/// Receives the events of a run: a page, a terminal, a script.
+/// Receives the events of a run; a page, a terminal or a script implements it.
 pub trait Subscriber {
-    /// Receives an event that `lot` already includes.
+    /// Receives an event; `lot` already takes it into account.
     fn receive(&mut self, event: &LotEvent, lot: &LotProgress<'_>);
 }
 
@@ -35,7 +35,7 @@ impl Subscriber for () {
     fn receive(&mut self, _: &LotEvent, _: &LotProgress<'_>) {}
 }
 
-/// Passes every event to both, the first one first.
+/// Passes every event to both subscribers, first to the left one.
 impl<A: Subscriber, B: Subscriber> Subscriber for (A, B) {
     fn receive(&mut self, event: &LotEvent, lot: &LotProgress<'_>) {
         self.0.receive(event, lot);
@@ -49,7 +49,7 @@ impl<S: Subscriber + ?Sized> Subscriber for &mut S {
     }
 }
 
-/// Keeps the first calibration of a run.
+/// Keeps the first calibration that a run reports.
 impl Subscriber for OnceLock<Calibration> {
     fn receive(&mut self, event: &LotEvent, _: &LotProgress<'_>) {
         if let LotEvent::Cycle(Event::Calibrated(calibration)) = event {
@@ -62,7 +62,7 @@ impl Subscriber for OnceLock<Calibration> {
 impl Subscriber for mpsc::UnboundedSender<Event> {
     fn receive(&mut self, event: &LotEvent, _: &LotProgress<'_>) {
         if let LotEvent::Cycle(event) = event {
-            // A closed receiver needs no events.
+            // A receiver that is gone needs no events.
             let _ = self.send(event.clone());
         }
     }

@@ -1,4 +1,5 @@
-//! Rows of a run other than its parts: state of the lot, alarms and their acknowledgement, reference checks, wear.
+//! Makes the rows of a run other than those of its parts: state of the lot, alarms and their acknowledgement, reference
+//! checks, wear, end of the run.
 
 use crate::alarm_order;
 use crate::exit::Exit;
@@ -17,10 +18,10 @@ use texts::Lang;
 
 /// Alarms that put the lot on hold until a person releases it.
 const HOLD_ALARMS: [AlarmCode; 2] = [AlarmCode::ReferenceCheckFailed, AlarmCode::RejectRateLimit];
-/// Alarm of reference parts that disagree with their certificates.
+/// Alarm raised when reference parts disagree with their certificates.
 const NOT_CALIBRATED: AlarmCode = AlarmCode::CalibrationFailed;
 
-/// State of a run as the history has it so far.
+/// What the rows so far say about the run.
 #[derive(Debug)]
 pub struct Journal {
     /// Name of the lot; `None` between lots.
@@ -28,7 +29,7 @@ pub struct Journal {
     simulated: bool,
     /// Codes of alarms whose cause is present.
     active: Vec<String>,
-    /// Code of the alarm that holds the lot.
+    /// Code of the alarm that put the lot on hold; `None` when the lot is not on hold.
     held: Option<String>,
     uses: Uses,
 }
@@ -45,13 +46,13 @@ impl Journal {
         }
     }
 
-    /// Begins a run of `lot`.
+    /// Begins a run of `lot`; returns the row that marks the lot as running.
     pub fn begin(&mut self, lot: &str, at_us: i64) -> Option<Row> {
         self.lot = Some(lot.to_owned());
         self.lot(LotState::Running, None, at_us)
     }
 
-    /// Returns true until the run of a lot begins.
+    /// Returns true until [`Self::begin`] begins a run of a lot.
     pub fn has_no_lot(&self) -> bool {
         self.lot.is_none()
     }
@@ -91,7 +92,8 @@ impl Journal {
         rows
     }
 
-    /// Returns the rows of a changed alarm list: alarms that cleared, and a lot that continues.
+    /// Returns the rows of a changed alarm list: for alarms whose cause is gone, and for a lot that is no longer on
+    /// hold.
     pub fn standing(&mut self, standing: &[ListedAlarm], at_us: i64) -> Vec<Row> {
         let active: Vec<String> = standing
             .iter()
@@ -116,7 +118,7 @@ impl Journal {
         })
     }
 
-    /// Returns the rows of an answered order, with its effect on alarms.
+    /// Returns the rows of an answered order: the order itself, and the change that it makes to alarms.
     pub fn ordered(&self, it: &AnsweredOrder, at_us: i64) -> Vec<Row> {
         let by = &it.by;
         let mut rows = vec![Row::Order(OrderRecord {
@@ -156,7 +158,7 @@ impl Journal {
         self.lot.as_ref().map(row)
     }
 
-    /// Returns the rows of the uses since the last call.
+    /// Returns rows with the increase of each use count since the last call.
     pub fn uses(&mut self, uses: Uses) -> Vec<Row> {
         let before = std::mem::replace(&mut self.uses, uses);
         let each = uses.each().into_iter().zip(before.each());
@@ -179,7 +181,7 @@ impl Journal {
         })
     }
 
-    /// Returns the rows of the end of a run and of the state that the lot has after it.
+    /// Returns the row that ends the run, with its cause, and the row with the state of the lot after it.
     pub fn ended(&self, ending: &Ending, exit: &Exit, at_us: i64) -> Vec<Row> {
         let Some(lot) = &self.lot else {
             return Vec::new();

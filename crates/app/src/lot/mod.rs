@@ -1,12 +1,13 @@
-//! Runs a lot: one stream of events, and its subscribers.
+//! Runs a lot: one stream of events goes to several subscribers.
 //!
 //! | subscriber | does |
 //! |---|---|
 //! | `recorder` (with `journal`, `rows`) | writes the history, before the sorter may release a part |
 //! | `screen` | shows the run on the page |
-//! | the caller's | progress bar, rows on stdout, a script, a calibration to keep |
+//! | the caller's | shows a progress bar, prints rows on stdout, plays a script, or keeps a calibration |
 //!
-//! The cycle sends events; `progress` includes each one, and every subscriber then receives it with the progress.
+//! The cycle sends events; `progress` takes each into account first, then every subscriber receives it with the
+//! progress.
 
 mod assemble;
 mod context;
@@ -54,7 +55,7 @@ use tokio::sync::{mpsc, watch};
 pub struct LotRunner<'a> {
     /// History file.
     pub db: &'a Path,
-    /// Input of the run; its lot has passed admission.
+    /// Everything the run needs; its lot has passed admission.
     pub context: LotContext<'a>,
     /// Controls shared with page, signals and scripts.
     pub controls: &'a Controls,

@@ -9,9 +9,9 @@ use machine::handling::wear::Uses;
 
 /// State of the rig that a run takes over.
 pub(super) struct PriorState {
-    /// Calibration that is still valid, made in the supply range of the recipe.
+    /// Calibration that is still valid and was made in the supply range of the recipe; `None`: the run calibrates.
     pub calibration: Option<Calibration>,
-    /// Uses of wearing parts.
+    /// Use counts of the wearing parts, as the history has them.
     pub uses: Uses,
     /// Unacknowledged alarms of earlier runs.
     pub alarms: Vec<UnacknowledgedAlarm>,
@@ -20,7 +20,7 @@ pub(super) struct PriorState {
 }
 
 impl PriorState {
-    /// Reads it from `store`; a live rig brings its own calibration, a new simulated rig has none.
+    /// Reads the state from `store`; a live rig brings its own calibration, a new simulated rig has none.
     pub fn read(store: &Store, context: &LotContext) -> anyhow::Result<Self> {
         let simulated = context.is_simulated();
         let calibration = match context.purpose {
@@ -58,7 +58,7 @@ fn live_calibration(_: &LotContext) -> Option<Calibration> {
     None
 }
 
-/// Returns true for a simulated rig whose time begins with this run.
+/// Returns true for a simulated rig whose rig time begins with this run.
 #[cfg(feature = "sim")]
 fn is_new(context: &LotContext) -> bool {
     let live = context.source.live();
@@ -83,7 +83,7 @@ fn uses(store: &Store, simulated: bool) -> anyhow::Result<Uses> {
     })
 }
 
-/// Returns the stored calibration unless it is overdue.
+/// Returns the stored calibration; `None` when it is overdue.
 fn valid_calibration(store: &Store, context: &LotContext) -> anyhow::Result<Option<Calibration>> {
     let Some(nominal_v) = context.recipe.device.part().nominal_v else {
         return Ok(None);

@@ -1,4 +1,4 @@
-//! Tracks the progress of a run.
+//! Tracks the progress of a run, and decides how the run ends: [`LotProgress::exit`] chooses exit and cause.
 
 use super::context::LotContext;
 use super::counts::Counts;
@@ -23,9 +23,10 @@ use units::RigTime;
 pub struct PartUnderWay {
     /// The part with its record and verdict.
     pub judged: Box<Judged>,
-    /// Time since the nest exit of the part before, seconds of rig time; `None` before such an exit.
+    /// Time from the moment the previous part left the nest to the moment this one left it, seconds of rig time; `None`
+    /// before it leaves, and for the first part.
     pub cycle_s: Option<f64>,
-    /// Number of reference parts judged, this one included.
+    /// Number of reference parts judged so far; this part counts if it is one.
     pub reference_count: u64,
 }
 
@@ -50,12 +51,12 @@ pub struct LotProgress<'a> {
     under_way: BTreeMap<u64, PartUnderWay>,
     eeprom: EepromCount,
     eeprom_at_start: Option<u64>,
-    /// First alarm of the present trouble, else the last alarm.
+    /// First alarm of the present trouble; without present trouble, the last alarm.
     trouble: Option<Alarm>,
 }
 
 impl<'a> LotProgress<'a> {
-    /// Creates the progress of a run before its first event.
+    /// Creates the progress of a run that has had no event.
     pub fn new(context: LotContext<'a>, eeprom: EepromCount) -> Self {
         Self {
             context,
@@ -71,7 +72,7 @@ impl<'a> LotProgress<'a> {
         }
     }
 
-    /// Returns the part with this ordinal, between verdict and beam.
+    /// Returns the part with this ordinal while it is under way, from verdict to landing.
     pub fn part(&self, ordinal: u64) -> Option<&PartUnderWay> {
         self.under_way.get(&ordinal)
     }
@@ -82,12 +83,12 @@ impl<'a> LotProgress<'a> {
         self.counts.per_hour(now.since(began).as_seconds())
     }
 
-    /// Returns when the last part landed, else when the lot began, else rig time zero.
+    /// Returns when the last part landed; before the first landing, when the lot began; before that, rig time zero.
     pub fn end(&self) -> RigTime {
         self.last_landed.or(self.lot_began).unwrap_or_default()
     }
 
-    /// Includes an event of the cycle; returns the event of the lot that follows from it.
+    /// Takes an event of the cycle into account; returns the event of the run that follows from it.
     pub fn apply(&mut self, event: &Event) -> Option<LotEvent> {
         match event {
             Event::Judged(judged) => self.judged(judged),
@@ -134,7 +135,7 @@ impl<'a> LotProgress<'a> {
         assert!(before.is_none(), "part {ordinal} was judged twice");
     }
 
-    /// Turns a judged part into a void one that goes to retest.
+    /// Makes a judged part void, because it goes to retest.
     fn interrupted(&mut self, interrupted: &Interrupted) {
         let Some(part) = self.under_way.get_mut(&interrupted.ordinal) else {
             return;
@@ -164,7 +165,7 @@ impl<'a> LotProgress<'a> {
         parts.map(|part| LotEvent::PartDone(Box::new(part), None))
     }
 
-    /// Returns why the run ended, with the alarm that ended it.
+    /// Returns how the run ended: complete, stopped, or trouble with the alarm (else the abort) that caused it.
     pub fn exit(&self, ending: &Ending) -> Exit {
         match ending {
             Ending::Complete => Exit::Done,
@@ -176,7 +177,7 @@ impl<'a> LotProgress<'a> {
         }
     }
 
-    /// Summarises the run; `writing` is the wall time that the history took.
+    /// Returns the summary of the run; `writing` is the wall time that the history took.
     pub fn summary(
         &self,
         ending: &Ending,

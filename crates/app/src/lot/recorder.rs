@@ -28,12 +28,12 @@ use std::time::{Duration, Instant};
 pub(super) struct Recorder {
     store: Option<Store>,
     journal: Journal,
-    /// Rows of the next transaction.
+    /// Rows that wait for the next transaction.
     rows: Vec<Row>,
-    /// Ordinal of the last judged part among them.
+    /// Ordinal of the last judged part among these rows.
     judged: Option<u64>,
     contents: Option<(Inside, Uses)>,
-    /// Wall time of all transactions.
+    /// Wall time of all transactions so far.
     pub writing: Duration,
 }
 
@@ -77,7 +77,7 @@ impl Recorder {
         self.rows.extend(begun);
     }
 
-    /// Turns an event into rows of the next transaction.
+    /// Turns an event into rows that wait for the next transaction.
     ///
     /// # Errors
     /// Fails when a calibration is no JSON.
@@ -123,7 +123,7 @@ impl Recorder {
                 }
             }
             Event::Calibrated(calibration) => self.calibrated(calibration, &lot.context)?,
-            // `PartDone` covers a landed part.
+            // The rows of a landed part come with `PartDone`.
             Event::State(_) | Event::Left(_) | Event::Landed(_) | Event::LotBegan(_) => {}
         }
         Ok(())
@@ -186,7 +186,7 @@ impl Recorder {
         Ok(())
     }
 
-    /// Queues the machine's contents, for the next transaction and the end of the run.
+    /// Queues the contents of the machine; called before each transaction and at the end of the run.
     fn queue_contents(&mut self) {
         if let Some((inside, uses)) = self.contents.take() {
             self.rows.extend(self.journal.uses(uses));
@@ -194,7 +194,8 @@ impl Recorder {
         }
     }
 
-    /// Writes the pending rows; returns the ordinal up to which parts are durable when it has grown.
+    /// Writes the pending rows; returns the ordinal of the last part now on the disk, or `None` when it is the same as
+    /// before.
     ///
     /// # Errors
     /// Fails when the transaction fails, which then writes nothing; the rows stay pending, in order.

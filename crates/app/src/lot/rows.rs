@@ -107,7 +107,8 @@ fn measurement(
     })
 }
 
-/// Returns the budget as JSON; `None` while it holds a term that is not a number (JSON has no infinity).
+/// Returns the uncertainty budget as JSON; `None` when it holds a term that is not finite, because JSON has no
+/// infinity.
 fn budget(reading: &Reading) -> Option<String> {
     if !reading.expanded().is_finite() {
         return None;
@@ -115,7 +116,7 @@ fn budget(reading: &Reading) -> Option<String> {
     serde_json::to_string(&reading.budget).ok()
 }
 
-/// Returns the part as a JSON object of `run --json`.
+/// Returns the part as the JSON object that `run --json` prints.
 pub fn json(context: &LotContext, judged: &Judged, cycle_s: Option<f64>, bin: &str) -> Value {
     let mut values = Map::new();
     let mut uncertainty = Map::new();
@@ -153,7 +154,7 @@ pub fn json(context: &LotContext, judged: &Judged, cycle_s: Option<f64>, bin: &s
     })
 }
 
-/// Rounds to seven significant digits, for reading and comparing.
+/// Rounds to seven significant digits, so that outputs are easy to read and compare.
 pub fn rounded(value: f64) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;

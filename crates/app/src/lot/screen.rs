@@ -1,5 +1,5 @@
-//! Shows a run on the page: the lot when it begins, then every judged part. The results of a lot stay until the next
-//! one begins.
+//! Shows a run on the page: the lot when it begins, then every judged part. The results of a lot stay on the page until
+//! the next lot begins.
 
 use super::event::{LotEvent, Subscriber};
 use super::progress::LotProgress;
@@ -11,7 +11,7 @@ use machine::handling::output::Judged;
 use machine::view::{LastPart, RecentPart, RunEnd, View};
 use tokio::sync::watch;
 
-/// Number of parts in the strip of recent ones: two rows of ten.
+/// Number of recent parts that the page shows: two rows of ten.
 const RECENT: usize = 20;
 
 /// The page's subscriber to the events of one run.

@@ -1,4 +1,4 @@
-//! Summary of a run: the object that ends `run --json`.
+//! Summary of a run: the last object that `run --json` prints.
 
 use super::counts::Counts;
 use super::rows::rounded;
@@ -24,9 +24,9 @@ pub struct Summary {
     pub fail: u64,
     /// Parts without a valid measurement.
     pub void: u64,
-    /// Parts that a beam has confirmed, by bin.
+    /// Parts of the lot that were seen by the beam of a bin, by bin.
     pub bins: BTreeMap<String, u64>,
-    /// Rig time from the first part to the last landing, seconds.
+    /// Rig time from the beginning of the lot to the last landing, seconds.
     pub elapsed_s: f64,
     /// Wall time of the run, seconds.
     pub wall_s: f64,
@@ -34,7 +34,7 @@ pub struct Summary {
     pub parts_per_hour: u64,
     /// Number of alarms.
     pub alarms: u64,
-    /// `complete`, `stopped` or `alarm`.
+    /// How the run ended: `complete`, `stopped` or `alarm`.
     pub ended: &'static str,
     /// Cause of exit status 3; null for every other status.
     pub cause: Option<Cause>,
@@ -46,7 +46,7 @@ pub struct Summary {
     pub bodies_watched: Option<bool>,
     /// Wall time by phase of the control cycle.
     pub wall_profile: WallProfile,
-    /// Fingerprint of all bytes on each line, by its name.
+    /// Fingerprint of all bytes that passed on each line, by the name of the line.
     pub bytes: BTreeMap<String, String>,
 }
 

@@ -1,4 +1,4 @@
-//! A run whose control cycle fails an assertion.
+//! Tests a run whose control cycle fails an assertion.
 
 #![allow(clippy::unwrap_used)]
 
@@ -35,7 +35,7 @@ fn a_failed_assertion_ends_the_run_in_the_history() {
             order: "lamp_test".into(),
             ..Order::default()
         };
-        // The cycle calls this function, so its panic is one of the cycle.
+        // The cycle calls this function, so the panic happens in the task of the cycle.
         let request = OrderRequest::new(lamp_test, By::default(), |_| {
             panic!("an assertion of the cycle")
         });

@@ -1,10 +1,10 @@
-//! Keeps the rig under one program for a whole day: page and API over the rig, one lot after another.
+//! Controls a rig for a whole day: page and API in front of the rig, one lot after another.
 //!
-//! One *run*, as of the command `run`, always controls the rig. Between lots this run has no lot: the machine keeps
-//! its state until an operator resets it, the page shows inputs and alarms, motions by hand are possible, and the rig
-//! discharges parts found inside. An admitted lot ordered at the page ([`router`]) ends that run. The run of the lot
-//! then begins as every lot does: it verifies the modules, homes the machine and calibrates the rig if necessary. After
-//! the lot the rig is between lots again.
+//! The rig is always controlled by a *run*, like that of the command `run`. Between lots this run has no lot: the
+//! machine keeps its state until an operator resets it, the page shows inputs and alarms, motions by hand are possible,
+//! and the rig discharges parts found inside. A lot that is ordered at the page and admitted ([`router`]) ends that
+//! run. The run of the lot then begins as every lot does: it verifies the modules, homes the machine, and calibrates
+//! the rig if necessary. After the lot the rig is between lots again.
 //!
 //! | event | the lot | the program |
 //! |---|---|---|
@@ -51,7 +51,7 @@ use tokio::sync::mpsc;
 /// An admitted lot with its recipe.
 type AdmittedLot = (LotOrder, Arc<Recipe>);
 
-/// A rig under one program: all that stays from lot to lot.
+/// A rig that this program controls for the day: everything that stays from lot to lot.
 pub struct Service {
     files: Files,
     plant: Arc<Plant>,
@@ -67,7 +67,7 @@ pub struct Service {
 }
 
 impl Service {
-    /// Serves the page at `listen` and opens the rig behind it; the day begins with lot `first`, if given.
+    /// Opens the rig and serves its page at `listen`; the day begins with lot `first`, if given.
     ///
     /// # Errors
     /// Fails when the address is in use, the configuration or the lot is refused, or the rig cannot be built.
@@ -116,7 +116,7 @@ impl Service {
         self.page.address
     }
 
-    /// Returns, once, the engineer that a first start created.
+    /// Returns the login that a first start created for the engineer; only the first call returns it.
     pub fn take_first_login(&mut self) -> Option<FirstLogin> {
         self.page.first_login.take()
     }
@@ -215,7 +215,7 @@ impl Service {
         runner.run(OrderQueue::from(taken), outer).await
     }
 
-    /// Returns the rig in its present state; loads a simulated one for the lot and drops its calibration.
+    /// Returns the rig as it is now; a simulated one is loaded for the lot, and its calibration is dropped.
     fn current_source(&self, lot: Option<&LotOrder>) -> anyhow::Result<RigSource> {
         match &self.source {
             RigSource::Serial(_) => {}
@@ -239,7 +239,7 @@ impl Service {
     }
 }
 
-/// Returns the source with a simulated rig that lives from now on, its magazine empty.
+/// Builds a simulated rig with an empty magazine that lives from now on; returns a serial source unchanged.
 fn with_live_rig(source: RigSource, plant: &Plant, order: &LotOrder) -> anyhow::Result<RigSource> {
     let _ = (plant, order);
     Ok(match source {
@@ -252,7 +252,7 @@ fn with_live_rig(source: RigSource, plant: &Plant, order: &LotOrder) -> anyhow::
     })
 }
 
-/// Returns the order of the run between lots; the first recipe gives the size of a part found inside.
+/// Returns the order of the run between lots; its recipe, the first one, gives the size of a part found inside.
 fn between(config: &Path) -> anyhow::Result<LotOrder> {
     let Some(recipe) = recipe_names(config).into_iter().next() else {
         bail!(

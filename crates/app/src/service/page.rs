@@ -24,7 +24,7 @@ pub struct FirstLogin {
 
 pub(super) struct Page {
     pub address: SocketAddr,
-    /// Login created at a first start.
+    /// Login created at a first start; `None` at every later start.
     pub first_login: Option<FirstLogin>,
     ended: watch::Sender<bool>,
     thread: JoinHandle<()>,

@@ -1,6 +1,6 @@
-//! Routes orders of screens to the rig; checks those about lots first.
+//! Routes orders from screens to the rig; checks orders about lots first.
 //!
-//! - `start` with a lot: goes to the station once the lot is admitted. The station leaves its lot when the machine
+//! - `start` with a lot goes to the station once the lot is admitted. The station ends the present run when the machine
 //!   rests; the run of the new lot follows.
 //! - `hold_lot`, `close_lot` of the lot under way go to its station; those of another lot go into the history, as
 //!   `release_lot`, `reopen_lot` and `replaced` do.
@@ -23,12 +23,12 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use texts::{Lang, Message};
 use tokio::sync::{mpsc, oneshot};
 
-/// The lot or hold that follows a run ended by an order.
+/// What follows a run that an order ended: another lot, or a hold.
 #[derive(Debug)]
 pub enum AfterRun {
     /// Another lot.
     Lot(Box<AdmittedLot>),
-    /// The lot is put on hold, by this person.
+    /// The lot is put on hold by this order of this person.
     Hold(Box<(Order, By)>),
 }
 
@@ -47,16 +47,16 @@ struct RouterState {
     plant: Arc<Plant>,
     source: RigSource,
     run: Mutex<ActiveRun>,
-    /// Serialises the orders about lots.
+    /// Held while an order about lots is handled, so that they are handled one after another.
     turn: tokio::sync::Mutex<()>,
 }
 
-/// Entry point of the orders of screens; clones share their state.
+/// Entry point for orders from screens; clones share their state.
 #[derive(Debug, Clone)]
 pub struct OrderRouter(Arc<RouterState>);
 
 impl OrderRouter {
-    /// Creates a router over the history in `db`.
+    /// Creates a router that writes to the history in `db`.
     pub fn new(db: &Path, plant: &Arc<Plant>, source: &RigSource) -> Self {
         Self(Arc::new(RouterState {
             db: db.to_owned(),
@@ -76,7 +76,7 @@ impl OrderRouter {
         };
     }
 
-    /// Takes the lot or hold that follows the run ended by an order.
+    /// Takes out what follows the run that an order ended: a lot or a hold.
     pub fn next(&self) -> Option<AfterRun> {
         self.run().next.take()
     }
@@ -121,8 +121,8 @@ impl OrderRouter {
         }
     }
 
-    /// Notes the lot or hold before the station gets the order, because the station ends the run at once. Fails while an
-    /// earlier one has not begun.
+    /// Notes what follows the run. This happens before the station gets the order, because the station ends the run at
+    /// once. Fails while something noted earlier has not begun.
     fn set_next(&self, next: Option<AfterRun>) -> Result<(), Message> {
         let mut run = self.run();
         if run.next.is_some() {
@@ -132,7 +132,7 @@ impl OrderRouter {
         Ok(())
     }
 
-    /// Returns the lot of a `start` once it is admitted.
+    /// Returns the lot of a `start` order; fails when the lot is not admitted.
     async fn admitted(&self, order: &Order) -> Result<AfterRun, Message> {
         let order = LotOrder {
             lot: order.lot.clone().unwrap_or_default(),
@@ -156,7 +156,7 @@ impl OrderRouter {
         blocking(check).await
     }
 
-    /// Writes an order that no run handles into the history.
+    /// Writes into the history an order that no run handles.
     async fn write(&self, asked: OrderRequest) {
         let (db, simulated) = (self.0.db.clone(), self.0.source.is_simulated());
         let (order, by) = (asked.order.clone(), asked.by.clone());
@@ -177,7 +177,7 @@ impl OrderRouter {
         asked.answer(Err(why));
     }
 
-    /// Passes the order to the current run and its answer back; returns whether the run accepted it.
+    /// Passes the order to the current run, and the run's answer back; returns whether the run accepted the order.
     async fn pass_on(&self, asked: OrderRequest) -> bool {
         let (answer, answered) = oneshot::channel();
         let (order, by) = (asked.order.clone(), asked.by.clone());

@@ -1,4 +1,4 @@
-//! Between lots on a rig in which an earlier run of the program left a part.
+//! Tests the time between lots, on a rig in which an earlier run left a part.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,4 +1,4 @@
-//! Plays a story: scripted faults and orders on the simulated rig, and an account of what follows, line by line.
+//! Plays a story: scripted faults and orders on the simulated rig, with a line-by-line account of what follows.
 //!
 //! A script ([`script`]) names faults and operator orders, each after an event instead of at a time, so a faster line
 //! gives the same story. The `narrator` writes what a mechanic beside the rig sees. It counts whole seconds from the
@@ -28,8 +28,8 @@ use std::fs::File;
 use std::sync::Arc;
 use tokio::sync::mpsc;
 
-/// Plays `script` during the lot of `order` on a new rig; writes the actions of the outputs to `journal`. Returns the
-/// story and the exit; `outer` receives every event.
+/// Plays `script` during the lot of `order` on a new rig; writes every action of an output to `journal`. Returns the
+/// account and the exit; `outer` receives every event.
 ///
 /// # Errors
 /// Fails on bad input, as any lot does.
@@ -68,7 +68,7 @@ pub fn run(
             Some(_) => Exit::AnswerIsNo,
             None => Exit::Trouble(Cause::script()),
         };
-        // Alarms belong to the story; a failure of the program does not.
+        // Alarms belong to the story and do not fail the command; a failure of the program does.
         let own = exit.cause().is_some_and(Cause::is_program_failure);
         Ok((report, if own { exit } else { played }))
     })

@@ -1,7 +1,7 @@
 //! Writes the account of a story, line by line.
 //!
-//! Whole seconds count from the first action of the script or the first alarm; lines of the ordinary course of a lot
-//! carry none. The first alarm of each code comes with its cause, consequence and action.
+//! Whole seconds are counted from the first action of the script or the first alarm; lines about the ordinary course of
+//! a lot carry none. The first alarm of each code is told with its cause, consequence and action.
 
 use super::play::Refusal;
 use super::script::{Awaited, Script, Step};
@@ -23,7 +23,7 @@ pub struct Narrator {
     text: String,
     /// Rig time of the first trouble.
     zero: Option<RigTime>,
-    /// Name and verdict by ordinal.
+    /// Name and verdict of each part, by ordinal.
     parts: BTreeMap<u64, (String, &'static str)>,
     explained: BTreeSet<AlarmCode>,
     /// Alarms whose cause is present.
@@ -32,7 +32,7 @@ pub struct Narrator {
 }
 
 impl Narrator {
-    /// Begins with the title.
+    /// Begins the account with the title of the script.
     pub fn new(script: &Script) -> Self {
         let faults: String = script
             .faults
@@ -49,7 +49,7 @@ impl Narrator {
         }
     }
 
-    /// Adds an event of the line at `now`.
+    /// Adds a line about an event of the cycle at `now`.
     pub fn event(&mut self, event: &Event, now: RigTime) {
         match event {
             Event::LotBegan(_) => self.plain("the lot begins"),
@@ -90,7 +90,7 @@ impl Narrator {
         }
     }
 
-    /// Adds a fault of the script.
+    /// Adds a line about a fault that the script applied, or that the simulated rig refused.
     pub fn fault(&mut self, fault: &str, injected: Result<(), SimError>, now: RigTime) {
         let text = match injected {
             Ok(()) => format!("rig       {fault}"),
@@ -100,7 +100,7 @@ impl Narrator {
         self.stamped(now, &text);
     }
 
-    /// Adds an order of the script with its answer.
+    /// Adds a line about an order of the script, with its answer.
     pub fn order(&mut self, words: &str, answer: Result<(), Refusal>, now: RigTime) {
         let text = match answer {
             Ok(()) => format!("operator  {words}"),
@@ -110,7 +110,7 @@ impl Narrator {
         self.stamped(now, &text);
     }
 
-    /// Adds that no event came within the limit.
+    /// Adds a line that says that no event came in time, and which event the script still awaits.
     pub fn silence(&mut self, awaited: Option<&Step>, now: RigTime) {
         let text = match awaited.map(|step| &step.event) {
             Some(event) => format!(
@@ -122,7 +122,7 @@ impl Narrator {
         self.stamped(now, &text);
     }
 
-    /// Returns the account, with the parts in each bin, the collisions and the overdriven coils of `rig`.
+    /// Returns the account; its end tells the parts in each bin, the collisions and the overdriven coils of `rig`.
     pub fn end(mut self, rig: &SharedRig) -> String {
         let bins: Vec<String> = self
             .bins

@@ -20,25 +20,25 @@ use thiserror::Error;
 use tokio::sync::{mpsc, oneshot};
 use units::{RigTime, Span};
 
-/// Longest time without an event before the story ends.
+/// Longest time without an event; after it the story ends.
 pub const SILENCE_TIMEOUT: Span = Span::ms(180_000);
-/// Account of a story, line by line.
+/// Result of a story.
 #[derive(Debug)]
 pub struct StoryReport {
-    /// The account.
+    /// The account, line by line.
     pub text: String,
     /// True when the whole script was played and the journal was written.
     pub complete: bool,
 }
 
-/// A script to play.
+/// Player of one script.
 #[derive(Debug)]
 pub(super) struct Player {
     script: Script,
     journal: Option<File>,
 }
 
-/// Events so far that a line of the script may wait for.
+/// What has happened so far, as far as a step of the script may wait for it.
 #[derive(Debug, Default)]
 struct Observed {
     lot: bool,
@@ -52,7 +52,7 @@ struct Observed {
 }
 
 impl Player {
-    /// Prepares a script; the actions of the outputs go to `journal`.
+    /// Prepares a script; every action of an output is written to `journal`, if given.
     pub fn new(script: Script, journal: Option<File>) -> Self {
         Self { script, journal }
     }

@@ -9,14 +9,14 @@
 //! after state Aborted +5      order clear
 //! after state Stopped         order jog motion=probes_up
 //! ```
-//! The first comment is the title. Lines that begin with `after` run in sequence.
+//! The first comment is the title. Lines that begin with `after` are carried out in sequence.
 
 use anyhow::{Context, bail};
 use machine::station::packml::State;
 use machine::view::{ORDERS, Order};
 use units::Span;
 
-/// Parts of a lot unless the script gives a number.
+/// Number of parts in a lot when the script does not give one.
 const PARTS: u64 = 4;
 /// Longest delay after an event, seconds.
 const LONGEST_S: f64 = 3600.0;
@@ -45,12 +45,13 @@ pub struct Step {
     pub action: Action,
 }
 
-/// Event that triggers a step. A past event triggers it too; a state must be the present one.
+/// Event that triggers a step. An event that is already past triggers the step at once, but a state must be the
+/// present one.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Awaited {
     /// The lot itself has begun.
     Lot,
-    /// The outer machine is in this state.
+    /// The machine as a whole is in this PackML state.
     State(State),
     /// An alarm with this code has come.
     Alarm(String),
@@ -67,14 +68,14 @@ pub enum Awaited {
 pub enum Action {
     /// A fault of the simulated rig, `NAME[=VALUE]`.
     Fault(String),
-    /// An order of a person at the screen: its words, and the parsed order.
+    /// An order of a person at the screen: words as written, and the parsed order.
     Order(String, Box<Order>),
 }
 
 /// Parses a script.
 ///
 /// # Errors
-/// Fails on the first invalid line, with its number.
+/// Fails on the first invalid line; the error names its number.
 pub fn parse(text: &str) -> anyhow::Result<Script> {
     let title = text.lines().find_map(|line| line.strip_prefix('#'));
     let mut script = Script {
@@ -158,7 +159,7 @@ fn seconds(text: &str) -> anyhow::Result<Span> {
     }
 }
 
-/// Parses an order; the cycle checks its arguments, as it does for a screen.
+/// Parses an order; the cycle checks its arguments later, as it does for an order from a screen.
 fn order(words: &[&str]) -> anyhow::Result<Order> {
     let Some((word, members)) = words
         .split_first()

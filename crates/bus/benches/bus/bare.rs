@@ -1,6 +1,6 @@
-//! The peer of a busy line: a bare client that sends a request, reads up to the CR, waits for two characters and sends
-//! the next. Its distance from the bound is due to the simulated modules, the pseudo-terminal and this machine, so any
-//! host has it.
+//! The peer of a busy line: a bare client that sends a request, reads up to the CR, waits for the time of two
+//! characters and sends the next request. What it loses against the bound is due to the simulated modules, the
+//! pseudo-terminal and this machine, so any host loses it.
 
 use bus::Wire;
 use std::io::{self, Read, Write};
@@ -9,10 +9,10 @@ use std::time::{Duration, Instant};
 /// Longest wait for a reply.
 const TIME_OUT: Duration = Duration::from_secs(2);
 
-/// A sleep may end this late; the rest of the wait spins on the clock.
+/// How late a sleep may end; the wait sleeps that much less and then spins on the clock.
 const LATE: Duration = Duration::from_micros(150);
 
-/// Sends each of `requests` and reads its reply; returns the time from the first request to the last.
+/// Sends each of `requests` and reads its reply; returns the time from the first request to the last one.
 pub fn exchange_all(path: &str, wire: Wire, requests: &[Vec<u8>]) -> io::Result<Duration> {
     let mut port = tokio_serial::new(path, wire.baud)
         .timeout(TIME_OUT)

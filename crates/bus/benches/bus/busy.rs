@@ -1,10 +1,10 @@
-//! Utilisation of a line: time of wire and module over elapsed time, on a pseudo-terminal with the paced simulated
-//! modules and a request always waiting.
+//! Utilisation of a line: time that wire and module need, divided by the elapsed time; on a pseudo-terminal with the
+//! paced simulated modules, and with a request always waiting.
 //!
-//! After each reply the line rests two characters. No host can avoid this rest, and its cost depends on the length of
-//! the frames: so each workload is shown with the utilisation that the rest alone allows (`bound`), and with that of a
-//! bare client on the same pseudo-terminal in the same run (`peer`). No host reaches a bar above the bound; none on
-//! this machine reaches a bar above the peer.
+//! After each reply the line rests for two characters. No host can avoid this rest, and what it costs depends on the
+//! length of the frames. So each workload is shown with the utilisation that the rest alone would allow (`bound`), and
+//! with that of a bare client on the same pseudo-terminal in the same run (`peer`). No host can exceed the bound, and
+//! hardly any on this machine the peer.
 
 use super::bare;
 use bus::{Answer, LineSettings, Pace, Request, Wire};
@@ -18,11 +18,11 @@ use std::time::Duration;
 use tokio::sync::mpsc;
 use units::{RigTime, Span};
 
-/// Latency of a simulated module.
+/// Time that a simulated module takes before its reply begins.
 const LATENCY: Span = Span::ms(2);
-/// Targets: baud rate and least utilisation.
+/// Bars: baud rate, and least utilisation at this rate, 0 to 1.
 const BARS: [(u32, f64); 2] = [(9_600, 0.95), (115_200, 0.87)];
-/// Time of the line that each row measures, approximately.
+/// Approximate time for which each row measures the line.
 const MEASURED: Span = Span::ms(6_000);
 
 const VOLTS: InputForm = InputForm::eight(DataFormat::Engineering, TypeCode(0x08));
@@ -40,7 +40,7 @@ address = 3
 model = "I-7080"
 "#;
 
-/// Commands that the line sends in turn.
+/// Commands that the line sends in turn, with a name.
 struct Workload {
     name: &'static str,
     commands: Vec<Command>,
@@ -82,22 +82,22 @@ fn workloads() -> Vec<Workload> {
     ]
 }
 
-/// The measurement of a workload at one rate.
+/// What one workload gave at one baud rate.
 struct Row {
     asked: usize,
-    /// Mean characters of request and reply.
+    /// Mean number of characters in request and reply together.
     characters: f64,
-    /// Utilisation: time of wire and module over elapsed time.
+    /// Utilisation of the line, 0 to 1.
     share: f64,
-    /// Utilisation if only the rest of two characters came between.
+    /// Utilisation if nothing but the rest of two characters came between two transactions, 0 to 1.
     bound: f64,
-    /// Utilisation of a bare client.
+    /// Utilisation of the bare client, 0 to 1.
     peer: f64,
-    /// Times between requests, microseconds, sorted.
+    /// Times from one request to the next, microseconds, sorted.
     each_us: Vec<u64>,
 }
 
-/// Prints every workload at every rate.
+/// Measures and prints every workload at every baud rate.
 pub fn print() {
     println!(
         "line kept busy, no checksum, modules of 2 ms, pseudo-terminal; bound: nothing but a rest of two characters, \
@@ -189,7 +189,7 @@ fn row(
         .map(|pair| pair[1].since(pair[0]).0)
         .collect();
     let elapsed = times[count - 1].since(times[0]).0;
-    // No request follows the last answer.
+    // No request follows the last answer, so the last answer has no time to the next one.
     let characters: Vec<usize> = answers[..count - 1].iter().map(characters).collect();
     let needed: u64 = characters
         .iter()
@@ -207,7 +207,7 @@ fn row(
     })
 }
 
-/// Returns the characters of request and reply, each with its CR.
+/// Returns the number of characters in request and reply, their CRs included.
 fn characters(answer: &Answer) -> usize {
     written(&answer.command).len() + answer.raw.len() + 1
 }
@@ -218,7 +218,7 @@ fn written(command: &Command) -> Vec<u8> {
     request
 }
 
-/// Sends `commands` in turn until `count` have been answered; the next request always waits.
+/// Sends `commands` in turn until `count` have been answered; the next request is always waiting.
 async fn exchange_all(path: &str, baud: u32, commands: &[Command], count: usize) -> Vec<Answer> {
     let mut settings = LineSettings::new("bench", baud);
     settings.checksum = false;

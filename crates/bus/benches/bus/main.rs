@@ -84,7 +84,7 @@ fn fuzz() {
         let length = random.next_u64() % 24;
         for _ in 0..length {
             let draw = random.next_u64();
-            // One byte in sixteen is anything, the others are characters of the protocol.
+            // One byte in sixteen is random; the others are characters that the protocol uses.
             frame.push(if draw.is_multiple_of(16) {
                 (draw >> 8) as u8
             } else {
@@ -99,7 +99,7 @@ fn fuzz() {
         frame.push(b'\r');
         let ask = asks[(turn % asks.len() as u64) as usize];
         taken += u64::from(black_box(ask.decode(&frame, checksum)).is_ok());
-        // Reading a request tries every command, so one frame in eight keeps the run within minutes.
+        // Reading a request tries every command, so only one frame in eight is read: the run then ends within minutes.
         if turn % 8 == 0 {
             read += black_box(dcon::decode_request(&frame[..frame.len() - 1])).len() as u64;
         }

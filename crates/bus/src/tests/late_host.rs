@@ -1,4 +1,4 @@
-//! A busy host wakes late, and its clock advances between two lines of code. Neither makes a module silent.
+//! Tests: a busy host wakes late, and its clock advances between two lines of code. Neither makes a module seem silent.
 
 use super::*;
 use std::io;
@@ -6,8 +6,8 @@ use std::pin::Pin;
 use std::task::{Context, Poll};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 
-/// A port of a host that sleeps until `wakes_at`: the reply has long been in its buffer, and the reactor notices it at
-/// the first poll after the wake-up.
+/// Port of a host that sleeps until `wakes_at`: the reply lies in its buffer long before, but the reactor notices it
+/// only at the first poll after the wake-up.
 struct Unnoticed {
     pace: Pace,
     wakes_at: RigTime,

@@ -1,4 +1,4 @@
-//! Ports that are missing, taken or lost, and a real terminal.
+//! Tests: ports that are missing, taken or lost, and a real terminal.
 
 use super::*;
 
@@ -35,7 +35,7 @@ fn a_closed_stream_takes_the_time_of_a_silent_module() {
     assert_eq!(pace, RigTime(2 * settings().time_out(&count()).0));
 }
 
-/// Returns a port that is missing at first, then ends after one reply, and so on.
+/// Returns an opener whose port is missing at first, then ends after one reply, then is missing again, and so on.
 fn flaky(pace: Pace) -> OpenPort {
     let mut opened = 0u32;
     Box::new(move || {
@@ -130,7 +130,7 @@ async fn a_line_holds_its_terminal_exclusively_at_real_pace() {
 
     let (ask, to_line) = mpsc::channel(1);
     let (from_line, mut answers) = mpsc::channel(1);
-    // This test is not about time; on a busy machine the device may be late.
+    // Time does not matter in this test, and on a busy machine the device may be late.
     let patient = LineSettings {
         digital_allowance_ms: 5000,
         ..settings()

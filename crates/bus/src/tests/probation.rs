@@ -1,4 +1,4 @@
-//! Visible damage at an address reveals the damage that passes for a reply.
+//! Tests: damage that is seen at an address warns of damage that passes for a reply.
 
 use super::*;
 use dcon::{AnalogIn, Channel, DataFormat, InputForm, TypeCode};
@@ -64,7 +64,7 @@ fn a_switched_input_needs_a_third_answer_that_agrees() {
         second: 0x7F,
     };
     assert_eq!((got[1].outcome.clone(), sent), (Ok(Reply::Bits(bits)), 4));
-    // The time is that of the second answer, the first that shows the new input.
+    // The time stored is that of the second answer, the first one to show the new input.
     assert!(got[1].requested_at >= got[0].answered_at + Span(2_000));
     assert!(got[1].answered_at.since(got[1].requested_at) < Span(3_000));
     let (got, _) = told(b">3B3F2C\r");
@@ -124,7 +124,7 @@ fn the_probation_ends_with_a_hundred_whole_answers() {
     script.extend(vec![say(THIRTY); 300]);
     let (got, sent) = played_count(script, &[(count(), 1); 61]);
     assert!(got[1..].iter().all(|answer| answer.outcome.is_ok()));
-    // The line asks fifty of them twice, ten once.
+    // The line asks fifty of the requests twice, ten once.
     assert_eq!(sent, 1 + usize::from(PROBATION_ANSWERS) + 10);
 }
 
@@ -134,7 +134,7 @@ fn volts() -> Command {
     AnalogIn::ReadOne { channel, form }.to(Address(1))
 }
 
-/// Returns the answer to a reading after damage, and the number of requests in all; `said`: the module's replies.
+/// Returns the answer to a reading after damage, and the number of all requests; `said` are the replies of the module.
 fn read_of(said: [&'static [u8]; 3]) -> (Answer, usize) {
     let mut script = vec![say(b">1000FE\r")];
     script.extend(said.map(say));
@@ -161,7 +161,7 @@ fn damage_within_the_noise_of_a_reading_is_rejected() {
     ] {
         let (got, _) = read_of(said.map(|bytes| bytes.as_slice()));
         assert_eq!(got.raw, ">003304", "{got:?}");
-        // The time is that of the accepted answer alone.
+        // The time stored is that of the accepted answer alone.
         assert!(got.answered_at.since(got.requested_at) < Span(3_000));
     }
 }

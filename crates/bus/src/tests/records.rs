@@ -1,4 +1,4 @@
-//! The records of a line: trace, health, bounds, time.
+//! Tests of what a line records: trace, health, bounds, time.
 
 use super::*;
 
@@ -27,7 +27,7 @@ fn health_counts_each_module_and_each_kind_of_trouble() {
         (3, 1, 1)
     );
     let p50 = module.latency.percentile(0.5).unwrap().0;
-    // 2600 us, of which 19 characters are wire time.
+    // 2600 us from request to reply, of which 19 characters are time on the wire.
     assert!((950..1_200).contains(&p50), "{p50}");
     assert_eq!(health.module(Address(4)).unwrap().resets, 1);
 }
@@ -69,8 +69,8 @@ fn the_longest_transaction_is_that_of_the_slowest_command() {
     let settings = settings();
     let both = longest_transaction(&settings, &[count(), write(), Command::HostOk]);
     assert_eq!(both, longest_transaction(&settings, &[count()]));
-    // 7 + 12 characters, 30 ms and a rest of two characters three times (request, repetition, resynchronisation);
-    // then 12 characters of silence and 30 ms.
+    // Three times (request, repetition, resynchronisation): 7 + 12 characters, 30 ms and a rest of two characters. Then
+    // a silence of 12 characters and 30 ms.
     let wire = |characters| settings.wire().time(characters).0;
     assert_eq!(
         both.0,

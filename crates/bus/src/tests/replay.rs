@@ -1,9 +1,10 @@
-//! Replays a recorded trace to the line: the same bytes at the same distances give the same conclusions.
+//! Tests: a recorded trace is replayed to the line; the same bytes at the same intervals give the same outcomes.
 
 use super::*;
 use dcon::interpret;
 
-/// Plays the modules' side of `recorded`: after each request, the bytes recorded after it, with the same delay.
+/// Plays the modules in `recorded`: after each request, sends the bytes that were recorded after it, with the same
+/// delay.
 async fn play(mut stream: DuplexStream, pace: Pace, recorded: Recorded) -> (bool, DuplexStream) {
     let mut entries = recorded.entries.into_iter().peekable();
     let mut same = true;
@@ -19,7 +20,7 @@ async fn play(mut stream: DuplexStream, pace: Pace, recorded: Recorded) -> (bool
             let _ = stream.write_all(said.bytes()).await;
         }
     }
-    // Returned so that the port stays open until the last conclusion.
+    // The stream is returned so that the port stays open until the last outcome.
     (same, stream)
 }
 

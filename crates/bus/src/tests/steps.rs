@@ -1,10 +1,10 @@
-//! A line in step: it never takes a late reply for the answer to a later request.
+//! Tests: a line stays in step; it never takes a late reply for the answer to a later request.
 
 use super::*;
 
-/// Module 03, which serves its requests in order and sends its first count after `late` microseconds, and module 05,
-/// whose counts take 2 ms. The count tells the module: 03 replies 30, 05 replies 9. `dead`: number of requests to 05
-/// without an answer.
+/// Two modules: 03, which serves its requests in order and sends its first count `late` microseconds after the request,
+/// and 05, whose counts take 2 ms. The count tells the module: 03 replies 30, 05 replies 9. Module 05 leaves the first
+/// `dead` requests unanswered.
 async fn neighbours(mut stream: DuplexStream, pace: Pace, late: u64, dead: usize) {
     let (slow_in, mut slow_out) = mpsc::unbounded_channel::<String>();
     let (say_in, mut say_out) = mpsc::unbounded_channel::<Vec<u8>>();

@@ -1,6 +1,6 @@
-//! Keys of the files of `config/`, file by file.
+//! Keys of the configuration files, one module per file.
 
-/// Keys of a table, one a row: name, form, the part of the program that reads it, meaning.
+/// Makes the keys of a table, one per row: name, form, which part of the program reads it, meaning.
 macro_rules! keys {
     ($($row:expr;)*) => { &[$($row),*] };
 }

@@ -1,4 +1,4 @@
-//! Keys of `recipes/NAME.toml`: the head of every recipe, and the sections that its kind describes.
+//! Keys of `recipes/NAME.toml`: those that every recipe has, and the sections that its kind describes.
 
 use machine::dut::Kind;
 use machine::form::{Form, Key, key, whole};
@@ -8,7 +8,7 @@ const DECISION: &[Key] = keys! {
     key("slow_repeats", whole(1, 100, ""), "station", "confirmation measurements of a result inside the guard band");
 };
 
-/// Returns the keys of a recipe of this kind.
+/// Returns the keys that a recipe of this kind may have.
 pub fn of(kind: Kind) -> [Key; 8] {
     let place = kind as usize;
     let sections = kind.sections();

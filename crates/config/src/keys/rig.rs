@@ -13,7 +13,7 @@ use measuring::{ACCURACY, CALIBRATION};
 use modules::{BUS, HISTORY, LINE, MODULE, SAFETY};
 use points::{ACTUATOR, ANALOG_IN, ANALOG_OUT, BIN, CHANNEL, DIGITAL_IN, STATION, SUPPLY_RANGE};
 
-/// Form of points that only kinds of device declare.
+/// Returns the form of points that only kinds of device need: none must exist, and `may` returns the known names.
 const fn of_kinds(may: fn() -> Vec<&'static str>, entry: &'static Form) -> Form {
     Form::Points(Points {
         must: &[],
@@ -23,7 +23,7 @@ const fn of_kinds(may: fn() -> Vec<&'static str>, entry: &'static Form) -> Form 
     })
 }
 
-/// Returns the names that the kinds declare, each once.
+/// Returns the names of points that the kinds of device declare, each once.
 fn declared(names: impl Fn(&Fixture) -> Vec<&'static str>) -> Vec<&'static str> {
     let mut all: Vec<&str> = Vec::new();
     for name in FIXTURES.iter().flat_map(names) {

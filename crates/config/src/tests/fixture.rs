@@ -1,4 +1,5 @@
-//! Rigs that lack points of a fixture: they load, and recipes that need one are refused by its name.
+//! Tests of rigs that lack points of a fixture: they load, and a recipe that needs such a point is refused with its
+//! name.
 
 use super::RIG;
 use crate::{Plant, load_recipe, recipe_names};
@@ -18,7 +19,7 @@ const POINTS: [&str; 6] = [
     "temperature",
 ];
 
-/// The default rig without the points of these names.
+/// Returns the default rig without the points for which `lacks` is true.
 fn without(lacks: impl Fn(&str, &Table) -> bool) -> Table {
     let mut rig: Table = toml::from_str(RIG).unwrap();
     for section in POINTS {
@@ -28,7 +29,7 @@ fn without(lacks: impl Fn(&str, &Table) -> bool) -> Table {
     rig
 }
 
-/// The default rig with nothing on its measuring line, and without that line.
+/// Returns the default rig without its measuring line and without everything on it.
 fn without_the_coil_board() -> Table {
     let rig: Table = toml::from_str(RIG).unwrap();
     let measures = |module: &Value| module["line"].as_str() == Some("measure");
@@ -49,7 +50,7 @@ fn without_the_coil_board() -> Table {
     bare
 }
 
-/// The default folder with another `rig.toml`.
+/// Returns a copy of the default folder with this `rig.toml`.
 fn folder(rig: &Table) -> tempfile::TempDir {
     let original = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
     let copy = tempfile::tempdir().unwrap();
@@ -68,7 +69,7 @@ fn folder(rig: &Table) -> tempfile::TempDir {
     copy
 }
 
-/// Each relay's recipe with why it was refused.
+/// Returns, for the recipe of each relay, why this rig refuses it.
 fn refused(rig: &Table) -> Vec<String> {
     let copy = folder(rig);
     let plant = Plant::load(copy.path()).unwrap();

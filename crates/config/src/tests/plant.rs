@@ -1,10 +1,10 @@
-//! The folder as a whole: missing files, the scene, reference parts, unknown recipes.
+//! Tests of the whole folder: missing files, the scene, reference parts, unknown recipes.
 
 use super::{GOLDEN, RIG, changed, line_of};
 use crate::{Plant, load_recipe, recipe_names};
 use std::path::Path;
 
-/// A copy of `config/` with one file changed, removed when dropped.
+/// A copy of `config/` with one file changed; the copy is deleted when this value is dropped.
 pub(super) struct Copy(pub tempfile::TempDir);
 
 impl Copy {
@@ -25,7 +25,7 @@ impl Copy {
         Self(copy)
     }
 
-    /// The message of loading, the folder's own name left off.
+    /// Returns the message with which loading fails, without the path of the folder.
     fn refused(&self) -> String {
         Plant::load(self.0.path())
             .unwrap_err()

@@ -1,4 +1,4 @@
-//! Revisions: what is kept, what is refused, and that a refusal leaves the folder as it was.
+//! Tests of revisions: what is kept, what is refused, and that a refusal leaves the folder as it was.
 
 use super::plant::Copy;
 use crate::{Change, ConfigError, Plant, load_recipe, revise, revision};
@@ -14,7 +14,7 @@ fn bench() -> (Copy, Plant) {
     (copy, plant)
 }
 
-/// A change of the newest revision.
+/// Returns a change of one value, based on the newest revision.
 fn change(plant: &Plant, path: &str, value: serde_json::Value) -> Change {
     Change {
         name: NAME.into(),
@@ -23,7 +23,7 @@ fn change(plant: &Plant, path: &str, value: serde_json::Value) -> Change {
     }
 }
 
-/// Every file below, with its text.
+/// Returns every file below the folder, with its text.
 fn files(folder: &Path) -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
     for entry in std::fs::read_dir(folder).unwrap() {
@@ -102,7 +102,8 @@ fn a_refused_revision_names_its_key_and_changes_nothing() {
         ("name", json!("other"), "name"),
         ("title_zh", json!("  "), "title_zh"),
         ("test.prebias_v", json!(8.0), "test.prebias_v"),
-        // Nothing is left between the guard bands of what these modules measure: the plant says so, not the file.
+        // These modules measure so coarsely that the guard bands leave no value to pass: the plant refuses it, not the
+        // file.
         (coil, json!(439.9), "limits.coil_resistance_ohm"),
     ] {
         let refused = revise(&plant, &change(&plant, path, value)).unwrap_err();

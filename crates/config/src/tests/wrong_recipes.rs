@@ -1,7 +1,7 @@
-//! Recipes that no rig or not this rig can perform: every one is refused by a message with key, found and expected.
+//! Tests of recipes that no rig, or not this rig, can carry out: each is refused with key, found and expected.
 //!
-//! `wrong_recipes.txt` has a block per recipe: the changes of a recipe of `config/`, `-` for a key that is left out, then every
-//! fault, indented, in the order of the message.
+//! `wrong_recipes.txt` has one block per recipe: first the changes to a recipe of `config/`, with `-` for a key that is
+//! left out; then all faults, indented, in the order of the message.
 
 use super::plant::Copy;
 use crate::{check_all, recipe_names};
@@ -10,7 +10,7 @@ use toml_edit::DocumentMut;
 
 const TABLE: &str = include_str!("wrong_recipes.txt");
 
-/// Sets `path` to a value in TOML notation, or removes it for `-`.
+/// Sets `path` to a value in TOML notation; `-` removes the key.
 fn change(recipe: &mut DocumentMut, path: &str, value: &str) {
     let (tables, key) = path.rsplit_once('.').unwrap_or(("", path));
     let names = tables.split('.').filter(|name| !name.is_empty());

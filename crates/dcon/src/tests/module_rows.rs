@@ -1,4 +1,4 @@
-//! Rows for digital modules and counters.
+//! Rows of the table for digital modules and counters.
 
 use super::{A1, ch, n, word};
 use crate::*;

@@ -1,10 +1,10 @@
-//! Bytes of each command on the wire, and meaning of its reply.
+//! Tests: bytes of each command on the wire, and meaning of its reply.
 
 use super::module_rows::{counter_rows, digital_rows};
 use super::{A1, ch, config, level};
 use crate::*;
 
-/// Command, request without checksum, reply without checksum, meaning.
+/// Returns the table: command, request without checksum, reply without checksum, meaning.
 pub(super) fn table() -> Vec<(Command, &'static str, &'static str, Reply)> {
     let mut rows = common_rows();
     rows.extend(analog_rows());

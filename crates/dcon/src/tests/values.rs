@@ -1,4 +1,4 @@
-//! Numbers: readings, levels, configuration words.
+//! Tests of numbers: readings, levels, configuration words.
 
 use super::*;
 

@@ -1,4 +1,5 @@
-//! Conformance vectors of the named modules, from their manuals: decoded whole, cut off, and with each bit damaged.
+//! Tests with conformance vectors from the manuals of the named modules: decoded whole, cut off, and with each bit
+//! damaged.
 
 use super::sealed;
 use crate::{Family, ReplyError, decode_request, interpret};
@@ -31,7 +32,7 @@ fn vectors() -> Vec<Vector> {
     .collect()
 }
 
-/// Returns the meanings of the reply from a module of this model, without repeats.
+/// Returns what the reply may mean when a module of this model sends it, each meaning once.
 fn said(vector: &Vector, reply: &[u8], checksum: bool) -> Vec<String> {
     let family = Family::of_name(vector.model).unwrap();
     let request = sealed(vector.request, checksum);
@@ -77,7 +78,7 @@ fn no_truncated_vector_decodes_to_a_value() {
                 .into_iter()
                 .filter(|it| family.has_command(it))
             {
-                // Skips commands that do not accept the whole reply either.
+                // Skips commands that refuse even the whole reply.
                 if command.decode(&whole, checksum).is_err() {
                     continue;
                 }
@@ -173,7 +174,7 @@ proptest! {
             let mut written = Vec::new();
             command.encode(false, &mut written);
             let written = written.strip_suffix(b"\r").unwrap_or_default();
-            // `#AABBDD` (7 characters) has two spellings.
+            // Only `#AABBDD`, seven characters, has two spellings.
             prop_assert!(written == request.as_bytes() || request.len() == 7);
             prop_assert!(decode_request(written).contains(&command));
         }

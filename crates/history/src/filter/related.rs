@@ -1,4 +1,4 @@
-//! Runs, alarms and orders that a filter selects.
+//! SQL for the runs, alarms and orders that a filter selects.
 
 use super::{Filter, Select};
 
@@ -21,7 +21,7 @@ impl Filter {
         select
     }
 
-    /// Selects alarms with lot and run in order of time.
+    /// Selects alarms, with their lot and run, in order of time.
     pub(in super::super) fn alarms(&self) -> Select {
         let mut select = Select::new(
             "SELECT lot.name, run.number, alarm.code, alarm.line, alarm.text, alarm.raised_at_us, \
@@ -39,7 +39,7 @@ impl Filter {
         select
     }
 
-    /// Selects orders with lot and run in order of time.
+    /// Selects orders, with their lot and run, in order of time.
     pub(in super::super) fn orders(&self, who: Option<&str>) -> Select {
         let mut select = Select::new(
             "SELECT ordered.at_us, lot.name, run.number, ordered.who, ordered.role, ordered.origin, \

@@ -1,4 +1,4 @@
-//! Control charts: level and spread of a parameter, or the share of each bin by run.
+//! Control charts: level and spread of a parameter, or the share of each bin run by run.
 
 use super::{InquiryError, Result, checks};
 use crate::report::Paper;
@@ -9,24 +9,25 @@ use quality::rules::Rules;
 use serde::Serialize;
 use std::collections::BTreeSet;
 
-/// Allowed subgroup sizes, parts; 1 gives charts of individuals.
+/// Allowed number of parts in a subgroup; 1 gives charts of individual values.
 pub const SUBGROUPS: std::ops::RangeInclusive<u8> = 1..=10;
 
-/// A chart with its subject.
+/// A control chart, and what it is about.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Charted {
     /// Parameter key or name of a bin.
     pub of: String,
     /// Number of points left out before the first one.
     pub first: usize,
-    /// `lot/run` of each point; empty where points have numbers only.
+    /// `lot/run` of each point; empty when the points have only numbers.
     pub names: Vec<String>,
     /// The chart.
     #[serde(flatten)]
     pub chart: Chart,
 }
 
-/// Computes the charts of `param`, or of the share of each bin without one. Limits come from all points.
+/// Computes the charts of `param`, or of the share of each bin when `param` is absent. All points enter into the
+/// control limits.
 pub fn charts(
     archive: &Archive,
     filter: &Filter,
@@ -74,7 +75,8 @@ impl Charted {
         }
     }
 
-    /// Keeps the last `shown` points with their names and signals. Signals count from the first point kept.
+    /// Keeps the last `shown` points, with their names and rule violations; violations are numbered from the first kept
+    /// point.
     #[must_use]
     pub fn last(mut self, shown: usize) -> Self {
         let left_out = self.chart.points.len().saturating_sub(shown);
@@ -104,7 +106,7 @@ fn of_parameter(
     Ok(charts.into_iter().flatten().map(charted).collect())
 }
 
-/// Computes a chart for each bin with parts in any of the runs.
+/// Computes a chart for each bin that has parts in at least one of the runs.
 fn of_bins(runs: &[LotSummary]) -> Vec<Charted> {
     let bins: BTreeSet<&String> = runs.iter().flat_map(|run| run.bins.keys()).collect();
     let names: Vec<String> = runs

@@ -1,14 +1,14 @@
-//! Checks of a filter: a mistyped member is refused by name instead of answered with an empty result.
+//! Checks the members of a filter, so that a mistyped one is refused by name instead of giving an empty result.
 
 use super::{InquiryError, Result};
 use crate::{Archive, Filter};
 
-/// All verdicts.
+/// Values of the member `verdict`.
 pub const VERDICTS: [&str; 4] = ["pass", "fail", "void", "unjudged"];
 /// Values of the member `kind`.
 pub const KINDS: [&str; 3] = ["lot", "golden", "all"];
 
-/// Refuses unknown words and empty ranges.
+/// Fails on an unknown word or an empty range.
 pub fn validate(filter: &Filter) -> Result<()> {
     one_of("verdict", filter.verdict.as_deref(), &VERDICTS)?;
     one_of("kind", filter.kind.as_deref(), &KINDS)?;
@@ -30,7 +30,7 @@ pub fn validate(filter: &Filter) -> Result<()> {
     }
 }
 
-/// Refuses members that the inquiry does not use, since ignoring one would mislead.
+/// Fails on a member that is not among `used`, because the inquiry would ignore it and so mislead.
 pub fn only(filter: &Filter, question: &str, used: &[&str]) -> Result<()> {
     match filter
         .members()
@@ -45,7 +45,7 @@ pub fn only(filter: &Filter, question: &str, used: &[&str]) -> Result<()> {
     }
 }
 
-/// Refuses a word that is not among `known`. The message shows its first 40 characters.
+/// Fails on a word that is not among `known`; the message shows its first 40 characters.
 pub fn one_of(field: &'static str, found: Option<&str>, known: &[&str]) -> Result<()> {
     match found {
         Some(found) if !known.contains(&found) => {
@@ -57,7 +57,7 @@ pub fn one_of(field: &'static str, found: Option<&str>, known: &[&str]) -> Resul
     }
 }
 
-/// Refuses a parameter that the history does not have. Returns all keys in the order of columns.
+/// Fails on a parameter that the history does not have. Returns all keys in the order of columns.
 pub fn parameters(archive: &Archive, asked: Option<&str>) -> Result<Vec<String>> {
     let known = archive.parameters()?;
     let names: Vec<&str> = known.iter().map(String::as_str).collect();
@@ -65,7 +65,7 @@ pub fn parameters(archive: &Archive, asked: Option<&str>) -> Result<Vec<String>>
     Ok(known)
 }
 
-/// Refuses a lot, run or recipe that does not exist.
+/// Fails when no run has the filter's lot, run and recipe.
 pub fn known_runs(archive: &Archive, filter: &Filter) -> Result<()> {
     let named = filter.lot.is_some() || filter.recipe.is_some() || filter.run.is_some();
     if named && !archive.has_runs(filter)? {

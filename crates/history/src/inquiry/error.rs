@@ -2,15 +2,15 @@
 
 use crate::HistoryError;
 
-/// Why an inquiry has no answer.
+/// Reason why an inquiry has no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum InquiryError {
     /// A member of the filter is invalid.
     #[error("{field}: {reason}")]
     Member {
-        /// Name of the option or of the key in the query string.
+        /// Name of the option, or of the key in the query string.
         field: &'static str,
-        /// What was found and expected.
+        /// What was found and what was expected.
         reason: String,
     },
     /// The lot, recipe or part does not exist.
@@ -34,13 +34,13 @@ pub enum InquiryError {
 pub type Result<T> = std::result::Result<T, InquiryError>;
 
 impl InquiryError {
-    /// Makes the error of one member.
+    /// Makes the error about an invalid member.
     pub fn member(field: &'static str, reason: impl Into<String>) -> Self {
         let reason = reason.into();
         Self::Member { field, reason }
     }
 
-    /// Makes the error of a missing lot, recipe or part.
+    /// Makes the error about a missing lot, recipe or part.
     pub fn missing(what: impl Into<String>) -> Self {
         Self::Missing { what: what.into() }
     }

@@ -1,4 +1,4 @@
-//! Export of the selected parts as CSV or spreadsheet, with constant memory.
+//! Exports the selected parts as CSV or spreadsheet; the memory needed does not grow with their number.
 
 use super::Result;
 use crate::columns::{self, Cell};
@@ -8,7 +8,7 @@ use crate::{Archive, Filter, csv};
 use rust_xlsxwriter::Workbook;
 use std::io::Write;
 
-/// Writes the header and a line per part. `history import` reads the file back; no text becomes a formula.
+/// Writes the header and one line per part. `history import` can read the file back; no text acts as a formula.
 pub fn csv_lines(
     archive: &Archive,
     filter: &Filter,
@@ -27,7 +27,7 @@ pub fn csv_lines(
     Ok(())
 }
 
-/// Returns a spreadsheet with a summary and native charts, and calls `each` for every part.
+/// Returns a spreadsheet with a summary and native charts; calls `each` for every part.
 pub fn spreadsheet(
     archive: &Archive,
     filter: &Filter,

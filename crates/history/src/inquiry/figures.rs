@@ -12,13 +12,13 @@ const CLASSES: usize = 30;
 /// Statistics of one parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figures {
-    /// Moments and capability.
+    /// Mean, spread and capability.
     pub summary: Summary,
-    /// True when the runs have different limits, so that there is no capability.
+    /// True when the runs have different limits; there is no capability then.
     pub limits_differ: bool,
 }
 
-/// Computes the statistics of `param`, by the limits of its runs unless others are given.
+/// Computes the statistics of `param`; uses the limits of its runs unless the caller gives others.
 pub fn figures(
     archive: &Archive,
     param: &str,
@@ -36,18 +36,18 @@ pub fn figures(
     })
 }
 
-/// A histogram with limits.
+/// A histogram, with limits.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Classes {
-    /// Classes of equal width; `None` without spread.
+    /// Classes of equal width; `None` when the values have no spread.
     #[serde(flatten)]
     pub histogram: Option<Histogram>,
-    /// Limits, when all runs have the same.
+    /// Limits that all runs share; none when they differ.
     #[serde(flatten)]
     pub limits: Limits,
 }
 
-/// Computes a histogram of `param` in about thirty classes at round numbers.
+/// Computes a histogram of `param` with about thirty classes, which begin at round numbers.
 pub fn histogram(archive: &Archive, param: &str, filter: &Filter) -> Result<Classes> {
     checks::parameters(archive, Some(param))?;
     checks::known_runs(archive, filter)?;
@@ -58,7 +58,7 @@ pub fn histogram(archive: &Archive, param: &str, filter: &Filter) -> Result<Clas
     })
 }
 
-/// Returns the limits that all runs share; none when they differ, since a capability then has no meaning.
+/// Returns the limits that all runs share; none when they differ, because a capability would then have no meaning.
 pub(super) fn agreed(seen: LimitsSeen) -> Limits {
     match seen {
         LimitsSeen::Same { low, high } => Limits { low, high },

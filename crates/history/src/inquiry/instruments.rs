@@ -1,4 +1,4 @@
-//! Calibration factors of the rig with uncertainty and due date, and the last readings of its reference parts.
+//! Calibration factors of the rig with uncertainty and due date, and the latest readings of its reference parts.
 
 use super::Result;
 use crate::{Archive, CalibrationRecord, Moment, Part, ReferenceCheck};
@@ -8,13 +8,13 @@ use machine::dut::instruments::{Certificate, factors};
 use serde::Serialize;
 use units::Unit;
 
-/// Coverage factor of the uncertainties in the answer.
+/// Coverage factor of all expanded uncertainties in the answer.
 const K: f64 = 2.0;
 
 /// Calibrations and reference parts of a rig.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Instruments {
-    /// Newest calibration of each coil voltage.
+    /// Newest calibration for each coil voltage.
     pub calibrations: Vec<CalibrationStatus>,
     /// Reference parts of the plant.
     pub golden: Vec<ReferencePartStatus>,
@@ -22,26 +22,26 @@ pub struct Instruments {
     pub check: Option<ReferenceCheck>,
 }
 
-/// A calibration with its validity.
+/// A calibration, and until when it is valid.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CalibrationStatus {
     /// Nominal coil voltage of its reference parts, V.
     pub nominal_v: Option<f64>,
     /// Time of the calibration.
     pub made: Moment,
-    /// End of validity.
+    /// Time at which the calibration expires.
     pub due: Moment,
-    /// True after the end of validity.
+    /// True once the calibration has expired.
     pub overdue: bool,
-    /// False when the last verification failed.
+    /// False after a failed verification, else true.
     pub verified: bool,
-    /// SHA-256, by which runs refer to it.
+    /// SHA-256 by which runs name this calibration.
     pub hash: String,
     /// Measured factors; empty when this program cannot read them.
     pub factors: Vec<ShownFactor>,
 }
 
-/// A factor with expanded uncertainty.
+/// A calibration factor with its expanded uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ShownFactor {
     /// Name of the factor.
@@ -54,31 +54,31 @@ pub struct ShownFactor {
     pub uncertainty: f64,
 }
 
-/// A reference part with its certificate and last readings.
+/// A reference part, with its certificate and latest readings.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ReferencePartStatus {
     /// Serial number.
     pub serial: String,
-    /// Nominal coil voltage of its recipes, V.
+    /// Nominal coil voltage of the recipes that use the part, V.
     pub nominal_v: f64,
     /// Time of its last test, if any.
     pub seen: Option<Moment>,
     /// Lot and run of that test.
     pub run: Option<(String, u32)>,
-    /// Certified quantities with their readings.
+    /// Certified quantities, each with its latest reading.
     pub values: Vec<CertifiedReading>,
 }
 
-/// A certified quantity with its last reading.
+/// A certified quantity, with its latest reading.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CertifiedReading {
-    /// The characteristic.
+    /// Characteristic that is certified.
     pub parameter: Characteristic,
     /// Certified value.
     pub certified: f64,
     /// Expanded uncertainty of the certificate, k = 2.
     pub certified_uncertainty: f64,
-    /// Last reading.
+    /// Latest reading, if any.
     pub value: Option<f64>,
     /// Expanded uncertainty of the reading, k = 2.
     pub uncertainty: Option<f64>,
@@ -87,7 +87,7 @@ pub struct CertifiedReading {
 /// Collects calibrations and readings of a rig; `reference_parts` are the certificates of the plant.
 ///
 /// # Errors
-/// The history cannot be read.
+/// Fails when the history cannot be read.
 pub fn instruments(
     archive: &Archive,
     simulated: bool,
@@ -146,7 +146,8 @@ fn reference_part(archive: &Archive, part: &Certificate) -> Result<ReferencePart
     })
 }
 
-/// Returns value and expanded uncertainty. A value without uncertainty only teaches a calibration and is left out.
+/// Returns value and expanded uncertainty; `None` for a value without uncertainty, which only serves to compute a
+/// calibration.
 fn read(part: &Part, parameter: Characteristic) -> Option<(f64, f64)> {
     let number =
         |map: &serde_json::Map<String, serde_json::Value>| map.get(parameter.key())?.as_f64();

@@ -1,4 +1,4 @@
-//! Inquiries into the history, with the same answer for command line, page and exports.
+//! Inquiries into the history; command line, page and exports get the same answers.
 //!
 //! | answer | file |
 //! |---|---|
@@ -11,8 +11,8 @@
 //! | verdicts of another recipe on a lot | [`rejudge`] |
 //! | all parts of a filter as CSV or spreadsheet | [`export`] |
 //!
-//! An inquiry combines rows of the history with the arithmetic of `quality`, so that page, paper and `--json` show the same
-//! figure. Inquiries write nothing.
+//! An inquiry combines rows of the history with the arithmetic of crate `quality`, so page, paper and `--json` show the
+//! same figure. Inquiries write nothing.
 
 pub mod charts;
 pub mod checks;

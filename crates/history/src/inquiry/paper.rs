@@ -1,4 +1,4 @@
-//! Printable pages from the history.
+//! Makes printable pages from the history.
 
 use super::figures::agreed;
 use super::use_of_time::use_of_time;
@@ -31,8 +31,8 @@ pub fn paper(language: Lang) -> Paper {
     }
 }
 
-/// Returns the report of a lot. `ideal_cycle_s` is the shortest cycle that the line can keep; without it the 5 % quantile
-/// of the cycle times counts.
+/// Returns the report of a lot. `ideal_cycle_s` is the shortest cycle that the line can keep, seconds; without it the 5
+/// % quantile of the cycle times is used.
 pub fn lot_report(
     archive: &Archive,
     filter: &Filter,
@@ -78,7 +78,7 @@ fn measured(archive: &Archive, filter: &Filter) -> Result<Vec<ParameterValues>> 
     Ok(measured)
 }
 
-/// Returns the certificate of part `seq` of the lot, from its latest run unless the filter names one.
+/// Returns the certificate of part `seq` of the lot; its latest run is meant unless the filter names a run.
 pub fn part_certificate(
     archive: &Archive,
     filter: &Filter,
@@ -108,7 +108,7 @@ pub fn part_certificate(
     }
 }
 
-/// Returns the list of the selected alarms.
+/// Returns a page that lists the selected alarms.
 pub fn alarm_list(archive: &Archive, filter: &Filter, paper: &Paper) -> Result<String> {
     checks::known_runs(archive, filter)?;
     let about = filter.lot.as_deref().unwrap_or_default();

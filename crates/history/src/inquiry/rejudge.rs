@@ -1,4 +1,4 @@
-//! Verdicts of another recipe on the parts of a lot; writes no row.
+//! Judges the parts of a lot by another recipe; writes no row.
 
 use super::{InquiryError, Result, checks};
 use crate::{Archive, Filter, Part, rejudged};
@@ -17,47 +17,47 @@ pub struct RejudgedPart {
     pub lot: String,
     /// Number of the run within its lot.
     pub run: u32,
-    /// Count of parts that entered the nest.
+    /// Number of the part: it was the `seq`-th of its kind to enter the nest in this run.
     pub seq: u64,
-    /// Name of the recipe judged by.
+    /// Name of the other recipe.
     pub recipe: String,
-    /// Verdict of the run.
+    /// Verdict that the run gave.
     pub verdict_was: String,
-    /// Verdict by this recipe.
+    /// Verdict by the other recipe.
     pub verdict: &'static str,
-    /// Bin of that verdict.
+    /// Bin that the new verdict assigns.
     pub bin: String,
-    /// Reasons against a pass, as texts.
+    /// Reasons why the part does not pass by the other recipe, as texts.
     pub reasons: Vec<String>,
     /// The same reasons as codes.
     pub reason_codes: Vec<Reason>,
 }
 
 impl RejudgedPart {
-    /// Returns true when the verdicts differ.
+    /// Returns true when old and new verdict differ.
     pub fn changes(&self) -> bool {
         self.verdict != self.verdict_was
     }
 }
 
-/// Summary of all parts.
+/// Number of parts by old and new verdict, with the other recipe.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Changes {
     /// Always `summary`.
     #[serde(rename = "type")]
     pub tag: &'static str,
-    /// Name of the recipe judged by.
+    /// Name of the other recipe.
     pub recipe: String,
     /// SHA-256 of its text.
     pub recipe_hash: String,
-    /// Numbers of parts by old and new verdict.
+    /// Number of parts for each pair of old and new verdict.
     pub changes: Vec<Change>,
 }
 
-/// Number of parts with the same old and new verdict.
+/// Number of parts with one pair of old and new verdict.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Change {
-    /// Verdict of the run.
+    /// Verdict that the run gave.
     pub was: String,
     /// Verdict by the other recipe.
     pub now: &'static str,
@@ -65,20 +65,21 @@ pub struct Change {
     pub parts: u64,
 }
 
-/// A lot and a recipe that fits what was measured.
+/// A lot to be judged again, and a recipe that fits what was measured on its parts.
 #[derive(Debug)]
 pub struct Rejudging {
     recipe: Recipe,
     filter: Filter,
-    /// Basis of the values by run; an import without a recipe has the basis of `recipe`.
+    /// Recipe data that the values of each run were measured by; an import without a recipe has those of `recipe`.
     bases: BTreeMap<u32, Basis>,
 }
 
 impl Rejudging {
-    /// Selects the parts of `lot`, or of one `run`, for judgement by `recipe`.
+    /// Selects the parts of `lot`, or those of one `run`, to be judged by `recipe`.
     ///
     /// # Errors
-    /// The lot or run does not exist, holds another kind of part, or was measured at another nominal voltage.
+    /// Fails when the lot or run does not exist, holds another kind of part, or was measured at another nominal
+    /// voltage.
     pub fn of(archive: &Archive, lot: String, run: Option<u32>, recipe: Recipe) -> Result<Self> {
         let filter = Filter {
             lot: Some(lot),
@@ -105,11 +106,11 @@ impl Rejudging {
         })
     }
 
-    /// Calls `each` for every part in order of judgement and returns the summary. Stops at the first error of `each` and
-    /// returns it.
+    /// Calls `each` for every part in order of judgement and returns the summary. Stops at the first error of `each`
+    /// and returns it.
     ///
     /// # Errors
-    /// The history cannot be read.
+    /// Fails when the history cannot be read.
     pub fn each<E>(
         &self,
         archive: &Archive,

@@ -1,4 +1,4 @@
-//! Facts about answers.
+//! Tests of inquiries and their answers.
 #![allow(clippy::unwrap_used)]
 
 use super::checks::{only, validate};

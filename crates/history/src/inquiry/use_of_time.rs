@@ -1,15 +1,15 @@
-//! Use of the time of a lot: the input of [`quality::effectiveness`] from the history.
+//! Use of the time of a lot: reads the input of [`quality::effectiveness`] from the history.
 
 use super::Result;
 use crate::{Archive, Filter, LotSummary, Moment};
 use quality::Ordered;
 use quality::effectiveness::{Effectiveness, Observed, effectiveness};
 
-/// Quantile of the cycle times that replaces a missing ideal cycle.
+/// Quantile of the cycle times that stands in for a missing ideal cycle time.
 const QUICKEST: f64 = 0.05;
 
-/// Computes the use of time. Planned time is from start to end of each run; an alarm ends with its run at the latest. Returns
-/// `None` for imports, which have no times.
+/// Computes the use of the time. The time from start to end of each run is planned time; an alarm that was not cleared
+/// ends with its run. Returns `None` for imports, which have no times.
 pub(super) fn use_of_time(
     archive: &Archive,
     filter: &Filter,
@@ -44,7 +44,7 @@ pub(super) fn use_of_time(
     Ok(effectiveness(observed))
 }
 
-/// Returns the time that the spans cover, s; overlapping alarms count once.
+/// Returns the total time that the spans cover, seconds; time that several spans share counts once.
 fn covered_s(mut spans: Vec<(Moment, Moment)>) -> f64 {
     spans.sort_unstable();
     let mut covered = 0.0;

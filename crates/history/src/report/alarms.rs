@@ -1,4 +1,4 @@
-//! List of alarms with state (ISA-18.2), acknowledgement and shelving.
+//! Printable list of alarms with state (ISA-18.2), acknowledgement and shelving.
 
 use super::Paper;
 use super::page::{Format, head, page};
@@ -44,8 +44,8 @@ pub(super) fn table(paper: &Paper, alarms: &[Alarm]) -> Markup {
     }
 }
 
-/// Returns the message in the language of the page; a Chinese page shows cause and English message of a row without
-/// arguments.
+/// Returns the message in the language of the page; a Chinese page shows the Chinese cause and the English message when
+/// arguments are missing.
 fn text(language: Lang, alarm: &Alarm) -> Markup {
     html! {
         @match (language, &alarm.text_zh, alarm.cause_zh) {
@@ -56,7 +56,7 @@ fn text(language: Lang, alarm: &Alarm) -> Markup {
     }
 }
 
-/// Returns state, acknowledgement and shelving.
+/// Returns state, acknowledgement and shelving as one cell.
 fn state(paper: &Paper, alarm: &Alarm) -> Markup {
     let say = |id| paper.language.text(id);
     let name = match alarm.state {

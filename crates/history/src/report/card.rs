@@ -1,8 +1,8 @@
-//! The operation process card of a recipe: steps with tooling, drive, limits and time quota. The form is that of machining,
-//! with drive, limits and decision instead of spindle and feed.
+//! The operation process card of a recipe: steps with tooling, drive, limits and time quota. The form is the one that
+//! is usual for machining, with drive, limits and decision in place of spindle and feed.
 //!
-//! Steps, rating and drive come from the kind ([`Card`]), limits from the recipe, figures of the plant from `card.toml`
-//! ([`CardSettings`]).
+//! The kind of device gives steps, rating and drive ([`Card`]), the recipe gives the limits, and `card.toml` gives what
+//! only the plant knows ([`CardSettings`]).
 
 use super::Paper;
 use super::lot::limits;
@@ -82,7 +82,7 @@ fn title(language: Lang, recipe: &Recipe) -> &str {
     }
 }
 
-/// Returns the sum of all quotas, s.
+/// Returns the sum of all time quotas, seconds.
 fn total(plant: &CardSettings) -> f64 {
     plant
         .quota

@@ -1,4 +1,4 @@
-//! Certificate of one part: results with uncertainty and limits, calibration, and what was not tested.
+//! Certificate of one part: results with uncertainty and limits, the calibration, and what was not tested.
 
 use super::lot::{limits, source};
 use super::page::{Format, facts, head, page, sign_off};
@@ -9,7 +9,7 @@ use maud::{Markup, html};
 use quality::Limits;
 use texts::Lang;
 
-/// Returns the certificate of `part`, with its measurements, of the run `run`.
+/// Returns the certificate of `part`, which must have its measurements; `run` is the run that tested it.
 pub fn certificate(paper: &Paper, part: &Part, run: &LotSummary) -> String {
     let language = paper.language;
     let title = language.text("paper-test_certificate");
@@ -86,7 +86,7 @@ fn results(language: Lang, part: &Part) -> Markup {
     }
 }
 
-/// Rounds the uncertainty to two significant digits and the value to the same place (GUM 7.2.6).
+/// Rounds the uncertainty to two significant digits and the value to the same decimal place (GUM 7.2.6).
 fn rounded(value: Option<f64>, uncertainty: Option<f64>) -> (String, String) {
     let Some(doubt) = uncertainty.filter(|it| it.is_finite() && *it > 0.0) else {
         return (figure(value), figure(uncertainty));

@@ -1,4 +1,4 @@
-//! Control charts and histograms as SVG.
+//! Draws control charts and histograms as SVG.
 
 use super::plot::{LIMIT, LINE, Plot, QUIET, ticked};
 use super::words::figure;
@@ -6,11 +6,11 @@ use quality::chart::Chart;
 use quality::ordered::{Histogram, round_step};
 use quality::{Limits, Ordered};
 
-/// Size of a control chart, px: two of them with their legend fill a landscape sheet.
+/// Width and height of a control chart, px: two charts with their legend fill an A4 sheet in landscape.
 const WIDE: [f64; 2] = [1000.0, 200.0];
 
-/// Draws the last `shown` points of a control chart with its limits. Points that violate a rule are red and show its number;
-/// every few points have their name below.
+/// Draws the last `shown` points of a control chart with its limits. A point that violates a rule is red and shows the
+/// number of the rule; every few points have their name below.
 pub(super) fn control(chart: &Chart, shown: usize, names: &[String]) -> String {
     let first = chart.points.len().saturating_sub(shown);
     let points = &chart.points[first..];
@@ -80,7 +80,7 @@ fn point(plot: &mut Plot, chart: &Chart, first: usize, at: usize, value: f64, ra
     plot.svg.text([x, y - 6.0], &style, &rules.join(","));
 }
 
-/// Writes names, or numbers from 1, below as many points as have room.
+/// Writes names below as many points as have room; points without names get numbers from 1.
 fn named(plot: &mut Plot, shown: usize, first: usize, names: &[String]) {
     let longest = names
         .iter()
@@ -96,7 +96,8 @@ fn named(plot: &mut Plot, shown: usize, first: usize, names: &[String]) {
     }
 }
 
-/// Draws counts as columns, and limits near the values as vertical lines. Returns `None` without spread.
+/// Draws counts as columns, and limits that lie near the values as vertical lines. Returns `None` when the values have
+/// no spread.
 pub(super) fn histogram(values: &Ordered, limits: Limits) -> Option<String> {
     let it = values.histogram(24)?;
     let end = it.from + it.width * it.counts.len() as f64;

@@ -1,4 +1,4 @@
-//! Report of a lot: counts, capability, use of time, alarms.
+//! Printable report of a lot: counts, capability, use of time, alarms.
 
 use super::charts;
 use super::page::{Format, facts, head, page, sign_off};
@@ -16,13 +16,13 @@ use texts::{Lang, Message};
 pub struct LotReport<'a> {
     /// Name of the lot.
     pub lot: &'a str,
-    /// Its runs, at least one.
+    /// Runs of the lot, at least one.
     pub runs: &'a [LotSummary],
     /// Decisions to open the complete lot again.
     pub reopenings: &'a [Reopening],
     /// Parts that passed.
     pub passed: Passed,
-    /// Values in order of time, by parameter.
+    /// Values of each parameter.
     pub parameters: Vec<ParameterValues>,
     /// Use of the time; `None` for an import.
     pub effectiveness: Option<Effectiveness>,
@@ -33,7 +33,7 @@ pub struct LotReport<'a> {
 /// Values of one parameter.
 #[derive(Debug, Clone)]
 pub struct ParameterValues {
-    /// Parameter key.
+    /// Key of the parameter.
     pub key: String,
     /// Limits in force.
     pub limits: Limits,

@@ -1,4 +1,4 @@
-//! Printable pages and spreadsheets. Functions here turn data into text and open no file.
+//! Printable pages and spreadsheets. The functions here turn data into text or cells and open no file of their own.
 //!
 //! | page | file |
 //! |---|---|
@@ -9,8 +9,8 @@
 //! | operation process card of a recipe | [`card`] |
 //! | spreadsheet with native charts | [`sheet`] |
 //!
-//! A page is one self-contained HTML file for A4 ([`page`]), without scripts, fonts or external pictures; charts are inline
-//! SVG. Pages are Chinese or English ([`words`]); texts typed by people are escaped.
+//! A page is one self-contained HTML file for A4 ([`page`]), without scripts, fonts or external pictures; charts are
+//! inline SVG. Pages are Chinese or English ([`words`]); texts typed by people are escaped.
 
 pub mod alarms;
 pub mod card;
@@ -35,9 +35,9 @@ use jiff::{Timestamp, tz::TimeZone};
 pub struct Paper {
     /// Language of the page.
     pub language: Lang,
-    /// Time zone of the page; the history has UTC.
+    /// Time zone in which the page shows times; the history has UTC.
     pub zone: TimeZone,
-    /// Foot of the page: time and program version.
+    /// Text at the foot of the page: time and program version.
     pub made: String,
     /// True for parts of the simulated rig: SIMULATION goes across every page.
     pub simulated: bool,

@@ -1,4 +1,4 @@
-//! Frame of a page: A4, one style, head, foot, sign-off.
+//! Frame of a printable page: A4, one style, head, foot, boxes to sign.
 
 use super::Paper;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -7,9 +7,9 @@ use texts::Lang;
 /// Orientation of the sheet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Format {
-    /// Upright.
+    /// Taller than wide.
     Portrait,
-    /// Lengthwise.
+    /// Wider than tall.
     Landscape,
 }
 
@@ -44,7 +44,7 @@ pub(super) fn page(paper: &Paper, format: Format, title: &str, body: &Markup) ->
     whole.into_string()
 }
 
-/// Returns title and subtitle.
+/// Returns title and subtitle of a page.
 pub(super) fn head(title: &str, about: &str) -> Markup {
     html! {
         header {
@@ -54,7 +54,7 @@ pub(super) fn head(title: &str, about: &str) -> Markup {
     }
 }
 
-/// Returns pairs of name and text in two columns.
+/// Returns pairs of name and text, laid out in two columns.
 pub(super) fn facts(pairs: &[(&str, String)]) -> Markup {
     html! {
         dl.facts {
@@ -65,7 +65,7 @@ pub(super) fn facts(pairs: &[(&str, String)]) -> Markup {
     }
 }
 
-/// Returns boxes for names and dates.
+/// Returns boxes in which people write name and date.
 pub(super) fn sign_off(language: Lang) -> Markup {
     let roles = [
         language.text("paper-tested_by"),

@@ -1,4 +1,5 @@
-//! A drawing area with axes: values to places, round ticks, lines and marks. Lengths in px of the view box.
+//! A drawing area with axes: converts values to places, draws ticks at round values, lines and marks. Lengths are in px
+//! of the view box.
 
 use super::svg::Svg;
 use quality::ordered::round_step;
@@ -9,7 +10,7 @@ const BELOW: f64 = 24.0;
 const ABOVE: f64 = 10.0;
 const RIGHT: f64 = 64.0;
 
-/// Colours of different lightness, which differ in a grey print too.
+/// Colours that differ in lightness too, so that a grey print shows them apart.
 pub(super) const LINE: &str = "#1f5f99";
 pub(super) const LIMIT: &str = "#a11212";
 pub(super) const QUIET: &str = "#8a97a5";
@@ -17,7 +18,7 @@ pub(super) const GRID: &str = "#e3e8ed";
 
 /// A plot under construction.
 pub(super) struct Plot {
-    /// The drawing, for elements at places of their own.
+    /// The drawing; the caller may add elements at places of its own.
     pub svg: Svg,
     width: f64,
     height: f64,
@@ -26,7 +27,8 @@ pub(super) struct Plot {
 }
 
 impl Plot {
-    /// Makes an empty plot of this size over these ranges; widens a range of one value by 0.5 on each side.
+    /// Makes an empty plot of this size over these ranges; a range that is a single value is widened by 0.5 on each
+    /// side.
     pub fn new([width, height]: [f64; 2], x: [f64; 2], y: [f64; 2]) -> Self {
         let mut plot = Self {
             svg: Svg::new([width, height]),
@@ -39,24 +41,24 @@ impl Plot {
         plot
     }
 
-    /// Returns the place of a value along x.
+    /// Returns the place of a value on the x axis, px.
     pub fn at_x(&self, value: f64) -> f64 {
         LEFT + (self.width - LEFT - RIGHT) * (value - self.x[0]) / (self.x[1] - self.x[0])
     }
 
-    /// Returns the place of a value along y.
+    /// Returns the place of a value on the y axis, px.
     pub fn at_y(&self, value: f64) -> f64 {
         let bottom = self.height - BELOW;
         bottom - (bottom - ABOVE) * (value - self.y[0]) / (self.y[1] - self.y[0])
     }
 
-    /// Writes a text under the plot, centred at a value of x.
+    /// Writes a text under the plot, centred at value `x`.
     pub fn under(&mut self, x: f64, text: &str) {
         let at = [self.at_x(x), self.height - 8.0];
         self.svg.text(at, "text-anchor=\"middle\"", text);
     }
 
-    /// Draws a horizontal line at a value of y with its name at the right.
+    /// Draws a horizontal line at value `y`, with its name at the right.
     pub fn across(&mut self, y: f64, colour: &str, dashes: &str, name: &str) {
         let (at, end) = (self.at_y(y), self.width - RIGHT);
         let style = format!("stroke=\"{colour}\" stroke-dasharray=\"{dashes}\"");
@@ -65,7 +67,7 @@ impl Plot {
         self.svg.text([end + 3.0, at + 4.0], &style, name);
     }
 
-    /// Draws a vertical line at a value of x with its name at the top.
+    /// Draws a vertical line at value `x`, with its name at the top.
     pub fn vertical_line(&mut self, x: f64, colour: &str, name: &str) {
         let (at, bottom) = (self.at_x(x), self.height - BELOW);
         let style = format!("stroke=\"{colour}\" stroke-width=\"1.5\" stroke-dasharray=\"5 3\"");
@@ -74,12 +76,12 @@ impl Plot {
         self.svg.text([at + 3.0, ABOVE + 9.0], &style, name);
     }
 
-    /// Returns the picture.
+    /// Returns the picture as SVG.
     pub fn finish(self) -> String {
         self.svg.inline()
     }
 
-    /// Draws round values of y with thin horizontal lines, and the frame.
+    /// Draws thin horizontal lines at round values of y, with their numbers, and the frame.
     fn ticks(&mut self) {
         let [low, high] = self.y;
         let step = round_step((high - low) / 5.0).unwrap_or(1.0);
@@ -100,7 +102,7 @@ impl Plot {
     }
 }
 
-/// Formats a value with the decimals of the step between two ticks.
+/// Formats a value with as many decimals as the step between two ticks needs.
 pub(super) fn ticked(value: f64, step: f64) -> String {
     let decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
     // Adding 0 turns -0 into 0.

@@ -1,7 +1,7 @@
-//! Spreadsheet of an export: a summary with native charts, then a row per part.
+//! Spreadsheet of an export: a summary with native charts, then one row per part.
 //!
-//! Memory does not grow with the number of parts: the library writes rows to a temporary file, and only a [`Tally`] of each
-//! parameter stays. After [`ROWS`] rows the next sheet begins. Texts are written as texts, never as formulas.
+//! Memory does not grow with the number of parts: the library writes rows to a temporary file, and only a [`Tally`] per
+//! parameter stays in memory. After [`ROWS`] rows a new sheet begins. Texts are written as texts, never as formulas.
 
 use super::Paper;
 use super::words::parameter;
@@ -14,11 +14,11 @@ use quality::tally::Tally;
 use rust_xlsxwriter::{Chart, ChartType, Color, Format, Workbook, Worksheet, XlsxError};
 use std::collections::BTreeMap;
 
-/// Parts on one sheet; spreadsheets hold 1,048,576 rows.
+/// Most parts on one sheet; a spreadsheet can hold 1,048,576 rows.
 const ROWS: u32 = 1_000_000;
-/// Days from the epoch of spreadsheets to 1970.
+/// Days from the day that spreadsheets count from to 1 January 1970.
 pub const EPOCH_DAYS: f64 = 25_569.0;
-/// Height of a chart in rows of the summary.
+/// Height of a chart, in rows of the summary.
 const CHART_ROWS: u32 = 16;
 
 /// Column of the charts in the summary.
@@ -190,7 +190,7 @@ fn counted(
     Ok((last + 2).max(row + CHART_ROWS))
 }
 
-/// Returns the classes with their lower edge as name.
+/// Returns the count of each class; the name of a class is its lower edge.
 fn classes(it: &Histogram) -> Vec<(String, u64)> {
     let edge = |at: usize| super::plot::ticked(it.from + at as f64 * it.width, it.width);
     it.counts
@@ -200,7 +200,7 @@ fn classes(it: &Histogram) -> Vec<(String, u64)> {
         .collect()
 }
 
-/// Writes a cell; an instant beyond the calendar stays empty.
+/// Writes a cell; leaves it empty for an instant beyond the range of the calendar.
 fn written(
     to: &mut Worksheet,
     (row, column): (u32, u16),
@@ -235,7 +235,8 @@ fn number(to: &mut Worksheet, row: u32, column: u16, value: Option<f64>) -> Resu
     Ok(())
 }
 
-/// Returns local time as days since the epoch of spreadsheets, to the second; `None` beyond the calendar.
+/// Converts an instant to local time in days as spreadsheets count them, to the second; `None` beyond the range of the
+/// calendar.
 fn serial(at: Moment, zone: &TimeZone) -> Option<f64> {
     let stamp = Timestamp::from_microsecond(at.0).ok()?;
     let stamp = stamp.round(Unit::Second).ok()?;

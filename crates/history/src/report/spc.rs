@@ -9,18 +9,18 @@ use quality::chart::Chart;
 use quality::rules::Signal;
 use texts::{Lang, Message};
 
-/// A chart with names of its points.
+/// A control chart, and the names of its points.
 #[derive(Debug, Clone)]
 pub struct NamedChart<'a> {
     /// Parameter key or name of a bin.
     pub of: &'a str,
     /// The chart.
     pub chart: &'a Chart,
-    /// Names of the points; empty for numbers from 1.
+    /// Names of the points; when empty, the points are numbered from 1.
     pub names: &'a [String],
 }
 
-/// Returns the page with the last `shown` points of every chart.
+/// Returns a page with the last `shown` points of every chart.
 pub fn spc(paper: &Paper, about: &str, charts: &[NamedChart<'_>], shown: usize) -> String {
     let language = paper.language;
     let heading = language.text("paper-control_charts");
@@ -37,7 +37,7 @@ pub fn spc(paper: &Paper, about: &str, charts: &[NamedChart<'_>], shown: usize) 
     page(paper, Format::Landscape, heading, &body)
 }
 
-/// Returns subject and kind of a chart.
+/// Returns the title of a chart: what it is about, and its kind.
 fn title(language: Lang, it: &NamedChart<'_>) -> String {
     let share = Message::new("paper", "bin_share").with("bin", it.of);
     let of = match it.chart.kind {
@@ -47,7 +47,7 @@ fn title(language: Lang, it: &NamedChart<'_>) -> String {
     format!("{of} – {}", kind(language, it.chart.kind))
 }
 
-/// Returns a remark when not all points are drawn.
+/// Returns the remark that only the last `shown` points are drawn; empty when all are.
 fn cut(language: Lang, points: usize, shown: usize) -> String {
     let cut = Message::new("paper", "last_points")
         .with("shown", shown)

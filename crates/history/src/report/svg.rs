@@ -1,4 +1,4 @@
-//! A picture as SVG text. Lengths in px of the view box; `style` holds further attributes of an element.
+//! Builds a picture as SVG text. Lengths are in px of the view box; `style` holds further attributes of an element.
 
 use std::fmt::Write;
 
@@ -27,7 +27,7 @@ impl Svg {
         ));
     }
 
-    /// Adds a text, escaped.
+    /// Adds a text; characters that have a meaning in XML are escaped.
     pub fn text(&mut self, [x, y]: [f64; 2], style: &str, text: &str) {
         let text = escaped(text);
         self.add(format_args!(
@@ -49,7 +49,7 @@ impl Svg {
         ));
     }
 
-    /// Returns the picture for a page that gives it its size.
+    /// Returns the picture without a size of its own, for a page that sets the size.
     pub fn inline(self) -> String {
         let Self { text, size } = self;
         let [width, height] = size;
@@ -59,7 +59,7 @@ impl Svg {
         )
     }
 
-    /// Returns the picture as a file of its own, on white and under a title.
+    /// Returns the picture as an SVG file, on white, under a title.
     pub fn file(self, title: &str) -> String {
         let Self { text, size } = self;
         let ([width, height], title) = (size, escaped(title));

@@ -1,4 +1,4 @@
-//! Facts about the pages.
+//! Tests of the printable pages.
 #![allow(clippy::unwrap_used)]
 
 use super::card::card;
@@ -16,7 +16,7 @@ use quality::rules::Rules;
 use std::path::Path;
 
 const LANGUAGES: [Lang; 2] = [Lang::En, Lang::Zh];
-/// What an operator may type.
+/// Text that an operator might type to inject a script.
 const EVIL: &str = "</td><script>alert('批次')</script>";
 
 fn paper(language: Lang) -> Paper {

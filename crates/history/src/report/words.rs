@@ -1,9 +1,9 @@
-//! Names and figures on paper.
+//! Names and figures as printed pages show them.
 
 use machine::dut::{Characteristic, Reason};
 use texts::{Lang, Message};
 
-/// Returns the name of a parameter with its unit; the key itself for an unknown one.
+/// Returns the name of a parameter with its unit; for an unknown parameter, the key itself.
 pub fn parameter(lang: Lang, key: &str) -> String {
     match Characteristic::from_key(key) {
         Some(known) => format!("{} / {}", known.name(lang), known.unit().sign()),
@@ -11,7 +11,7 @@ pub fn parameter(lang: Lang, key: &str) -> String {
     }
 }
 
-/// Returns a reason with the name of its characteristic.
+/// Returns the text of a reason, with the name of its characteristic if it has one.
 pub fn reason(lang: Lang, reason: &Reason) -> String {
     let text = reason.text(lang);
     match reason.characteristic() {
@@ -23,7 +23,7 @@ pub fn reason(lang: Lang, reason: &Reason) -> String {
     }
 }
 
-/// Joins name and unit so that no line breaks between them.
+/// Joins name and unit with unbreakable spaces, so that they stay on one line.
 pub(super) fn unbroken(name: &str) -> String {
     name.replace(" / ", "\u{a0}/\u{a0}")
 }
@@ -33,7 +33,7 @@ pub(super) fn short_hash(hash: &str) -> String {
     hash.get(..16).unwrap_or(hash).to_owned()
 }
 
-/// Formats five significant digits without trailing zeros; a dash for `None`.
+/// Formats a value with five significant digits and without trailing zeros; a dash for `None`.
 pub(super) fn figure(value: Option<f64>) -> String {
     let Some(value) = value.filter(|it| it.is_finite()) else {
         return "–".to_owned();
@@ -45,7 +45,7 @@ pub(super) fn figure(value: Option<f64>) -> String {
     }
 }
 
-/// Formats `digits` significant digits without trailing zeros or exponent.
+/// Formats a value with `digits` significant digits, without trailing zeros or exponent.
 pub fn significant(value: f64, digits: u8) -> String {
     if value == 0.0 {
         return "0".to_owned();
@@ -60,7 +60,7 @@ pub fn significant(value: f64, digits: u8) -> String {
     }
 }
 
-/// Formats a share as percent with two decimals; a dash when `of` is 0.
+/// Formats `part` of `of` as percent with two decimals; a dash when `of` is 0.
 pub(super) fn percent(part: u64, of: u64) -> String {
     if of == 0 {
         return "–".to_owned();

@@ -1,4 +1,4 @@
-//! States of lots, reference checks and suspect parts, retests, orders, what became of alarms, wear.
+//! Tests: states of lots, reference checks and suspect parts, retests, orders, state changes of alarms, wear.
 
 use super::*;
 
@@ -20,7 +20,7 @@ fn suspects(file: &File) -> Vec<(String, u64)> {
     parts.into_iter().map(|it| (it.lot, it.seq)).collect()
 }
 
-/// Parts 1 to `count`, judged at as many seconds.
+/// Returns parts 1 to `count`; part n is judged at second n.
 fn parts(name: &str, count: u64) -> Vec<Row> {
     let one = |seq| Row::Part(part(name, seq, "pass", 7.0));
     (1..=count).map(one).collect()

@@ -1,9 +1,9 @@
-//! Files of earlier schemas, and what may be pruned.
+//! Tests: files of earlier schemas, and which runs may be pruned.
 
 use super::super::open::{MIGRATIONS, SCHEMA};
 use super::*;
 
-/// Texts of a part that failed and was interrupted, as programs before schema 8 left them.
+/// Reasons of a part that failed and was interrupted, as programs before schema 8 stored them.
 const TEXTS: [&str; 5] = [
     "operate_voltage_v high not proven",
     "coil_resistance_ohm low: current over range",
@@ -12,7 +12,7 @@ const TEXTS: [&str; 5] = [
     "refused by the clerk",
 ];
 
-/// A file as the program of that schema left it: a closed run with a measured part and one that was void.
+/// Makes a file as the program of that schema left it: a closed run with one measured part and one void part.
 fn of_schema(file: &File, schema: usize) {
     let by_hand = file.by_hand();
     for step in &MIGRATIONS[..schema] {

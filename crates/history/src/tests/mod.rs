@@ -1,4 +1,4 @@
-//! Facts about the history, one folder file per side of it.
+//! Tests of the history, one file per subject.
 #![allow(clippy::unwrap_used)]
 
 mod gates;
@@ -15,7 +15,7 @@ use super::*;
 use machine::dut::Reason;
 use std::path::PathBuf;
 
-/// A file in a folder of its own, which goes with it.
+/// A history file in a temporary folder, which is deleted with this value.
 struct File {
     path: PathBuf,
     _folder: tempfile::TempDir,
@@ -35,7 +35,7 @@ impl File {
     fn archive(&self) -> Archive {
         Archive::open(&self.path).unwrap()
     }
-    /// The file as any other program sees it.
+    /// Opens the file with SQLite alone, as any other program would.
     fn by_hand(&self) -> rusqlite::Connection {
         rusqlite::Connection::open(&self.path).unwrap()
     }
@@ -55,7 +55,7 @@ fn lot(name: &str) -> LotRecord {
     }
 }
 
-/// A part with two parameters; the operate voltage took `attempts` attempts of rising value.
+/// Returns a part with two parameters: a coil resistance of 400 ohm plus `seq`, and the operate voltage `operate_v`.
 fn part(lot: &str, seq: u64, verdict: &str, operate_v: f64) -> PartRecord {
     PartRecord {
         lot: lot.into(),
@@ -99,7 +99,7 @@ fn measurement(key: &str, value: f64, attempt: u32) -> MeasurementRecord {
     }
 }
 
-/// A lot of `count` parts whose operate voltage is 7 V plus `seq` millivolts; every tenth fails.
+/// Writes a lot of `count` parts whose operate voltage is 7 V plus `seq` millivolts; every tenth part fails.
 fn filled(file: &File, count: u64) -> Store {
     let mut store = file.store();
     store.begin_lot(&lot("A")).unwrap();

@@ -1,16 +1,16 @@
-//! Plans of the queries: each that may run on many rows finds them by an index.
+//! Tests of query plans: each query that may run on many rows must find them by an index.
 
 use super::super::{archive, curve, lots, reasons, retention, series, values};
 use super::reading::operate;
 use super::*;
 use rusqlite::StatementStatus;
 
-/// The plan of a statement, one line per step.
+/// Returns SQLite's plan for a statement, one line per step.
 fn plan(file: &File, select: &filter::Select) -> String {
     explained(&file.by_hand(), &select.sql)
 }
 
-/// Parameters do not enter into a plan.
+/// Returns SQLite's plan for an SQL text; the values of its placeholders do not change the plan.
 fn explained(by_hand: &rusqlite::Connection, sql: &str) -> String {
     let mut statement = by_hand
         .prepare(&format!("EXPLAIN QUERY PLAN {sql}"))
@@ -121,7 +121,7 @@ fn parts_are_found_by_an_index_of_their_own() {
     }
 }
 
-/// Tables that grow with the parts.
+/// Tables that grow with the number of parts.
 const GROWING: [&str; 7] = [
     "part",
     "measurement",

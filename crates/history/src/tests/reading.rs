@@ -1,4 +1,4 @@
-//! Filters, views, import.
+//! Tests: filters, views, import.
 
 use super::*;
 

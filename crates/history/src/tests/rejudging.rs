@@ -1,4 +1,4 @@
-//! Stored values against another recipe.
+//! Tests: stored values judged by another recipe.
 
 use super::super::*;
 use config::load_recipe;
@@ -15,7 +15,7 @@ fn recipe() -> Recipe {
     load_recipe(&config, "jzc-22f-012").unwrap()
 }
 
-/// A part in the middle of every limit but for its operate voltage.
+/// Returns a part whose values lie in the middle of all limits, except for its operate voltage.
 fn part(operate_v: f64, verdict: &str, reasons: &[&str]) -> Part {
     let mut part = Part::fixture("A", 1, verdict);
     for (key, value) in [
@@ -111,7 +111,7 @@ fn a_recipe_of_another_coil_voltage_does_not_fit() {
     assert_eq!(Basis::of("name = \"old\""), None);
 }
 
-/// With an operate voltage up to 11.5 V.
+/// Returns the recipe with a higher limit: operate voltage up to 11.5 V.
 fn generous() -> Recipe {
     let folder = tempfile::tempdir().unwrap();
     let text = recipe().source_text.replace(
@@ -123,7 +123,7 @@ fn generous() -> Recipe {
     load_recipe(folder.path(), "jzc-22f-012").unwrap()
 }
 
-/// Driven from 5 V up to 11 V without a make.
+/// Returns curves of a coil driven from 5 V up to 11 V whose contact never made.
 fn never_made() -> Vec<Curve> {
     let curve = |signal: &str, samples: &[(i64, f64)]| Curve {
         signal: signal.into(),

@@ -1,4 +1,4 @@
-//! Whose file it is, which schema, what survives.
+//! Tests: whose file it is, which schema it has, what survives a failure.
 
 use super::*;
 

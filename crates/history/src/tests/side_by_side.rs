@@ -1,8 +1,8 @@
-//! Packed values are those of the index, in the same order.
+//! Tests: packed values equal those of the index, in the same order.
 
 use super::*;
 
-/// Asks the index: every value lies in this range.
+/// Returns a filter that reads the index: a range that contains every value rules out packed values.
 fn of_the_index(filter: &Filter) -> Filter {
     Filter {
         min: Some(f64::MIN),

@@ -1,4 +1,4 @@
-//! Facts about spreadsheets, read back by another crate.
+//! Tests of spreadsheets, read back by another crate.
 #![allow(clippy::unwrap_used)]
 
 use crate::Part;

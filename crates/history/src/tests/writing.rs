@@ -1,4 +1,4 @@
-//! What the writer keeps, and what it refuses.
+//! Tests: what the writer keeps, and what it refuses.
 
 use super::*;
 use machine::dut::em_relay::bins;
@@ -353,7 +353,7 @@ fn the_latest_calibration_is_per_rig_and_coil() {
     let made = |made_at_us: i64| of(made_at_us, false, 12.0);
     store.save_calibration(&made(20)).unwrap();
     store.save_calibration(&made(10)).unwrap();
-    // Neither the simulated rig's nor those for another coil stand in for it.
+    // A calibration of the simulated rig, or for another coil voltage, does not take its place.
     store.save_calibration(&of(30, true, 12.0)).unwrap();
     store.save_calibration(&of(40, false, 6.0)).unwrap();
     assert_eq!(latest(&store), Some(made(20)));

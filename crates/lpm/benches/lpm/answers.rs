@@ -1,10 +1,10 @@
-//! Compares the answers of the core with those of its peer.
+//! Compares the answers of the core with those of its peer, the library parry3d.
 
 use lpm::Move;
 
 use super::{Bench, RANGE_MM, stop};
 
-/// Prints the verdicts that differ from the peer's, and the largest differences of the time of contact.
+/// Prints how many verdicts differ from those of the peer, and the largest differences of the time of contact.
 pub fn differences(bench: &Bench, kind: &str, ways: &[Move]) {
     let (mut verdicts, mut later, mut earlier) = (Vec::new(), 0.0_f64, 0.0_f64);
     for (index, way) in ways.iter().enumerate() {

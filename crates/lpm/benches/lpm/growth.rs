@@ -1,10 +1,10 @@
-//! Growth of the core's cost with the number of elements at constant density.
+//! Measures how the cost of the core grows with the number of elements at constant density.
 
 use super::timing::{Rounds, TURNS, Timed};
 use super::world::{KINDS, gripper, moves, world};
 use super::{QUERIES, RANGE_MM, SIZES, built, mover, stop};
 
-/// Prints the mean time in ns for every size, and the ratio of the largest to the smallest. Measurements alternate
+/// Prints the mean time for every size, ns, and the ratio of the largest to the smallest. Measurements alternate
 /// between the sizes.
 pub fn report(clock: f64) {
     let mover = mover(gripper());

@@ -1,9 +1,9 @@
-//! Speed of the collision core relative to its peers, measured in one run: `cargo bench -p lpm`.
+//! Speed of the collision core beside that of its peers, measured in one run: `cargo bench -p lpm`.
 //!
-//! Prints nanoseconds and ratios (peer to core) of mean and 99th percentile, warm, in random order and cold, and
-//! the number of answers that differ; below a missed bar, the parts of the time ([`missed`]). `-- --quick` stops at
-//! 1,000 elements, `-- --bar` measures 1,000 alone, `-- --growth` measures how the cost of the core alone grows
-//! from 10 to 100,000 elements.
+//! Prints nanoseconds and ratios (peer to core) of mean and 99th percentile: with warm caches, in random order, and
+//! with cold caches. Prints how many answers differ and, below a missed bar, where the time goes ([`missed`]). `--
+//! --quick` stops at 1,000 elements, `-- --bar` measures only 1,000 elements, `-- --growth` measures how the cost of
+//! the core alone grows from 10 to 100,000 elements.
 
 mod answers;
 mod growth;
@@ -22,9 +22,9 @@ const SIZES: [usize; 5] = [10, 100, 1_000, 10_000, 100_000];
 const QUERIES: usize = 2_000;
 /// Number of queries of each kind with cold caches.
 const COLD_QUERIES: usize = 300;
-/// Margin of the rows with a margin, mm.
+/// Margin of the moves in the rows named "margin", mm.
 const MARGIN_MM: f64 = 0.5;
-/// Required ratio of the time of parry3d-f64 to that of the core.
+/// Bar: least ratio of the time of parry3d-f64 to that of the core.
 const BAR: f64 = 10.0;
 /// Range of the clearance question, mm, as in `relayrig check`.
 const RANGE_MM: f64 = 25.0;
@@ -190,7 +190,7 @@ impl Bench {
         row(kind, &share, "clearance", &least.spread(), &[]);
     }
 
-    /// First contact with a margin of half a millimetre, for which both sides search.
+    /// Measures the first contact with a margin of half a millimetre, for which both sides must search.
     fn margins(&self, world: &World) {
         for kind in ["jog5", "descend", "local300"] {
             let mut ways = moves(world, kind, QUERIES);
@@ -211,13 +211,13 @@ impl Bench {
         }
     }
 
-    /// A move far above all elements: measures the cost of processing poses.
+    /// Measures moves far above all elements: only the processing of poses takes time.
     fn far_above(&self, world: &World) {
         let ways = missed::lifted(&moves(world, "disc_yaw0", QUERIES));
         self.any_row("far above", "any hit", || Timed::new(&ways, self.clock));
     }
 
-    /// Queries in another order in each pass.
+    /// Measures queries whose order changes from pass to pass.
     fn unlearned_kind(&self, kind: &str, ways: &[Move]) {
         self.any_row(kind, "any, no order", || Timed::unlearned(ways, self.clock));
     }

@@ -1,4 +1,4 @@
-//! Breaks down a missed bar: parts of the same questions, measured in the same run.
+//! Breaks down the time behind a missed bar: measures parts of the same questions in the same run.
 
 use lpm::{Move, Mover};
 
@@ -9,7 +9,7 @@ use super::{BAR, Bench, mover, row};
 /// Height above every element, mm.
 const FAR_ABOVE_MM: f64 = 10_000.0;
 
-/// Lifts the same moves far above the elements.
+/// Returns the same moves, lifted far above the elements.
 pub fn lifted<'a>(ways: &[Move<'a>]) -> Vec<Move<'a>> {
     let mut above = ways.to_vec();
     for way in &mut above {
@@ -19,9 +19,9 @@ pub fn lifted<'a>(ways: &[Move<'a>]) -> Vec<Move<'a>> {
     above
 }
 
-/// Prints, below a missed bar, the cost of processing the poses (all elements far below), and of the poses plus the
-/// search for overlapping boxes: four specks in the corners of the gripper's box meet almost nothing, so no hit
-/// ends the question. This shows where the time goes, not that the bar is out of reach.
+/// Prints, below a missed bar, what the processing of poses costs (all elements lie far below), and what poses and the
+/// search for overlapping boxes cost together: four specks in the corners of the gripper's box meet almost nothing, so
+/// no hit ends the question early. This shows where the time goes, not that the bar is out of reach.
 pub fn of_question(
     bench: &Bench,
     ways: &[Move],
@@ -48,9 +48,8 @@ pub fn of_question(
     );
 }
 
-/// Prints the time of copying the model, which writes the same data once into memory of the same structure and so
-/// bounds the building time from below. Where the system reclaims memory between two models, copying and building
-/// both pay for it.
+/// Prints how long copying the model takes. A copy writes the same data once into memory of the same structure, so no
+/// building can be faster. Where the system reclaims memory between two models, copying and building both pay for it.
 pub fn of_build(copy: &Spread, ours: &Spread, peer: &Spread) {
     row("build", "", "copy of it", copy, &[*peer]);
     if peer.mean < BAR * ours.mean {

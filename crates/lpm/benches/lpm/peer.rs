@@ -1,8 +1,9 @@
-//! The peers: parry3d in both precisions, each used in the ways its interface offers.
+//! The peers: parry3d in single and in double precision, each used in the ways that its interface offers.
 //!
-//! `compound`: scene and mover are one `Compound` each, one call per question. `pairs`: each part of the mover
-//! against the raw `Bvh`, pairs through `cast_shapes` or `intersection_test`; unlike the composite call this can
-//! stop at the first hit. Cylinders lie along the native axis of the library (y), its most favourable case.
+//! `compound`: the scene is one `Compound`, the mover is another, and a question is one call. `pairs`: each part of the
+//! mover is tested against the raw `Bvh`, and pairs go through `cast_shapes` or `intersection_test`; other than the
+//! call on compounds, this can stop at the first hit. Cylinders lie along the native axis of the library (y), its best
+//! case.
 
 /// Defines a module for one precision of the library.
 macro_rules! peer {
@@ -36,7 +37,7 @@ macro_rules! peer {
                 Pose::from_parts(vector(pose.position), rotation)
             }
 
-            /// Turns a cylinder upright along z by a quarter turn about x.
+            /// Converts a body; turns a cylinder from y to z by a quarter turn about x.
             fn placed((shape, place): &(lpm::Shape, lpm::Pose)) -> Placed {
                 let place = pose(place);
                 match shape {
@@ -68,7 +69,7 @@ macro_rules! peer {
                     }
                 }
 
-                /// Prepares shared shapes in advance.
+                /// Prepares shared shapes before the measurement.
                 pub fn bodies(elements: &[(lpm::Shape, lpm::Pose)]) -> Vec<Placed> {
                     elements.iter().map(placed).collect()
                 }
@@ -89,7 +90,7 @@ macro_rules! peer {
                     }
                 }
 
-                /// First contact by one call; a start with overlap counts as 0.
+                /// Returns the time of first contact, by one call; bodies that overlap at the start give 0.
                 pub fn compound(&self, way: &lpm::Move) -> Option<f64> {
                     let (from, run) = (pose(&way.from), run(way));
                     if run == Vector::ZERO {
@@ -109,7 +110,7 @@ macro_rules! peer {
                     hit.ok().flatten().map(|hit| hit.time_of_impact as f64)
                 }
 
-                /// First contact, part by part over the raw tree.
+                /// Returns the time of first contact, part by part over the raw tree.
                 pub fn pairs_first(&self, way: &lpm::Move) -> Option<f64> {
                     let (from, run) = (pose(&way.from), run(way));
                     if run == Vector::ZERO {
@@ -142,7 +143,7 @@ macro_rules! peer {
                     found
                 }
 
-                /// Any hit, part by part over the raw tree.
+                /// Returns true when there is any hit, part by part over the raw tree.
                 pub fn pairs_any(&self, way: &lpm::Move) -> bool {
                     let (from, run) = (pose(&way.from), run(way));
                     let still = run == Vector::ZERO;
@@ -199,7 +200,7 @@ macro_rules! peer {
                 vector([to[0] - from[0], to[1] - from[1], to[2] - from[2]])
             }
 
-            /// Options for verdict and time only, without the geometry of the impact.
+            /// Returns options that ask for verdict and time only, without the geometry of the impact.
             fn options(until: $real) -> ShapeCastOptions {
                 ShapeCastOptions {
                     max_time_of_impact: until,

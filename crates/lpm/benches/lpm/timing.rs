@@ -1,26 +1,27 @@
 //! Times each query alone, subtracts the cost of the clock and takes the best of several warm passes; then reports
 //! mean, median and 99th percentile over the queries.
 //!
-//! In the warm rows contestants alternate, several passes each, so that all see the same state of the machine: on a
-//! shared one everything may take 50 % longer for seconds, which distorts a ratio of two figures taken one after
-//! the other (the cold rows and those below a missed bar). Warm includes caches and branch prediction for these
-//! very queries. The rows in random order shuffle the queries before each pass and use the median of the passes.
+//! In the warm rows contestants take turns, several passes each, so that all see the same state of the machine: on a
+//! shared machine everything may take 50 % longer for seconds, which distorts a ratio of two figures that were taken
+//! one after the other (as in the cold rows, and in those below a missed bar). In a warm row, caches and branch
+//! prediction know these very queries. The rows in random order shuffle the queries before each pass and use the median
+//! of the passes.
 //!
-//! A clock with coarse steps underreports, most of all in the best of several readings: with steps of 10 ns by
-//! about 2 ns for a query of 50 ns, more than for an empty one.
+//! A clock with coarse steps shows too little, most of all in the best of several readings: with steps of 10 ns about
+//! 2 ns too little for a query of 50 ns, and less for an empty one.
 
 use std::hint::black_box;
 use std::time::Instant;
 
 use super::world::Dice;
 
-/// Number of turns of each contestant.
+/// Number of turns that each contestant takes.
 pub const TURNS: usize = 4;
-/// Passes over all queries per turn; the first ones also warm the caches.
+/// Number of passes over all queries in a turn; the first ones also warm the caches.
 const PASSES: usize = 7;
-/// Number of empty queries that measure the clock.
+/// Number of empty queries that measure the cost of the clock.
 const EMPTY: usize = 2_000;
-/// Bytes written before each cold query: more than any cache level of the machines used.
+/// Number of bytes written before each cold query: more than any cache of the machines in use holds.
 const FLUSHED_BYTES: usize = 48 << 20;
 
 /// Distribution of the time of one query, ns.
@@ -43,12 +44,12 @@ impl Spread {
     }
 }
 
-/// Cost of reading the clock, ns: an empty query, timed like all others.
+/// Returns what reading the clock costs, ns: the time of an empty query, measured like all others.
 pub fn clock_ns() -> f64 {
     warm(&[(); EMPTY], 0.0, |()| ()).mean
 }
 
-/// The queries of one contestant.
+/// The queries of one contestant, with their measured times.
 pub struct Timed<'a, Q> {
     queries: &'a [Q],
     clock_ns: f64,
@@ -56,7 +57,7 @@ pub struct Timed<'a, Q> {
     readings: Vec<Vec<f64>>,
     /// Order of the queries, as indices.
     order: Vec<usize>,
-    /// Shuffles the order before each pass; `None` keeps it.
+    /// Shuffles the order before each pass; `None`: the order stays.
     dice: Option<Dice>,
 }
 
@@ -71,7 +72,7 @@ impl<'a, Q> Timed<'a, Q> {
         }
     }
 
-    /// Queries in another order in each pass, which defeats branch prediction.
+    /// Prepares queries whose order changes from pass to pass, which defeats branch prediction.
     pub fn unlearned(queries: &'a [Q], clock_ns: f64) -> Timed<'a, Q> {
         Timed {
             dice: Some(Dice::new(7)),
@@ -95,7 +96,7 @@ impl<'a, Q> Timed<'a, Q> {
         }
     }
 
-    /// Distribution of the best time of each query; of the median time for shuffled queries.
+    /// Returns the distribution over the queries of the best time of each; for shuffled queries, of the median time.
     pub fn spread(mut self) -> Spread {
         let which = if self.dice.is_some() {
             TURNS * PASSES / 2
@@ -133,7 +134,7 @@ pub fn cold<Q, A>(queries: &[Q], clock_ns: f64, ask: impl Fn(&Q) -> A) -> Spread
     Spread::of(times.collect())
 }
 
-/// Attempts at a round in each turn.
+/// Number of attempts at each round within a turn.
 const TRIES: usize = 2;
 
 /// Rounds of a large operation, each with the best time of all turns, ns.
@@ -148,7 +149,7 @@ impl Rounds {
         }
     }
 
-    /// Runs all rounds; excludes the time of preparing them with `ready` and of dropping their results.
+    /// Runs all rounds; the time of preparing them with `ready` and of dropping their results does not count.
     pub fn turn<S, A>(&mut self, mut ready: impl FnMut() -> S, mut run: impl FnMut(S) -> A) {
         for best in &mut self.best {
             for _ in 0..TRIES {
@@ -162,8 +163,8 @@ impl Rounds {
         }
     }
 
-    /// Distribution of the best time of each round. Each round does the same work, so the percentiles reflect the
-    /// machine.
+    /// Returns the distribution of the best time of each round. Each round does the same work, so the percentiles
+    /// reflect the machine.
     pub fn spread(self) -> Spread {
         Spread::of(self.best)
     }

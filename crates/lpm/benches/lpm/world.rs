@@ -1,8 +1,8 @@
 //! The scenes and moves of the benchmark: a plate with stacks of elements, and one gripper.
 //!
-//! Stacks of one to five elements have a pitch of 60 mm, 60 % blocks (5 % of them yawed) and 40 % upright
-//! cylinders, each 20 to 60 mm high. The plate grows with the number of elements, so that the density stays
-//! constant. The mover is two fingers, a palm and a spindle.
+//! Stacks of one to five elements stand 60 mm apart. 60 % of the elements are blocks (5 % of them yawed) and 40 % are
+//! upright cylinders, each 20 to 60 mm high. The plate grows with the number of elements, so that their density stays
+//! constant. The mover has two fingers, a palm and a spindle.
 
 use lpm::{Move, Pose, Shape};
 use rand_xoshiro::SplitMix64;
@@ -10,14 +10,14 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 /// Distance between stacks, mm.
 const PITCH_MM: f64 = 60.0;
-/// Mean number of elements of a stack.
+/// Mean number of elements in a stack.
 const MEAN_STACK: f64 = 3.0;
 
-/// Random numbers that are the same in every run.
+/// Random numbers that are the same in every run of the benchmark.
 pub struct Dice(SplitMix64);
 
 impl Dice {
-    /// Starts from a seed.
+    /// Creates a generator with a seed.
     pub fn new(seed: u64) -> Self {
         Self(SplitMix64::seed_from_u64(seed))
     }
@@ -43,9 +43,9 @@ impl Dice {
 pub struct World {
     /// Body and pose of each element, the plate first.
     pub elements: Vec<(Shape, Pose)>,
-    /// Edge of the square plate, mm; it lies between 0 and this in x and y, its top at z = 0.
+    /// Edge of the square plate, mm; the plate lies between 0 and this in x and y, with its top at z = 0.
     pub edge_mm: f64,
-    /// Highest top, mm.
+    /// Height of the highest stack, mm.
     pub top_mm: f64,
 }
 
@@ -107,7 +107,7 @@ fn element(dice: &mut Dice, tall: f64, centre: [f64; 3]) -> (Shape, Pose) {
     (Shape::Block { half }, pose)
 }
 
-/// The gripper: two fingers, a palm and a spindle, with the origin between the finger tips.
+/// Returns the gripper: two fingers, a palm and a spindle, with the origin between the finger tips.
 pub fn gripper() -> Vec<(Shape, Pose)> {
     let block = |half: [f64; 3], at: [f64; 3]| (Shape::Block { half }, Pose::at(at));
     vec![
@@ -124,7 +124,7 @@ pub fn gripper() -> Vec<(Shape, Pose)> {
     ]
 }
 
-/// Four specks in the corners of the gripper's box: they need all tests of boxes but meet almost nothing.
+/// Returns four specks in the corners of the gripper's box: they need all tests of boxes but meet almost nothing.
 pub fn specks() -> Vec<(Shape, Pose)> {
     let speck = Shape::Block { half: [0.01; 3] };
     let corners = [

@@ -1,13 +1,13 @@
-//! Distance between two convex pieces, with proof.
+//! Distance between two convex pieces, with a proof of its lower bound.
 //!
-//! **Proof.** For a direction `n` (any non-zero vector) the plane normal to `n` separates the pieces by at least
+//! **Proof.** For a direction `n` (any non-zero vector), the plane normal to `n` separates the pieces by at least
 //! `(n·c - extent_a(n) - extent_b(-n)) / |n|`, where `c` is the vector between their centres. [`separation`] evaluates
-//! exactly this and subtracts a forward error bound ([`NOISE`](super::piece::NOISE)). Every *clear* of this module rests
-//! on such evaluated planes alone, not on iteration counts, convergence or a simplex. The searches below only propose
-//! planes; a search that fails proposes a poor plane with a low bound, and that means blocked.
+//! exactly this and subtracts a forward error bound ([`NOISE`](super::piece::NOISE)). Every *clear* of this module
+//! follows from planes evaluated in this way, and not from iteration counts, convergence or a simplex. The searches
+//! below only propose planes. A search that fails proposes a poor plane, whose bound is low, and that means blocked.
 //!
-//! **Search.** [`upright`] proposes the best plane of two upright pieces in closed form; [`simplex`] walks to the
-//! best plane of any two convex pieces; [`polish`] finds its last digits.
+//! **Search.** [`upright`] proposes the best plane of two upright pieces in closed form. [`simplex`] walks to the best
+//! plane of any two convex pieces, and [`polish`] finds its last digits.
 
 mod polish;
 pub(crate) mod simplex;
@@ -18,21 +18,22 @@ pub(crate) mod upright;
 use super::piece::{NOISE, Piece};
 use super::vector::{Vec3, add, dot, length, negate, reach, scale, sub};
 
-/// Difference of bounds at which a search stops, mm: a thousandth of the allowed early block.
+/// Difference between bounds at which a search stops, mm: a thousandth of the distance by which a move may be blocked
+/// early.
 pub(crate) const RESOLUTION_MM: f64 = 1e-9;
 
-/// Bounds of the distance between an element and a mover, mm.
+/// Lower bound of the distance between an element and a mover, with its plane.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Gap {
-    /// Proven lower bound along `normal`; no proof when not above zero.
+    /// Proven separation along `normal`, mm; proves nothing unless it is above zero.
     pub(crate) lower: f64,
-    /// Unit vector from the element to the mover: the normal of the best plane.
+    /// Normal of the best plane: unit vector from the element to the mover.
     pub(crate) normal: Vec3,
     /// Nearest point of the element.
     pub(crate) on_element: Vec3,
 }
 
-/// A proposed plane and a point that supports it.
+/// A proposed plane, and a point that supports it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Proposal {
     /// Unit vector from `a` to `b`.
@@ -41,19 +42,19 @@ pub(crate) struct Proposal {
     pub(crate) on_a: Vec3,
 }
 
-/// Rounding bound of one evaluated plane between two pieces, mm.
+/// Returns the rounding bound of one evaluated plane between two pieces, mm.
 ///
-/// Only the difference of the places counts: a kilometre common to both costs no digit.
+/// Only the difference of their places counts: a kilometre that is common to both costs no digit.
 pub(crate) fn noise(a: &Piece, b: &Piece, shift: Vec3) -> f64 {
     NOISE * (a.span + b.span + reach(shift) + reach(between(a, b, shift)))
 }
 
-/// Vector from the centre of `a` to the centre of `b` after `shift`.
+/// Returns the vector from the centre of `a` to the centre of `b` after `shift`.
 pub(crate) fn between(a: &Piece, b: &Piece, shift: Vec3) -> Vec3 {
     add(sub(b.centre, a.centre), shift)
 }
 
-/// Proven separation along `n`, mm; negative when this plane proves nothing.
+/// Returns the proven separation along `n`, mm; negative when this plane proves nothing.
 pub(crate) fn separation(a: &Piece, b: &Piece, shift: Vec3, n: Vec3) -> f64 {
     let apart = dot(n, between(a, b, shift)) - a.extent(n) - b.extent(negate(n));
     let proven = apart / length(n) - noise(a, b, shift);
@@ -64,7 +65,7 @@ pub(crate) fn separation(a: &Piece, b: &Piece, shift: Vec3, n: Vec3) -> f64 {
     }
 }
 
-/// Bounds the distance of `mover`, displaced by `shift`, from `element`.
+/// Returns a lower bound of the distance of `mover`, displaced by `shift`, from `element`.
 ///
 /// `hint` is a direction that may already be good, such as the last plane of the same pair.
 pub(crate) fn gap(element: &Piece, mover: &Piece, shift: Vec3, hint: Option<Vec3>) -> Gap {
@@ -82,8 +83,8 @@ pub(crate) fn gap(element: &Piece, mover: &Piece, shift: Vec3, hint: Option<Vec3
     }
 }
 
-/// The closed form, refined by the general search where its direction is a difference of large numbers (two corners
-/// a micrometre apart).
+/// Returns the proposal of the closed form; refines it by the general search when its direction is the difference of
+/// large numbers (two corners a micrometre apart).
 fn closed_form(element: &Piece, mover: &Piece, shift: Vec3, c: Vec3) -> (Proposal, f64) {
     let (proposal, distance) = upright::propose(element, mover, c);
     let lower = separation(element, mover, shift, proposal.normal);

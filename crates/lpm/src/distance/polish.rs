@@ -1,26 +1,27 @@
 //! Finds the last digits of a plane by cutting planes in the space of directions.
 //!
 //! The walk over simplices loses digits when the nearest vector is tiny compared with the pieces (a micrometre to a
-//! metre). Directions keep theirs: every support point `w` of `b - a` bounds the separation along any direction `m` by
-//! `m·w`, a number without cancellation. In the tangent plane of the current direction the separation is the minimum of
-//! such linear functions; the maximum of this minimum over the support points seen so far is the next direction to try.
+//! metre). Directions keep their digits: every support point `w` of `b - a` bounds the separation along any direction
+//! `m` by `m·w`, a number without cancellation. In the tangent plane of the current direction the separation is the
+//! minimum of such linear functions. The next direction to try is where this minimum, over the support points seen so
+//! far, is highest.
 
 use super::simplex::support;
 use crate::piece::Piece;
 use crate::vector::{Vec3, add, cross, dot, scale, unit};
 
-/// Most directions tried.
+/// Most directions that are tried.
 const MOST_TRIALS: usize = 600;
-/// Most support points kept.
+/// Most support points that are kept.
 const MOST_CUTS: usize = 18;
-/// Trust region of the first trial, as the tangent of its angle to the current direction.
+/// How far from the current direction the first trial may look (trust region): tangent of the angle.
 const FIRST_REACH: f64 = 1e-2;
-/// Trust regions of further rounds, after a round that ended without proof of the optimum.
+/// Trust regions of further rounds, one after each round that ended without proof of the best direction.
 const AGAIN_REACHES: [f64; 3] = [1e-4, 1e-6, 1e-8];
-/// Trust regions below this change nothing.
+/// Below this trust region a trial changes nothing.
 const LAST_REACH: f64 = 1e-15;
 
-/// A linear bound of the separation in the tangent plane: `height + slope·(s, t)`.
+/// A linear bound of the separation over the tangent plane: `height + slope·(s, t)`.
 #[derive(Debug, Clone, Copy)]
 struct Cut {
     height: f64,
@@ -57,7 +58,7 @@ pub(super) fn polished(a: &Piece, b: &Piece, c: Vec3, n: Vec3, best: f64, resolu
             let Some(next) = again.next() else {
                 break;
             };
-            // Cuts from distant directions may have masked nearby ones: repeats without them.
+            // Cuts from distant directions may have hidden nearby ones, so the round is repeated without them.
             reach = *next;
             points = vec![support(a, b, c, n).w];
             continue;
@@ -102,7 +103,7 @@ fn tangents(n: Vec3) -> [Vec3; 2] {
     [u, cross(n, u)]
 }
 
-/// Returns the place within the square of half side `reach` where the minimum of the cuts is highest, and that value.
+/// Returns the place in the square of half side `reach` at which the minimum of the cuts is highest, and this minimum.
 fn highest(cuts: &[Cut], reach: f64) -> ([f64; 2], f64) {
     let value = |place: [f64; 2]| {
         cuts.iter()
@@ -150,7 +151,7 @@ fn difference(a: &Cut, b: &Cut) -> Cut {
     }
 }
 
-/// Returns the point where two ridges cross; NaN (which is never inside) when they are parallel.
+/// Returns the point where both cuts are zero; NaN, which is never inside, when their slopes are parallel.
 fn meeting(a: &Cut, b: &Cut) -> [f64; 2] {
     let det = a.slope[0] * b.slope[1] - a.slope[1] * b.slope[0];
     [

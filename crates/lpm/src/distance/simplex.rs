@@ -1,22 +1,22 @@
-//! Nearest points of any two convex pieces: walks over simplices of their difference.
+//! Nearest points of any two convex pieces: walks over simplices of their difference (GJK).
 //!
-//! The method of Gilbert, Johnson and Keerthi on `b - a`, with three differences: the normal of a triangle is
-//! computed from its edges and not from the (tiny) nearest vector; a nearest vector on an edge is made orthogonal
-//! twice; and the best plane so far is kept, so that further steps never make the answer worse.
+//! This is the method of Gilbert, Johnson and Keerthi on `b - a`, with three differences: the normal of a triangle is
+//! computed from its edges, not from the (tiny) nearest vector; a nearest vector on an edge is made orthogonal twice;
+//! and the best plane so far is kept, so that further steps never make the answer worse.
 
 use super::polish::polished;
 use super::{Proposal, RESOLUTION_MM};
 use crate::piece::{NOISE, Piece};
 use crate::vector::{Vec3, add, along, cross, dot, length, negate, scale, sub, unit};
 
-/// Most steps of the walk; polytopes need fewer than 20, two tilted rims up to 60.
+/// Most steps of the walk. Polytopes need fewer than 20, two tilted rims up to 60.
 const MOST_STEPS: usize = 128;
 
-/// Most steps without a shorter nearest vector. The length converges to second order, the plane only to first
-/// order, so the plane may still improve when the length has no digits left.
+/// Most steps in which the nearest vector does not get shorter. The length converges to second order but the plane only
+/// to first order, so the plane may still improve when the length has no digits left.
 const MOST_STALLS: usize = 12;
 
-/// Overlaps shallower than this are checked again, mm: a flat simplex may appear to contain the origin.
+/// Overlaps shallower than this are checked again, mm, because a flat simplex may seem to contain the origin.
 const DOUBTFUL_MM: f64 = 1e-3;
 
 /// A corner of the simplex: a point of `b - a` and the point of `a` from which it was computed.
@@ -26,7 +26,7 @@ pub(super) struct Corner {
     a: Vec3,
 }
 
-/// Point of a simplex nearest to the origin.
+/// Point of a simplex that is nearest to the origin.
 #[derive(Debug, Clone, Copy)]
 struct Nearest {
     /// The point.
@@ -39,7 +39,8 @@ struct Nearest {
 }
 
 impl Nearest {
-    /// Length of the combination of the corners, mm. `v` itself may be inaccurate when the simplex is a sliver.
+    /// Returns the length of the weighted sum of the corners, mm; `v` itself may be inaccurate when the simplex is
+    /// thin.
     fn distance(&self) -> f64 {
         let weighted =
             |sum: Vec3, index: usize| along(sum, self.weights[index], self.corners[index].w);
@@ -47,7 +48,7 @@ impl Nearest {
     }
 }
 
-/// Returns the best plane between `a` and `b`, whose centres lie `c` apart.
+/// Returns the best plane between `a` and `b`; `c` is the vector between their centres.
 pub(crate) fn propose(a: &Piece, b: &Piece, c: Vec3, hint: Option<Vec3>) -> Proposal {
     let mut walk = Walk::begin(a, b, c, hint);
     for _ in 0..MOST_STEPS {
@@ -72,7 +73,7 @@ struct Walk<'a> {
     best_normal: Vec3,
     resolution: f64,
     stalls: usize,
-    /// Whether a simplex contained the origin, so the pieces meet.
+    /// True once a simplex contained the origin, which means that the pieces meet.
     meets: bool,
 }
 
@@ -138,7 +139,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Returns the point of `b - a` that lies least far along `n`.
+/// Returns the point of `b - a` that reaches least far along `n`.
 pub(super) fn support(a: &Piece, b: &Piece, c: Vec3, n: Vec3) -> Corner {
     let on_a = a.farthest(n);
     Corner {
@@ -176,7 +177,7 @@ fn on_segment(p: Corner, q: Corner) -> Nearest {
     let edge = sub(q.w, p.w);
     let squared = dot(edge, edge);
     let t = -dot(p.w, edge) / squared;
-    // With equal corners `t` is NaN, which selects the first corner.
+    // When the corners are equal, `t` is NaN, which selects the first corner.
     if !(t > 0.0) {
         return vertex(p, p.w);
     }
@@ -228,7 +229,7 @@ fn on_tetrahedron(p: Corner, q: Corner, r: Corner, s: Corner) -> Option<Nearest>
     Some(nearer(with_new, on_triangle(p, q, r)))
 }
 
-/// Whether the origin lies on the inner side of all four faces by more than rounding.
+/// Returns true when the origin lies inside all four faces by more than rounding.
 fn encloses_origin([p, q, r, s]: [Vec3; 4]) -> bool {
     let volume = dot(cross(sub(q, p), sub(r, p)), sub(s, p));
     let parts = [

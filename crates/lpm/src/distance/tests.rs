@@ -1,8 +1,8 @@
 //! Tests of the distance of two convex pieces.
 //!
-//! The true distance is constructed, not computed: for a direction `n` the nearest points are the farthest point of
-//! one piece along `n` and of the other against it; the test places the second piece so that these lie exactly
-//! `gap` apart along `n`. Then the distance is `gap`, whatever the shapes.
+//! The true distance is constructed, not computed. For a direction `n` the nearest points are the farthest point of one
+//! piece along `n` and the farthest point of the other against `n`; the test places the second piece so that these
+//! points lie exactly `gap` apart along `n`. Then the distance is `gap`, whatever the shapes.
 use super::*;
 use crate::piece::pieces_of;
 use crate::pose::Frame;
@@ -11,7 +11,7 @@ use crate::{Mesh, Shape};
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
-/// A small random generator whose seed reproduces a failure.
+/// Random numbers from a seed, so that a failure can be reproduced.
 pub(crate) struct Dice(SplitMix64);
 
 impl Dice {
@@ -31,7 +31,7 @@ impl Dice {
     pub(crate) fn pick(&mut self, count: u64) -> u64 {
         self.next() % count
     }
-    /// Draws a size, from thin foil to a metre.
+    /// Draws a size between that of a thin foil and a metre.
     pub(crate) fn size(&mut self) -> f64 {
         10f64.powf(0.5 + 2.0 * self.signed())
     }
@@ -120,7 +120,7 @@ fn the_distance_is_proven_to_half_a_nanometre() {
         let other = add(b.centre, b.farthest(negate(n)));
         let shift = along(sub(nearest, other), gap_mm, n);
         let found = gap(&a, &b, shift, None);
-        // Constructing the case also costs a few roundings of the coordinates.
+        // Constructing the case rounds the coordinates a few times too.
         let built = 1e-13 + 8.0 * f64::EPSILON * (reach(nearest) + reach(other) + a.span + b.span);
         assert!(
             found.lower <= gap_mm + built,

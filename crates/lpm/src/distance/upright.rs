@@ -1,7 +1,7 @@
-//! Closed forms for two upright pieces: an interval in z times a rectangle or a disc.
+//! Closed forms for two upright pieces; each is an interval in z times a rectangle or a disc.
 //!
-//! The distance of two upright prisms is the hypotenuse of the gap in z and the gap of their footprints, which
-//! needs no iteration and no cross product of nearly parallel edges.
+//! The distance of two upright prisms is the hypotenuse of their gap in z and the gap of their footprints. It needs no
+//! iteration and no cross product of nearly parallel edges.
 
 use super::Proposal;
 use crate::piece::{Form, Piece};
@@ -17,15 +17,15 @@ enum Footprint {
     Rectangle(Vec2, Vec2),
 }
 
-/// Nearest points of two footprints: their difference and the point on the first.
+/// Nearest points of two footprints: their difference, and the point of the first one.
 #[derive(Debug, Clone, Copy)]
 struct Flat {
     apart: Vec2,
     on_a: Vec2,
 }
 
-/// Returns the best plane between the upright pieces `a` and `b`, whose centres lie `c` apart, and their distance
-/// up to rounding, mm.
+/// Returns the best plane between the upright pieces `a` and `b`, and their distance but for rounding, mm; `c` is the
+/// vector between their centres.
 pub(crate) fn propose(a: &Piece, b: &Piece, c: Vec3) -> (Proposal, f64) {
     let (foot_a, half_a) = footprint(a);
     let (foot_b, half_b) = footprint(b);
@@ -47,12 +47,12 @@ fn footprint(piece: &Piece) -> (Footprint, f64) {
             )
         }
         Form::Cylinder { radius, half } => (Footprint::Disc(radius), half),
-        // Triangles are never upright. A point in their place would yield a poor plane at worst, never a false proof.
+        // Triangles are never upright. A point in place of one would at worst yield a poor plane, never a false proof.
         Form::Triangle(_) => (Footprint::Disc(0.0), 0.0),
     }
 }
 
-/// Returns the signed gap in z, and the height on `a`, relative to its centre, nearest to `b`.
+/// Returns the signed gap in z, and the height, relative to the centre of `a`, of the point of `a` nearest to `b`.
 fn heights(half_a: f64, half_b: f64, c: f64) -> (f64, f64) {
     let apart = c.abs() - half_a - half_b;
     if apart > 0.0 {
@@ -90,7 +90,7 @@ fn footprints(a: Footprint, b: Footprint, c: Vec2) -> Flat {
     }
 }
 
-/// Subtracts the radii of both footprints from the gap.
+/// Returns the nearest points after both footprints are grown by their radii.
 fn shrunk(flat: Flat, ra: f64, rb: f64) -> Flat {
     let distance = flat.apart[0].hypot(flat.apart[1]);
     let left = distance - ra - rb;
@@ -120,7 +120,7 @@ fn towards(flat: Flat, fraction: f64) -> Vec2 {
     ]
 }
 
-/// Returns the nearest points from a rectangle (half extents, first axis `x`, centred at the origin) to the point `p`.
+/// Returns the nearest points of a rectangle (half extents, first axis `x`, centred at the origin) and the point `p`.
 fn point_from_rectangle(half: Vec2, x: Vec2, p: Vec2) -> Flat {
     let local = [p[0] * x[0] + p[1] * x[1], p[1] * x[0] - p[0] * x[1]];
     let near = [
@@ -147,7 +147,7 @@ fn rectangles(ha: Vec2, xa: Vec2, hb: Vec2, xb: Vec2, c: Vec2) -> Flat {
         return parallel(ha, hb, xa, c);
     }
     if footprints_meet(ha, xa, hb, xb, c) {
-        // The middle of the region of nearest points is a sufficient place of contact.
+        // Any nearest point may be reported as the place of contact; this is the middle of their region.
         return Flat {
             apart: [0.0, 0.0],
             on_a: point_from_rectangle(ha, xa, c).on_a,
@@ -177,7 +177,7 @@ fn rectangles(ha: Vec2, xa: Vec2, hb: Vec2, xb: Vec2, c: Vec2) -> Flat {
     )
 }
 
-/// Two rectangles with common axes.
+/// Returns the nearest points of two rectangles with common axes.
 fn parallel(ha: Vec2, hb: Vec2, x: Vec2, c: Vec2) -> Flat {
     let local = [c[0] * x[0] + c[1] * x[1], c[1] * x[0] - c[0] * x[1]];
     let first = heights(ha[0], hb[0], local[0]);
@@ -200,7 +200,7 @@ fn corners(half: Vec2, x: Vec2) -> [Vec2; 4] {
     [[a, b], [-a, b], [-a, -b], [a, -b]].map(|local| out_of(x, local))
 }
 
-/// Whether no axis of either rectangle separates them.
+/// Returns true when no axis of either rectangle separates the rectangles.
 fn footprints_meet(ha: Vec2, xa: Vec2, hb: Vec2, xb: Vec2, c: Vec2) -> bool {
     let cos = (xa[0] * xb[0] + xa[1] * xb[1]).abs();
     let sin = (xa[0] * xb[1] - xa[1] * xb[0]).abs();

@@ -1,17 +1,18 @@
 //! Exact answers in whole numbers for some bodies: the reference for tests and benchmarks.
 //!
-//! Bodies are blocks in any orientation that a quaternion of whole numbers describes, upright cylinders, and
-//! triangles. Moves are straight. Sizes, places and moves are whole multiples of one unit chosen by the caller
-//! (such as 1/1024 mm). The verdict is then the sign of whole numbers, without rounding, tolerance or search, and
-//! shares no code with the core.
+//! Bodies are blocks in any orientation that a quaternion of whole numbers describes, upright cylinders, and triangles.
+//! Moves are straight. Sizes, places and moves are whole multiples of one unit that the caller chooses (such as
+//! 1/1024 mm). So the verdict is the sign of whole numbers, without rounding, tolerance or search. This module shares
+//! no code with the core.
 //!
-//! - `polytope`: two polytopes. `round`: a cylinder with a cylinder or an upright block.
-//! - The verdict is exact. The time of first contact is accurate to a few units in the last place of an `f64`,
-//!   because roots are irrational.
-//! - [`first_contact`] panics for a tilted block and a cylinder, which have no closed form in whole numbers.
+//! - `polytope` handles two polytopes, `round` a cylinder with a cylinder or with an upright block.
+//! - The verdict is exact. The time of first contact is accurate to a few units in the last place of an `f64`, because
+//!   roots are irrational.
+//! - [`first_contact`] panics for a cylinder with a tilted block or a triangle, which have no closed form in whole
+//!   numbers.
 //!
-//! Range: differences of places, sizes and moves below 2^28 units, quaternions with members of one digit; moves
-//! along few axes may be longer. Beyond this range a debug build panics on overflow.
+//! Range: differences of places, sizes and moves below 2^28 units, quaternions with members of one digit; moves along
+//! few axes may be longer. Beyond this range a debug build panics on overflow.
 
 mod polytope;
 mod round;
@@ -20,21 +21,21 @@ mod times;
 use super::{Mesh, Pose, Shape};
 use polytope::Polytope;
 
-/// A placed body, in units.
+/// A body at a place; lengths in units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
     /// Place of the origin of its form.
     pub centre: [i64; 3],
-    /// Its form.
+    /// Form of the body.
     pub form: Form,
 }
 
-/// Form of a body, in units.
+/// Form of a body; lengths in units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Form {
-    /// Half extents in its own frame, and the quaternion `[w, x, y, z]` of that frame.
+    /// Block, in any orientation.
     Block {
-        /// Half extents.
+        /// Half extents in the frame of the block.
         half: [i64; 3],
         /// Quaternion `[w, x, y, z]` of any length but zero.
         rotation: [i64; 4],
@@ -46,7 +47,7 @@ pub enum Form {
         /// Half of the height.
         half: i64,
     },
-    /// Corners relative to the centre; must span a triangle, not a segment or a point.
+    /// Triangle: corners relative to the centre; they must not lie on one line.
     Triangle([[i64; 3]; 3]),
 }
 
@@ -54,7 +55,7 @@ pub enum Form {
 pub const UPRIGHT: [i64; 4] = [1, 0, 0, 0];
 
 impl Body {
-    /// An upright block.
+    /// Returns an upright block.
     pub fn block(centre: [i64; 3], half: [i64; 3]) -> Body {
         let rotation = UPRIGHT;
         Body {
@@ -63,7 +64,7 @@ impl Body {
         }
     }
 
-    /// An upright cylinder of height `2 * half`.
+    /// Returns an upright cylinder of height `2 * half`.
     pub fn cylinder(centre: [i64; 3], radius: i64, half: i64) -> Body {
         Body {
             centre,
@@ -71,7 +72,7 @@ impl Body {
         }
     }
 
-    /// The same body displaced by `by`.
+    /// Returns the same body displaced by `by`.
     pub fn moved(self, by: [i64; 3]) -> Body {
         Body {
             centre: [0, 1, 2].map(|axis| self.centre[axis] + by[axis]),
@@ -79,7 +80,7 @@ impl Body {
         }
     }
 
-    /// The body as a [`Shape`] of the core; `unit_mm` should be a power of two, so that nothing is rounded.
+    /// Returns the body as a [`Shape`] of the core; `unit_mm` should be a power of two, so that nothing is rounded.
     pub fn shape(&self, unit_mm: f64) -> Shape {
         let mm = |units: i64| units as f64 * unit_mm;
         match self.form {
@@ -95,7 +96,7 @@ impl Body {
         }
     }
 
-    /// The place of the body as a [`Pose`] of the core.
+    /// Returns the place of the body as a [`Pose`] of the core.
     pub fn pose(&self, unit_mm: f64) -> Pose {
         let rotation = match self.form {
             Form::Block { rotation, .. } => rotation,
@@ -111,7 +112,7 @@ impl Body {
 /// Returns the fraction of `run` at which `mover` first touches `element`; `None` when it never does.
 ///
 /// # Panics
-/// Panics for a tilted block or a triangle with a cylinder, and for a triangle shrunk to a segment.
+/// Panics for a cylinder with a tilted block or a triangle, and for a triangle whose corners lie on one line.
 pub fn first_contact(element: &Body, mover: &Body, run: [i64; 3]) -> Option<f64> {
     let apart = [0, 1, 2].map(|axis| i128::from(mover.centre[axis] - element.centre[axis]));
     let run = run.map(i128::from);

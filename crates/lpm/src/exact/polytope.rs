@@ -1,16 +1,16 @@
-//! Contact of two convex polytopes with corners of whole numbers.
+//! Contact of two convex polytopes whose corners are whole numbers.
 //!
-//! Two polytopes meet exactly when the vector between them lies in their difference, which is bounded by planes
-//! normal to their faces and to the cross products of their edges. Along a translation each pair of such planes
-//! limits the move to an interval; the bodies meet in the intersection of all intervals. Superfluous planes do no
-//! harm, because the difference lies between them as well.
+//! Two polytopes meet exactly when the vector between them lies in their difference. This difference is bounded by
+//! planes normal to their faces and normal to the cross products of their edges. Along a translation each pair of
+//! parallel planes limits the move to an interval; the bodies meet in the intersection of all intervals. Superfluous
+//! planes do no harm, because the difference lies between them as well.
 
 use super::Form;
 use super::times::Stretch;
 
 type Vector = [i128; 3];
 
-/// Corners, face normals and edge directions; the corners are multiplied by `scale`.
+/// Corners (multiplied by `scale`), normals of the faces, and directions of the edges.
 #[derive(Debug)]
 pub(super) struct Polytope {
     scale: i128,
@@ -29,7 +29,7 @@ impl Polytope {
         }
     }
 
-    /// Returns the least and greatest reach along `axis` of the corners times `factor`.
+    /// Returns the least and the greatest reach of the corners, times `factor`, along `axis`.
     fn reach(&self, axis: Vector, factor: i128) -> (i128, i128) {
         let mut reaches = self
             .corners
@@ -87,7 +87,7 @@ fn triangle(corners: [Vector; 3]) -> Polytope {
         normal, [0; 3],
         "a triangle that is a segment has no exact truth here"
     );
-    // The rims of a flat body count as faces, for neighbours in the same plane.
+    // The rims of a flat body count as faces, for the sake of neighbours in the same plane.
     let rims = edges.iter().map(|edge| cross(*edge, normal));
     Polytope {
         scale: 1,
@@ -97,7 +97,7 @@ fn triangle(corners: [Vector; 3]) -> Polytope {
     }
 }
 
-/// Returns the first time at which `b`, `apart` from `a` and moving by `run`, touches `a`.
+/// Returns the first fraction of the move at which `b`, which lies `apart` from `a` and moves by `run`, touches `a`.
 pub(super) fn first_contact(a: &Polytope, b: &Polytope, apart: Vector, run: Vector) -> Option<f64> {
     let products = a
         .edges

@@ -1,19 +1,20 @@
-//! An upright cylinder with another one, or with a block that is turned only about z.
+//! Contact of an upright cylinder with another one, or with a block that is turned only about z.
 //!
-//! In z an interval. On the baseplate a disc with a disc, or a disc with a rectangle: two slabs and four discs at
-//! the corners, in the frame of the rectangle.
+//! In z this is an interval. On the baseplate it is a disc with a disc, or a disc with a rectangle: two slabs, and four
+//! discs at the corners, in the frame of the rectangle.
 
 use super::Form;
 use super::times::{Stretch, Time};
 
-/// Footprint of the element grown by the mover (Minkowski sum), against which the mover is a point.
+/// Footprint of the element grown by that of the mover (Minkowski sum), so that the mover becomes a point.
 enum Outline {
     Disc(i128),
     /// Half extents of the rectangle, and the radius by which it is grown.
     Rounded([i128; 2], i128),
 }
 
-/// Returns the first time at which `mover`, `apart` from `element` and moving by `run`, touches it.
+/// Returns the first fraction of the move at which `mover`, which lies `apart` from `element` and moves by `run`,
+/// touches it.
 pub(super) fn first_contact(
     element: &Form,
     mover: &Form,
@@ -22,7 +23,7 @@ pub(super) fn first_contact(
 ) -> Option<f64> {
     let (outline, high, [w, z]) = summed(element, mover);
     let during = Stretch::WHOLE.while_within(apart[2], run[2], -high, high)?;
-    // Converts into the frame of the rectangle: rotated back, and scaled by the squared length of the quaternion.
+    // Converts into the frame of the rectangle: rotates back, and scales by the squared length of the quaternion.
     let turned = |[x, y]: [i128; 2]| {
         let (cos, sin) = (w * w - z * z, 2 * w * z);
         [cos * x + sin * y, cos * y - sin * x]
@@ -100,15 +101,15 @@ fn rounded(
     meetings.into_iter().flatten().min_by(f64::total_cmp)
 }
 
-/// Returns the first time during which a point is within `radius` of the origin.
+/// Returns the first time in `during` at which a point is within `radius` of the origin.
 fn disc(during: Stretch, place: [i128; 2], run: [i128; 2], radius: i128) -> Option<f64> {
-    // `a t^2 + 2 b t + c` is the squared distance minus the squared radius, for the run reduced to whole steps.
+    // `a t^2 + 2 b t + c` is the squared distance minus the squared radius, for a run divided by its greatest divisor.
     let step = divisor(run[0], run[1]).max(1);
     let run = run.map(|member| member / step);
     let a = run[0] * run[0] + run[1] * run[1];
     let b = place[0] * run[0] + place[1] * run[1];
     let c = place[0] * place[0] + place[1] * place[1] - radius * radius;
-    // Positive when outside the radius at `t = n step / d`.
+    // Positive when the point is outside the radius at `t = n step / d`.
     let beyond =
         |Time { n, d }: Time| a * (n * step) * (n * step) + 2 * b * (n * step) * d + c * d * d;
     if beyond(during.from) <= 0 {

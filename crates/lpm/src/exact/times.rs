@@ -25,7 +25,7 @@ impl Time {
     }
 }
 
-/// A closed interval of a move, initially 0 to 1.
+/// A closed interval of fractions of a move, initially 0 to 1.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stretch {
     pub(super) from: Time,
@@ -38,7 +38,7 @@ impl Stretch {
         to: Time { n: 1, d: 1 },
     };
 
-    /// The part of the interval during which `low <= start + t speed <= high`.
+    /// Returns the part of the interval during which `low <= start + t speed <= high`.
     pub(super) fn while_within(
         self,
         start: i128,

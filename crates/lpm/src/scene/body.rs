@@ -1,4 +1,4 @@
-//! Bodies and poses of a scene.
+//! Reads bodies and poses of a scene.
 
 use super::field::{Field, SceneError, Table, refuse};
 use super::mesh_file::{self, MeshFiles};
@@ -9,8 +9,8 @@ const KINDS: &str = "\"block\", \"cylinder\", \"compound\" or \"mesh\"";
 /// Greatest nesting depth of compounds.
 const DEEPEST: usize = 16;
 
-/// Returns the keys that a body of this kind may have, plus the `extra` keys of its place in the file; `None` for
-/// an unknown kind.
+/// Returns the keys that a body of this kind may have, and the `extra` keys that its place in the file allows; `None`
+/// for an unknown kind.
 fn keys<'a>(kind: &str, extra: &[&'a str]) -> Option<Vec<&'a str>> {
     let own: &[&str] = match kind {
         "block" => &["kind", "half", "pose"],
@@ -22,7 +22,7 @@ fn keys<'a>(kind: &str, extra: &[&'a str]) -> Option<Vec<&'a str>> {
     Some([own, extra].concat())
 }
 
-/// Reads a body and its pose; the table may also hold the `extra` keys.
+/// Reads a body and its pose; the table may hold the `extra` keys too.
 pub(super) fn body<'a>(
     field: &Field<'a>,
     extra: &[&str],
@@ -107,7 +107,7 @@ pub(super) fn pose(field: &Field) -> Result<Pose, SceneError> {
     Ok(pose)
 }
 
-/// Converts a geometric [`Flaw`] into a [`SceneError`] with the path of the body in front.
+/// Converts a [`Flaw`] of a body into a [`SceneError`] whose path begins with that of the body.
 pub(super) fn located(checked: Result<(), Flaw>, field: &Field) -> Result<(), SceneError> {
     let Err(flaw) = checked else { return Ok(()) };
     let (path, found, expected) = match flaw {

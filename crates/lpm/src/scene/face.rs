@@ -1,14 +1,15 @@
-//! Faces of more than three corners: checks that a fan of triangles about the first corner covers the face.
+//! Faces of more than three corners: checks that the triangles from the first corner to each edge cover the face.
 
 use crate::vector::{Vec3, cross, dot, length, sub, unit};
 
-/// Tolerance for a corner off the plane, or inside of where a convex face would have it, relative to the distance
-/// from the first corner to the farthest. Six digits, as most programs write, leave 1e-5 for a face near the origin
-/// and more for one far from it. Two ways of cutting a face that is not flat may differ by as much: 1 um for 10 mm.
-/// A dent within the tolerance only blocks more, because the fan covers every flat face.
+/// Tolerance for a corner that lies off the plane of the face, or inside the place that a convex face would give it;
+/// relative to the distance from the first corner to the farthest. Most programs write six digits, which gives errors
+/// of 1e-5 for a face near the origin and larger ones for a face far from it. Two ways of cutting a face that is not
+/// flat may differ by as much as the tolerance: 1 um for 10 mm. A dent within the tolerance only blocks more, because
+/// the triangles cover every flat face.
 const FLAT: f64 = 1e-4;
 
-/// Also true for a face no wider than the tolerance: a segment or a point has no plane.
+/// Returns true for a flat convex face, and for a face no wider than the tolerance: a segment or a point has no plane.
 pub(super) fn is_flat_and_convex(corners: &[Vec3]) -> bool {
     let from_first: Vec<Vec3> = corners.iter().map(|it| sub(*it, corners[0])).collect();
     let farthest = longest(&from_first);
@@ -41,8 +42,8 @@ fn longest(ways: &[Vec3]) -> Vec3 {
     ways.iter().fold([0.0; 3], longer)
 }
 
-/// Whether the corners go round the face once: along any direction a convex face then runs once forth and once
-/// back. A face that goes round twice must be refused, because `solid` counts edges and crossings by parity.
+/// Returns true when the corners go round the face once: along any direction, a convex face then runs once forth and
+/// once back. A face that goes round twice must be refused, because `solid` counts crossings and edges as even or odd.
 fn is_walked_once(flat: &[[f64; 2]]) -> bool {
     let places = || flat.iter().map(|it| it[0]);
     let span = places().fold(f64::MIN, f64::max) - places().fold(f64::MAX, f64::min);
@@ -50,8 +51,8 @@ fn is_walked_once(flat: &[[f64; 2]]) -> bool {
     steps.map(|(a, b)| (b - a).abs()).sum::<f64>() <= 3.0 * span
 }
 
-/// Whether no corner lies to the right of an edge by more than `slack`, measured as the width of the triangle over
-/// the edge, because the direction of a short edge is mostly rounding.
+/// Returns true when no corner lies to the right of an edge by more than `slack`. The distance is measured as the width
+/// of the triangle over the edge, because the direction of a short edge is mostly rounding.
 fn is_left_of_edges<'a>(
     round: impl Iterator<Item = &'a [f64; 2]> + Clone,
     corners: &[[f64; 2]],
@@ -61,7 +62,7 @@ fn is_left_of_edges<'a>(
     edges.all(|(a, b)| corners.iter().all(|c| width(*a, *b, *c) >= -slack))
 }
 
-/// Width of a triangle across its longest side; negative when it turns right, 0 for a point.
+/// Returns the width of a triangle across its longest side; negative when it turns right, 0 for a point.
 fn width(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     let way = |from: [f64; 2], to: [f64; 2]| [to[0] - from[0], to[1] - from[1]];
     let (ab, ac, bc) = (way(a, b), way(a, c), way(b, c));

@@ -1,14 +1,14 @@
-//! A value together with its path in the file, so that every error message names the field.
+//! A value with its path in the file, so that every error message can name the field.
 
 use super::node::{Node, Unreadable};
 
-/// Error in a scene or a move file.
+/// Error in a scene file or a move file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SceneError {
     /// The text is not valid TOML or JSON.
     #[error("{place}not readable: {cause}")]
     Syntax {
-        /// Empty, or `line N: ` for a line of a move file.
+        /// Empty for a scene file; `line N: ` for a line of a move file.
         place: String,
         /// Message of the TOML or JSON parser.
         cause: Unreadable,
@@ -25,7 +25,7 @@ pub enum SceneError {
     },
 }
 
-/// A node and its path.
+/// A value, and its path in the file.
 #[derive(Debug, Clone)]
 pub(super) struct Field<'a> {
     pub(super) node: &'a Node,
@@ -42,7 +42,7 @@ impl<'a> Field<'a> {
         refuse(path, self.node.to_string(), expected)
     }
 
-    /// Reads a table; refuses keys outside `known`.
+    /// Reads a table; fails on a key that is not in `known`.
     pub(super) fn table(&self, known: &[&str]) -> Result<Table<'a>, SceneError> {
         let Node::Table(members) = self.node else {
             return self.refuse("a table");
@@ -115,7 +115,7 @@ impl<'a> Field<'a> {
     }
 }
 
-/// A table without unknown keys.
+/// A table whose keys are all known.
 pub(super) struct Table<'a> {
     members: &'a [(String, Node)],
     field: Field<'a>,

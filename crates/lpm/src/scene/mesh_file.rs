@@ -2,20 +2,21 @@
 //!
 //! Damaged or ambiguous files are refused: a mesh that lost a triangle may be open, and an open mesh gives a false
 //! *clear* for a body inside it. Every error names the line, the value found and the value expected. The readers are
-//! part of this crate for two reasons: stl_io returns f32, which puts a text STL of more digits off by 4e-6 mm at 100
-//! mm where 1e-6 mm is promised; and the check of which OBJ faces may be cut into a fan is needed here anyway.
+//! part of this crate for two reasons: stl_io returns f32, which shifts a corner at 100 mm in a text STL with many
+//! digits by 4e-6 mm, while 1e-6 mm is promised; and the check of which OBJ faces may be cut into triangles is needed
+//! here anyway.
 
 use super::field::{Field, SceneError};
 use super::{obj, stl};
 use crate::Mesh;
 
-/// Callback that returns the bytes of a mesh file named in a scene, or the reason why it cannot.
+/// Function that returns the bytes of a mesh file named in a scene, or the reason why it cannot.
 pub type MeshFiles<'a> = dyn FnMut(&str) -> Result<Vec<u8>, MeshFault> + 'a;
 
-/// Why a mesh file is refused. Lines and triangles count from 1.
+/// Reason why a mesh file is refused. Lines and triangles count from 1.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MeshFault {
-    /// The callback could not read the file, for this reason.
+    /// The function could not read the file, for this reason.
     #[error("{0}")]
     File(String),
     /// A line of a text file holds something that is not allowed.
@@ -28,7 +29,7 @@ pub enum MeshFault {
         /// Text expected.
         expected: String,
     },
-    /// A face of more than three corners is not flat and convex, so its triangles are ambiguous.
+    /// A face of more than three corners is not flat and convex, so it can be cut into triangles in different ways.
     #[error("line {line}: a face that is not flat and convex; cut it into triangles")]
     Face {
         /// Line number.
@@ -42,31 +43,31 @@ pub enum MeshFault {
         /// Its first non-finite number.
         found: f64,
     },
-    /// An STL is not valid text, and its length does not match the triangle count of a binary file.
+    /// An STL file is not valid text, and its length is not that of a binary file with its triangle count.
     #[error("{text}; a binary STL of {count} triangles has {expected} bytes, not {found}")]
     Length {
-        /// Error of reading the file as text.
+        /// Error met when the file was read as text.
         text: Box<Self>,
-        /// Triangle count in the header.
+        /// Number of triangles that the header states.
         count: u32,
-        /// Length of a binary file with that count, bytes.
+        /// Length of a binary file with this number of triangles, bytes.
         expected: u64,
         /// Length of the file, bytes.
         found: usize,
     },
-    /// An STL is not valid text, and is shorter than the header of a binary file.
+    /// An STL file is not valid text, and is shorter than the header of a binary file.
     #[error("{text}; a binary STL has {head} bytes or more, not {found}")]
     Short {
-        /// Error of reading the file as text.
+        /// Error met when the file was read as text.
         text: Box<Self>,
-        /// Length of the header, bytes.
+        /// Length of the header of a binary file, bytes.
         head: usize,
         /// Length of the file, bytes.
         found: usize,
     },
 }
 
-/// Most characters of a word that a message repeats; a word of a damaged file may be as long as the file.
+/// Most characters of a word that a message repeats; a word in a damaged file may be as long as the file.
 const REPEATED: usize = 40;
 
 pub(super) fn load(field: &Field, scale: f64, files: &mut MeshFiles) -> Result<Mesh, SceneError> {
@@ -91,9 +92,9 @@ pub(super) fn load(field: &Field, scale: f64, files: &mut MeshFiles) -> Result<M
     }
 }
 
-/// Converts a file to text with LF line ends, from LF, CR or both. Replaces bytes that are not UTF-8 (Latin-1 in
-/// names and comments), so that no keyword or number can contain them. Refuses a zero byte: no text has one, but a
-/// block lost by a disk or a transfer does.
+/// Converts a file to text whose lines end with LF; in the file they may end with LF, CR or both. Bytes that are not
+/// UTF-8 (Latin-1 in names and comments) are replaced, so no keyword or number can contain them. Fails on a zero byte:
+/// no text has one, but a block that a disk or a transfer lost does.
 pub(super) fn text(bytes: &[u8]) -> Result<String, MeshFault> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let text = String::from_utf8_lossy(bytes)
@@ -105,12 +106,12 @@ pub(super) fn text(bytes: &[u8]) -> Result<String, MeshFault> {
     }
 }
 
-/// Parses a finite number.
+/// Parses a number; returns `None` unless it is finite.
 pub(super) fn number(word: &str) -> Option<f64> {
     word.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
-/// Returns a line error; lines count from 1.
+/// Returns the error for a line, which counts from 1.
 pub(super) fn complaint<T>(line: usize, found: &str, expected: &str) -> Result<T, MeshFault> {
     Err(MeshFault::Line {
         line,
@@ -119,7 +120,7 @@ pub(super) fn complaint<T>(line: usize, found: &str, expected: &str) -> Result<T
     })
 }
 
-/// Quotes a word of the file, shortened, for a message.
+/// Returns a word of the file in quotes, shortened, for a message.
 pub(super) fn quoted(word: &str) -> String {
     format!("{:?}", word.chars().take(REPEATED).collect::<String>())
 }

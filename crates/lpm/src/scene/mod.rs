@@ -1,11 +1,12 @@
-//! Scenes and moves as text: named bodies and the moves to check.
+//! Reads scenes and moves from text: named bodies, and the moves to check.
 //!
-//! A scene is TOML or JSON of the same form; a move file has one JSON object per line. The whole text is read and
+//! A scene is TOML, or JSON of the same structure; a move file has one JSON object per line. The whole text is read and
 //! checked before any question is answered. Every error names the path of the field (`elements[0].half[1]`, in move
-//! files preceded by the line number), the value found and the value expected. This module opens no file: a
-//! callback supplies mesh files.
+//! files after the line number), the value found and the value expected. This module opens no file: a function of the
+//! caller supplies mesh files.
 //!
-//! Parts for the rig alone (`rides`, `[[actuator]]`, `[[pair]]`, `[[mate]]`, `[guard]`) are checked but not applied.
+//! Parts that only the rig needs (`rides`, `[[actuator]]`, `[[pair]]`, `[[mate]]`, `[guard]`) are checked but not
+//! applied.
 
 mod body;
 mod face;
@@ -29,21 +30,21 @@ use super::{Pose, Shape};
 use field::{Field, refuse};
 use std::collections::HashSet;
 
-/// Form of a scene file.
+/// Format of a scene file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
-    /// `*.toml`
+    /// TOML, for files named `*.toml`.
     Toml,
-    /// `*.json`
+    /// JSON, for files named `*.json`.
     Json,
 }
 
 /// A body with its name and pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Named {
-    /// Unique among its kind (elements or movers).
+    /// Name, unique among the elements or among the movers.
     pub id: String,
-    /// The checked body.
+    /// Shape of the body, checked.
     pub shape: Shape,
     /// Pose of the body; for a mover, its pose in the moving frame.
     pub pose: Pose,
@@ -51,17 +52,17 @@ pub struct Named {
     pub rides: Option<String>,
 }
 
-/// Stationary bodies and movers.
+/// A scene: stationary bodies and movers.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Scene {
     /// Stationary bodies in the order of the file.
     pub elements: Vec<Named>,
-    /// Bodies that moves may name.
+    /// Movers: the bodies that moves may name.
     pub movers: Vec<Named>,
 }
 
 impl Named {
-    /// The body with its own pose applied, relative to the frame that moves.
+    /// Returns the shape with the pose of the body applied, relative to the frame that moves.
     pub fn carried(&self) -> Shape {
         if self.pose == Pose::IDENTITY {
             self.shape.clone()
@@ -71,18 +72,18 @@ impl Named {
     }
 }
 
-/// Reads and checks a whole scene that is complete in itself.
+/// Reads and checks a scene that names nothing outside itself.
 ///
 /// # Errors
-/// Returns the first [`SceneError`]: bodies in the order of the file, then the parts for the rig.
+/// Fails with the first [`SceneError`]: bodies in the order of the file come first, then the parts for the rig.
 pub fn read_scene(text: &str, format: Format, files: &mut MeshFiles) -> Result<Scene, SceneError> {
     read_scene_of_rig(text, format, files, &RigNames::default())
 }
 
-/// Reads a scene that may also name actuators and bodies of its rig, listed in `rig_names`.
+/// Reads and checks a scene that may also name the actuators and bodies of its rig, which `rig_names` lists.
 ///
 /// # Errors
-/// Returns the same errors as [`read_scene`].
+/// Fails as [`read_scene`] does.
 pub fn read_scene_of_rig(
     text: &str,
     format: Format,
@@ -121,7 +122,7 @@ pub fn read_scene_of_rig(
     Ok(scene)
 }
 
-/// Removes the byte order mark with which some editors begin a file.
+/// Removes the byte order mark that some editors put at the beginning of a file.
 fn without_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
 }

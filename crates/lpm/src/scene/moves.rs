@@ -1,4 +1,4 @@
-//! Move files: one JSON object per line, blank lines allowed.
+//! Reads move files: one JSON object per line; blank lines are allowed.
 
 use super::field::{Field, SceneError, Table, expected_id, refuse};
 use super::node;
@@ -6,27 +6,27 @@ use super::{Named, Scene, body, without_mark};
 use crate::{LARGEST_COORDINATE_MM, Pose};
 use std::collections::HashSet;
 
-/// A move of a file; movers and elements are given by their indices in the scene.
+/// A move from a file; mover and elements are given by their indices in the scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MoveOrder {
-    /// Unique in its file.
+    /// Name, unique in the file.
     pub id: String,
-    /// Index into [`Scene::movers`].
+    /// Mover, as an index into [`Scene::movers`].
     pub mover: usize,
     /// Pose of the mover at the start.
     pub from: Pose,
     /// Pose of the mover at the end.
     pub to: Pose,
-    /// Distance that the mover must exceed, mm, >= 0.
+    /// Distance to every element that the mover must exceed, mm, >= 0.
     pub margin_mm: f64,
     /// Elements that the check leaves out, as indices into [`Scene::elements`].
     pub ignore: Vec<usize>,
 }
 
-/// Reads and checks a whole move file against its scene.
+/// Reads and checks a whole move file for a scene.
 ///
 /// # Errors
-/// Returns the first [`SceneError`]; its path begins with `line N: `.
+/// Fails with the first [`SceneError`]; its path begins with `line N: `.
 pub fn read_moves(text: &str, scene: &Scene) -> Result<Vec<MoveOrder>, SceneError> {
     let mut known = HashSet::new();
     let mut orders = Vec::new();

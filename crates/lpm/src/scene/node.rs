@@ -1,11 +1,11 @@
-//! One tree for TOML and JSON: uninterpreted values, keys in the order of the file.
+//! One tree for TOML and JSON: values that are not interpreted yet, with keys in the order of the file.
 
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 
-/// Prefix of a text that replaces a JSON number which is not finite.
+/// First character of the text that replaces a JSON number which is not finite.
 const NOT_FINITE: char = '\u{1}';
-/// Most characters of a value that a message repeats.
+/// Most characters of a value that a message shows.
 const LONGEST_QUOTE: usize = 120;
 
 /// A value of a scene or move file.
@@ -89,7 +89,7 @@ impl<'de> Visitor<'de> for Reader {
     }
 }
 
-/// Writes a number without a long row of zeros.
+/// Returns a number as text, without a long row of zeros.
 pub(super) fn shown(number: f64) -> String {
     let is_plain = number == 0.0 || (1e-5..=1e15).contains(&number.abs());
     if is_plain || !number.is_finite() {
@@ -107,13 +107,13 @@ fn shortened(text: &str) -> String {
     }
 }
 
-/// Why a text is not valid TOML or JSON, in one line.
+/// Reason, in one line, why a text is not valid TOML or JSON.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{problem}{at}")]
 pub struct Unreadable {
     /// Message of the parser.
     pub problem: String,
-    /// Place of the error.
+    /// Place of the error in the text.
     pub at: At,
 }
 
@@ -153,8 +153,8 @@ pub(super) fn from_toml(text: &str) -> Result<Node, Unreadable> {
     })
 }
 
-/// Reads JSON. `NaN`, `Infinity` and numbers beyond f64, which many programs write although JSON has none of them,
-/// become nodes that do not read as numbers, so that the error names the path of their field.
+/// Reads JSON. Many programs write `NaN`, `Infinity` and numbers beyond f64, although JSON has none of them. They
+/// become texts, which no field accepts as a number, so the error names the path of the field.
 pub(super) fn from_json(text: &str) -> Result<Node, Unreadable> {
     serde_json::from_str(&marked(text)).map_err(|error| {
         let at = match error.line() {
@@ -205,7 +205,7 @@ fn marked(text: &str) -> String {
     out
 }
 
-/// Length in bytes of the quoted string at the beginning, quotes included.
+/// Returns the length in bytes of the quoted string at the beginning of `text`, quotes included.
 fn quoted_length(text: &str) -> usize {
     let mut escaped = false;
     for (index, c) in text.char_indices().skip(1) {

@@ -1,9 +1,9 @@
 //! Reads OBJ: vertices and faces, statement by statement.
 //!
-//! A statement is one line; a backslash at its end continues it on the next. A comment always ends with its line.
-//! Points, lines, normals, names and the like contain no surface and are skipped. Every other keyword is refused,
-//! because it may be a surface (`curv`, `surf`) or a damaged face (`F`), whose loss would leave the mesh open. A
-//! file truncated between two faces goes undetected, because the format has no end mark.
+//! A statement is one line; a backslash at its end continues it on the next line. A comment ends with its line, always.
+//! Points, lines, normals, names and the like contain no surface and are skipped. Every other keyword is refused: it
+//! may be a surface (`curv`, `surf`) or a damaged face (`F`), and a lost face would leave the mesh open. A file that
+//! was cut off between two faces is not detected, because the format has no end mark.
 
 use super::face;
 use super::mesh_file::{MeshFault, complaint, number, quoted, text};
@@ -58,9 +58,9 @@ pub(super) fn mesh(bytes: &[u8]) -> Result<Mesh, MeshFault> {
     Ok(mesh)
 }
 
-/// A line joined with its continuation lines, without comment.
+/// A line, joined with the lines that continue it, without comments.
 struct Statement<'a> {
-    /// Number of the first line.
+    /// Number of its first line, from 1.
     line: usize,
     words: Vec<&'a str>,
     is_continued: bool,
@@ -96,8 +96,8 @@ impl<'a> Statement<'a> {
         Ok(Some(statement))
     }
 
-    /// Refuses a skipped statement that swallows a keyword behind a backslash: a name may merely end in a
-    /// backslash, and the next line would be lost.
+    /// Fails when a skipped statement contains a keyword behind a backslash: a name may merely end in a backslash, and
+    /// the next line would be lost.
     fn check_end(&self) -> Result<(), MeshFault> {
         let taken = self.words.iter().find(|word| ["v", "f"].contains(word));
         match taken {
@@ -159,7 +159,7 @@ fn add_face(line: usize, words: &[&str], mesh: &mut Mesh) -> Result<(), MeshFaul
     Ok(())
 }
 
-/// Reads `7`, `7/1`, `7/1/2`, `7//2` or, counted back from the last vertex, `-1`.
+/// Reads a corner of a face: `7`, `7/1`, `7/1/2`, `7//2`, or `-1`, which counts back from the last vertex.
 fn corner(word: &str, vertices: usize) -> Option<usize> {
     let parts: Vec<&str> = word.split('/').collect();
     let (vertex, others) = match parts[..] {

@@ -1,8 +1,8 @@
-//! Checks the parts of a scene for the rig: carriers, actuators, pairs, mates and the guard's table.
+//! Checks the parts of a scene that only the rig needs: carriers, actuators, pairs, mates and the table of the guard.
 //!
-//! The guard applies these parts; this module only checks them, so that the first program that reads the file
-//! reports a mistake. The guard itself checks its further demands (its eight actuators, an axis of unit length, a
-//! free stroke). The reader of `[[mate]]` checks the content of each entry.
+//! The guard applies these parts; this module only checks them, so that whichever program reads the file first reports
+//! a mistake. The guard itself checks its further demands (its eight actuators, an axis of unit length, a free stroke).
+//! The reader of `[[mate]]` checks the content of each entry.
 
 use super::Scene;
 use super::field::{Field, SceneError, Table, expected_id, refuse};
@@ -28,12 +28,12 @@ const PAIR: &[&str] = &["a", "b", "rule", "margin_mm", "depth_mm", "by"];
 const MARGINS: &[&str] = &["default_margin_mm", "touch_depth_mm", "pin_inset_mm"];
 const PLACES: &[&str] = &["mouth", "pocket", "nest"];
 
-/// Names that a scene may use without describing them: those of its rig.
+/// Names that a scene may use without describing them, because its rig has them.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RigNames<'a> {
     /// Names of actuators.
     pub actuators: &'a [&'a str],
-    /// Names of bodies that are not elements, such as the part.
+    /// Names of bodies that are not elements, such as the part under test.
     pub bodies: &'a [&'a str],
 }
 
@@ -43,7 +43,7 @@ struct Names<'a> {
     bodies: Vec<&'a str>,
 }
 
-/// Refuses the first invalid entry in the parts of a scene for the rig.
+/// Fails on the first invalid entry in the parts of a scene for the rig.
 pub(super) fn check(root: &Table, scene: &Scene, rig_names: &RigNames) -> Result<(), SceneError> {
     let actuators = actuators(root)?;
     let bodies = scene.elements.iter().chain(&scene.movers);
@@ -93,7 +93,7 @@ impl Names<'_> {
         refuse(path, Node::Text(found.to_owned()).to_string(), expected)
     }
 
-    /// Accepts a body by name; a trailing `*` matches any ending.
+    /// Fails unless a body has this name; a `*` at the end of the name stands for any ending.
     fn body(&self, field: &Field) -> Result<(), SceneError> {
         let found = field.text()?;
         let is_known = match found.strip_suffix('*') {
@@ -111,7 +111,7 @@ impl Names<'_> {
     }
 }
 
-/// Reads the actuators with their ids; references between them are checked later, when all names are known.
+/// Reads the actuators with their ids. References between them are checked later, when all names are known.
 fn actuators<'a>(root: &Table<'a>) -> Result<Vec<(&'a str, Table<'a>)>, SceneError> {
     let mut known = HashSet::new();
     let mut actuators = Vec::new();
@@ -159,7 +159,8 @@ fn stroke(table: &Table) -> Result<(), SceneError> {
     }
 }
 
-/// Checks the names of the actuator that carries this one and of the one that it carries against its axis.
+/// Checks the names of the actuator that carries this one and of the one that it carries, and compares them with its
+/// axis.
 fn carrying(actuator: &Table, names: &Names) -> Result<(), SceneError> {
     if let Some(rides) = actuator.optional("rides") {
         names.actuator(rides.path.clone(), rides.text()?)?;

@@ -1,6 +1,6 @@
-//! Reads STL: triangles without shared corners.
+//! Reads STL: triangles, each with corners of its own.
 //!
-//! A file whose length fits the count in its header is binary, whatever the header begins with. Any other is text:
+//! A file whose length fits the count in its header is binary, whatever the header begins with. Any other file is text:
 //!
 //! ```text
 //! file  = solid { solid }
@@ -9,14 +9,14 @@
 //! ```
 //!
 //! in upper or lower case, with blanks and line ends between words; a name extends to the end of its line. The file
-//! must contain exactly this. A file truncated between two of its solids goes undetected.
+//! must contain nothing else. A file that was cut off between two of its solids is not detected.
 
 use super::mesh_file::{MeshFault, complaint, number, quoted, text};
 use crate::Mesh;
 
-/// Length of the header of a binary file, bytes: 80 of text and a count.
+/// Length of the header of a binary file, bytes: 80 of text and the number of triangles.
 const HEAD: usize = 84;
-/// Length of one binary triangle, bytes: normal, three corners as f32, and two of attributes.
+/// Length of one triangle in a binary file, bytes: normal and three corners as f32, and two of attributes.
 const TRIANGLE: usize = 50;
 
 pub(super) fn mesh(bytes: &[u8]) -> Result<Mesh, MeshFault> {
@@ -36,12 +36,12 @@ pub(super) fn mesh(bytes: &[u8]) -> Result<Mesh, MeshFault> {
     Ok(in_threes(corners))
 }
 
-/// Length of a binary file of `count` triangles, bytes.
+/// Returns the length of a binary file of `count` triangles, bytes.
 fn length(count: u32) -> u64 {
     HEAD as u64 + TRIANGLE as u64 * u64::from(count)
 }
 
-/// Returns the error for a file that is neither text, because of `why`, nor binary.
+/// Returns the error for a file that is not text, for the reason `why`, and not binary either.
 fn no_stl(why: MeshFault, found: usize, count: Option<u32>) -> MeshFault {
     let text = Box::new(why);
     match count {
@@ -87,7 +87,7 @@ fn binary(triangles: &[u8]) -> Result<Vec<[f64; 3]>, MeshFault> {
     Ok(corners)
 }
 
-/// Reads the corners of all solids of a text.
+/// Reads the corners of all solids in a text.
 fn solids(text: &str) -> Result<Vec<[f64; 3]>, MeshFault> {
     let mut words = Words::of(text);
     let mut corners = Vec::new();
@@ -105,7 +105,7 @@ fn solids(text: &str) -> Result<Vec<[f64; 3]>, MeshFault> {
     }
 }
 
-/// Reads the rest of a facet after the word `facet`.
+/// Reads the rest of a facet, after the word `facet`.
 fn facet(words: &mut Words, corners: &mut Vec<[f64; 3]>) -> Result<(), MeshFault> {
     words.take(&["normal"])?;
     words.point()?;
@@ -120,7 +120,7 @@ fn facet(words: &mut Words, corners: &mut Vec<[f64; 3]>) -> Result<(), MeshFault
     Ok(())
 }
 
-/// The words of a text and the line number of the next one.
+/// Words of a text, with the line number of the next one.
 struct Words<'a> {
     lines: std::str::Lines<'a>,
     words: std::iter::Peekable<std::str::SplitAsciiWhitespace<'a>>,
@@ -138,7 +138,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Advances to the line of the next word; returns whether there is none.
+    /// Advances to the line of the next word; returns true when there is no further word.
     fn are_over(&mut self) -> bool {
         while self.words.peek().is_none() {
             let Some(line) = self.lines.next() else {
@@ -180,7 +180,7 @@ impl<'a> Words<'a> {
         Ok(point)
     }
 
-    /// Skips the rest of the line; refuses a facet in it, which a lost line end would hide.
+    /// Skips the rest of the line; fails on a facet in it, which would mean that a line end was lost.
     fn name(&mut self) -> Result<(), MeshFault> {
         let name: Vec<&str> = self.words.by_ref().collect();
         let hides = |pair: &[&str]| {

@@ -91,7 +91,7 @@ fn an_error_in_a_move_names_its_line() {
     assert!(wrong("{").starts_with("line 1: not readable"));
 }
 
-/// A valid example of all parts of a scene for the rig.
+/// A valid scene with all parts that only the rig needs.
 const FOR_THE_RIG: &str = r#"{"units":"mm",
     "elements":[{"id":"pin","kind":"cylinder","radius":4,"height":30,"rides":"slide"},
                 {"id":"finger","kind":"block","half":[1,1,1],"rides":"slide"}],

@@ -3,13 +3,14 @@
 use super::cover::Cover;
 use super::four::Four;
 
-/// Edge of a cell, mm: about the pitch of fixture elements; a power of two, so that dividing by it is exact.
+/// Edge of a square of the grid, mm: about the distance between fixture elements. A power of two, so that dividing by
+/// it is exact.
 pub(crate) const PITCH_MM: f64 = 64.0;
 
-/// Columns and rows beyond this (100 km out) are merged: no grid reaches there.
+/// Columns and rows farther out than this (100 km) count as this one: no grid reaches as far.
 const FARTHEST: f32 = (1 << 21) as f32;
 
-/// First and last column and row in squares, each stored twice for the comparison of four numbers.
+/// First and last column and row of a range of squares, each stored twice, to compare four numbers at once.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ends {
     low: [f32; 4],
@@ -29,13 +30,13 @@ impl Ends {
     };
 }
 
-/// Masks of the distinct squares among two by two, indexed by rows and columns less one.
+/// Masks of those of two by two squares that differ, indexed by the number of rows and columns less one.
 const DIFFERENT: [[u32; 2]; 2] = [[0b0001, 0b0011], [0b0101, 0b1111]];
 
-/// Cells added around a piece that lies outside the grid.
+/// Number of cells that the grid grows by around a piece outside it.
 pub(super) const GROWTH: i32 = 4;
 
-/// A range of columns and rows, both ends included.
+/// A range of columns and rows of the grid; both ends are included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Area {
     pub(crate) low: [i32; 2],
@@ -43,7 +44,7 @@ pub(crate) struct Area {
 }
 
 impl Area {
-    /// The empty area: its ends are crossed.
+    /// The empty area, whose last column and row come before the first.
     pub(super) const NOWHERE: Area = Area {
         low: [0; 2],
         high: [-1; 2],
@@ -60,9 +61,9 @@ impl Area {
     pub(super) fn among(cover: &Cover, ends: &Ends) -> Area {
         let corners = Four::of(&cover.low).first_two(Four::of(&cover.high));
         let squares = corners.times(Four::all(1.0 / PITCH_MM as f32));
-        // Selects the square with the nearest centre. A bound on a grid line may belong to either side: covers are
-        // rounded outward, so the covered body itself does not lie on their bounds. The same holds for bounds up to
-        // 2e-6 mm below 0. Every step is monotone, so an area that contains another still does.
+        // Selects the square with the nearest centre. A bound on a grid line may belong to either side, because covers
+        // are rounded outward and the covered body itself does not lie on their bounds. The same holds for bounds up to
+        // 2e-6 mm below 0. Every step is monotone, so when one area contains another it still does afterwards.
         let middles = squares.minus(Four::all(0.5));
         let within = middles.within(Four::of(&ends.low), Four::of(&ends.high));
         let [left, front, right, back] = within.nearest();
@@ -72,7 +73,7 @@ impl Area {
         }
     }
 
-    /// The ends of this area, which must not be empty.
+    /// Returns the ends of this area, which must not be empty.
     pub(super) fn ends(&self) -> Ends {
         let twice = |[x, y]: [i32; 2]| [x as f32, y as f32, x as f32, y as f32];
         Ends {
@@ -81,31 +82,32 @@ impl Area {
         }
     }
 
-    /// Number of cells.
+    /// Returns the number of cells.
     pub(super) fn cells(&self) -> i64 {
         let edge = |axis: usize| i64::from(self.high[axis]) - i64::from(self.low[axis]) + 1;
         edge(0) * edge(1)
     }
 
-    /// Whether the area has at most two by two cells.
+    /// Returns true when the area has at most two by two cells.
     #[inline]
     pub(super) fn is_few(&self) -> bool {
         (self.high[0] - self.low[0] <= 1) & (self.high[1] - self.low[1] <= 1)
     }
 
-    /// Mask of the distinct cells among two by two: bit 0 the first, bit 1 the next column, bit 2 the next row.
+    /// Returns the mask of those of two by two cells that differ: bit 0 the first, bit 1 the next column, bit 2 the
+    /// next row.
     #[inline(always)]
     pub(super) fn different(&self) -> u32 {
         let [wide, deep] = [0, 1].map(|axis: usize| (self.high[axis] - self.low[axis]) as usize);
         DIFFERENT[deep % 2][wide % 2]
     }
 
-    /// Whether the area contains `other`.
+    /// Returns true when the area contains `other`.
     pub(super) fn holds(&self, other: &Area) -> bool {
         (0..2).all(|axis| self.low[axis] <= other.low[axis] && other.high[axis] <= self.high[axis])
     }
 
-    /// Returns the union of both, with room to grow on the sides where `other` extends beyond this area.
+    /// Returns an area that contains both, with room to grow on the sides where `other` extends beyond this one.
     pub(super) fn with(&self, other: &Area) -> Area {
         let span = (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]) / 4 + GROWTH;
         let below = |axis: usize| {
@@ -128,7 +130,7 @@ impl Area {
         }
     }
 
-    /// Number of columns.
+    /// Returns the number of columns.
     pub(super) fn columns(&self) -> i64 {
         i64::from(self.high[0]) - i64::from(self.low[0]) + 1
     }

@@ -1,23 +1,23 @@
-//! The pieces around a box at rest.
+//! Finds the stationary pieces around a box at rest.
 
 use super::area::Area;
 use super::cover::Cover;
 use super::grid::Grid;
 use super::silhouettes::{Bundle, NONE};
 
-/// Iterates over the bundles in some layers around a box, each with the lanes that the box meets: first the open
-/// cell, then blocks of two by two squares.
+/// Iterates over the bundles around a box, in some layers, each with the lanes that the box meets. Visits the open cell
+/// first, then the squares in blocks of two by two.
 pub(crate) struct Around<'a> {
     grid: &'a Grid,
     cover: &'a Cover,
     layers: u64,
     /// Next bundle of the current square.
     next: u32,
-    /// The first square of the current block, and the squares still to visit (bit 0: the first, bit 1: the next
+    /// First square of the current block, and mask of its squares still to visit (bit 0: the first, bit 1: the next
     /// column, bit 2: the next row).
     first: usize,
     left: u32,
-    /// Number of blocks visited, when there may be more.
+    /// Number of blocks visited so far; `None` when there is only one block.
     blocks: Option<i32>,
 }
 
@@ -47,7 +47,7 @@ impl<'a> Around<'a> {
     #[inline(always)]
     fn squares(&mut self, block: &Area) {
         self.first = self.grid.place(block.low[0], block.low[1]);
-        // Reads the words of all four without a branch between them.
+        // Reads the words of all four squares without a branch between them.
         let wanted = |at: u32| u32::from(self.grid.word(self.place(at)) & self.layers != 0) << at;
         let word = wanted(0) | wanted(1) | wanted(2) | wanted(3);
         self.left = word & block.different();
@@ -60,7 +60,7 @@ impl<'a> Around<'a> {
         self.first + row + at as usize % 2
     }
 
-    /// Advances to the next block of a large area.
+    /// Advances to the next block of an area larger than two by two squares.
     #[cold]
     fn block(&mut self, blocks: i32) {
         let area = Area::among(self.cover, &self.grid.ends);
@@ -132,7 +132,7 @@ mod tests {
         for round in 0..40 {
             let covers: Vec<Cover> = (0..60)
                 .map(|number| {
-                    // One piece in twenty is too large for squares.
+                    // One piece in twenty is too large for the squares.
                     let size = if number % 20 == 0 { 700.0 } else { 40.0 };
                     drawn(&mut dice, 300.0, size)
                 })

@@ -1,14 +1,14 @@
-//! Boxes in single precision as a structure of arrays (`low` of x of every box, ...), so that one instruction
+//! Boxes in single precision, stored axis by axis (`low` of x of every box, then of y, ...), so that one instruction
 //! compares four of them.
 //!
-//! Bounds are strictly rounded outward. Single precision costs sharpness (6e-5 mm at 1 m, 0.06 mm at 1 km), never
-//! safety: a rounded box contains the true one, and the exact phase sorts out overlaps caused by rounding.
+//! Bounds are always rounded outward. Single precision makes boxes larger (by 6e-5 mm at 1 m, 0.06 mm at 1 km), never
+//! unsafe: a rounded box contains the true one, and the exact phase removes pairs that overlap only by rounding.
 
 use super::cover::Cover;
 use super::four::Four;
 use super::sweep::Pace;
 
-/// `N` boxes, a multiple of four.
+/// `N` boxes; `N` is a multiple of four.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(16))]
 pub(crate) struct Boxes<const N: usize> {
@@ -16,15 +16,15 @@ pub(crate) struct Boxes<const N: usize> {
     pub(crate) high: [[f32; N]; 3],
 }
 
-/// The boxes that a moving box meets (bit k: lane k), and the fraction before which it does not.
+/// Which boxes a moving box meets (bit k: lane k), and up to which fraction of the path it does not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Crossing<const N: usize> {
     pub(crate) lanes: u32,
-    /// At most the true fraction; valid for lanes that are met.
+    /// Fraction of the path before which the box is not met, at most the true one; valid only for boxes that are met.
     pub(crate) entry: [f32; N],
 }
 
-/// Factors that outweigh the four roundings of a fraction of the path.
+/// Factor that makes a fraction of the path smaller by more than its four roundings.
 const EARLIER: f32 = 1.0 - 8.0 * f32::EPSILON;
 const LATER: f32 = 1.0 + 8.0 * f32::EPSILON;
 
@@ -53,7 +53,7 @@ impl<const N: usize> Boxes<N> {
         }
     }
 
-    /// Returns bit k when box k shares a point with `cover` on every axis.
+    /// Returns a mask in which bit k is set when box k shares a point with `cover`.
     #[inline]
     pub(crate) fn meeting(&self, cover: &Cover) -> u32 {
         let (low, high) = (cover.low.map(Four::all), cover.high.map(Four::all));
@@ -68,7 +68,7 @@ impl<const N: usize> Boxes<N> {
         })
     }
 
-    /// Returns for each box the fraction before which it is not met, along one axis.
+    /// Returns, for each box, the fraction of the path before which it is not met along one axis.
     #[inline]
     pub(crate) fn entry(&self, cover: &Cover, pace: &Pace, axis: usize) -> [f32; N] {
         let mut entry = [0.0; N];
@@ -80,8 +80,8 @@ impl<const N: usize> Boxes<N> {
         entry
     }
 
-    /// Returns the boxes that a box, starting as `cover`, meets on its path up to the fraction `until`. Equally
-    /// valid when the boxes move the opposite way and `cover` is at rest.
+    /// Returns the boxes that a box, which starts as `cover`, meets on its path up to the fraction `until`. The answer
+    /// is the same when the boxes move the opposite way and `cover` is at rest.
     #[inline(always)]
     pub(crate) fn crossing(&self, cover: &Cover, pace: &Pace, until: f32) -> Crossing<N> {
         let mut crossing = Crossing {
@@ -103,7 +103,7 @@ impl<const N: usize> Boxes<N> {
         crossing
     }
 
-    /// Returns for four boxes the fractions at which `cover` reaches one side and has left the other.
+    /// Returns, for four boxes, the fractions of the path at which `cover` reaches one side and has left the other.
     #[inline(always)]
     fn ends(&self, four: usize, cover: &Cover, pace: &Pace, axis: usize) -> (Four, Four) {
         let pace = Four::all(pace.0[axis]);
@@ -165,7 +165,7 @@ mod tests {
                 (run[0], run[1]) = (0.0, 0.0);
             }
             let mut boxes = Boxes::<4>::NOWHERE;
-            // Slightly larger, as after rounding outward.
+            // Slightly larger, as it is after rounding outward.
             boxes.set(1, &Cover::of((three(element.low), three(element.high))));
             let crossing = boxes.crossing(&mover, &Pace::of(run), 1.0);
             let at = |t: f64| {
@@ -175,7 +175,7 @@ mod tests {
                 let (low, high) = (moved(mover.low), moved(mover.high));
                 element.distance(&Cover { low, high }) == 0.0
             };
-            // Boxes and runs in whole numbers touch first at an eighth of the path.
+            // Boxes and runs are whole numbers, so the first touch is at a multiple of an eighth of the path.
             let first = (0..=8)
                 .map(|eighth| f64::from(eighth) / 8.0)
                 .find(|t| at(*t));

@@ -1,9 +1,9 @@
-//! Boxes in single precision that enclose boxes in double precision.
+//! Boxes in single precision, each of which encloses a box in double precision.
 
 use super::four::Four;
 use crate::vector::Vec3;
 
-/// Two units in the last place of an f32, relative: more than rounding to nearest and one step away from it lose.
+/// Two units in the last place of an f32, relative: more than rounding to nearest and one step away from it can lose.
 const ULP: f32 = 2.0 * f32::EPSILON;
 
 /// Relative rounding bound (four units in the last place), and the least normal number, mm, below which an f32
@@ -11,27 +11,27 @@ const ULP: f32 = 2.0 * f32::EPSILON;
 const SINGLE: f32 = 4.0 * f32::EPSILON;
 const TINY: f32 = f32::MIN_POSITIVE;
 
-/// Returns an f32 above `x`.
+/// Returns an f32 that is larger than `x`.
 #[inline]
 pub(crate) fn above(x: f64) -> f32 {
     let nearest = x as f32;
     nearest + (nearest.abs() * ULP + TINY)
 }
 
-/// The smaller number; `b` when they cannot be compared.
+/// Returns the smaller number; `b` when one of them is NaN.
 #[inline]
 pub(crate) fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// The larger number; `b` when they cannot be compared.
+/// Returns the larger number; `b` when one of them is NaN.
 #[inline]
 pub(crate) fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// A box in single precision that encloses a box in double precision. The fourth members are 0, so that four
-/// numbers fill one register.
+/// A box in single precision that encloses a box in double precision. The fourth members are 0: four numbers fill one
+/// register.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(16))]
 pub(crate) struct Cover {
@@ -53,12 +53,12 @@ impl Cover {
         }
     }
 
-    /// Returns the box around the path of this box along `run`, mm.
+    /// Returns a box around the path of this box when it moves by `run`, mm.
     #[inline]
     pub(crate) fn swept(&self, run: Vec3) -> Cover {
         let (low, high) = (Four::of(&self.low), Four::of(&self.high));
         let (way, rest) = (Four::rounded(&run), Four::all(0.0));
-        // Twice the rounding of the sum and of the path.
+        // Twice the rounding of the sum, and of the path.
         let slack = |bound: Four| {
             let magnitude = bound.abs().plus(way.abs());
             magnitude.times(Four::all(SINGLE)).plus(Four::all(TINY))
@@ -69,7 +69,7 @@ impl Cover {
         }
     }
 
-    /// The smallest box that encloses both.
+    /// Returns the smallest box that encloses both boxes.
     #[inline]
     pub(crate) fn around(self, other: Cover) -> Cover {
         Cover {
@@ -78,7 +78,7 @@ impl Cover {
         }
     }
 
-    /// Lower bound of the distance of the enclosed bodies, mm.
+    /// Returns a lower bound of the distance between the enclosed bodies, mm.
     pub(crate) fn distance(&self, other: &Cover) -> f64 {
         let squared = (0..3).fold(0.0, |sum, axis| {
             let beyond = f64::from(other.low[axis]) - f64::from(self.high[axis]);

@@ -51,43 +51,44 @@ impl Four {
         Four(machine::abs(self.0))
     }
 
-    /// The smaller number of each pair; the one of `other` when they cannot be compared.
+    /// Returns the smaller number of each pair; that of `other` when one of them is NaN.
     #[inline(always)]
     pub(crate) fn smaller(self, other: Four) -> Four {
         Four(machine::smaller(self.0, other.0))
     }
 
-    /// The larger number of each pair; the one of `other` when they cannot be compared.
+    /// Returns the larger number of each pair; that of `other` when one of them is NaN.
     #[inline(always)]
     pub(crate) fn larger(self, other: Four) -> Four {
         Four(machine::larger(self.0, other.0))
     }
 
-    /// Clamps each number between those of `low` and `high`, which are in order; NaN becomes one of the two.
+    /// Limits each number to the range from `low` to `high`, with `low` at most `high`; NaN becomes one of the two.
     #[inline(always)]
     pub(crate) fn within(self, low: Four, high: Four) -> Four {
         self.larger(low).smaller(high)
     }
 
-    /// The first two numbers of `self`, then the first two of `other`.
+    /// Returns the first two numbers of `self`, then the first two of `other`.
     #[inline(always)]
     pub(crate) fn first_two(self, other: Four) -> Four {
         Four(machine::first_two(self.0, other.0))
     }
 
-    /// The nearest whole numbers, ties to even; each number is at most 2^23.
+    /// Returns the nearest whole numbers, ties to even; each number must be at most 2^23.
     #[inline(always)]
     pub(crate) fn nearest(self) -> [i32; 4] {
         machine::nearest(self.0)
     }
 
-    /// Returns bit k when number k is at most that of `other`; NaN never is.
+    /// Returns a mask in which bit k is set when number k is at most that of `other`; never set for NaN.
     #[inline(always)]
     pub(crate) fn at_most(self, other: Four) -> u32 {
         machine::bits(machine::at_most(self.0, other.0))
     }
 
-    /// Returns bit k when in all six pairs number k of the first is at most that of the second.
+    /// Returns a mask in which bit k is set when, in all six pairs, number k of the first is at most that of the
+    /// second.
     #[inline(always)]
     pub(crate) fn all_at_most(pairs: [(Four, Four); 6]) -> u32 {
         let [a, b, c, d, e, f] = pairs.map(|(a, b)| machine::at_most(a.0, b.0));
@@ -100,14 +101,14 @@ impl Four {
     }
 }
 
-/// Implementation with SSE2, which every x86-64 has.
+/// Implementation with SSE2, which every x86-64 processor has.
 #[cfg(target_arch = "x86_64")]
 mod sse {
     use std::arch::x86_64::*;
 
     pub(super) type Numbers = __m128;
 
-    /// Defines safe functions for instructions that work on registers only.
+    /// Defines safe functions for instructions that only use registers.
     macro_rules! instructions {
         ($($name:ident($($from:ident),+) = $intrinsic:ident;)+) => {$(
             #[inline(always)]

@@ -1,8 +1,8 @@
-//! Grid information `V` of all layers: which pieces stand over which square of the baseplate.
+//! The grid `V` of all layers: which pieces stand over which square of the baseplate.
 //!
-//! A cell is one word (bit k: the cell has a piece in layer k) and a chain of bundles of silhouettes. A piece is
-//! entered in every cell that its silhouette touches. Words and chains are stored separately, so that a path over
-//! empty squares reads words only.
+//! A cell has one word (bit k: the cell has a piece in layer k) and a chain of bundles of silhouettes. A piece is
+//! entered in every cell that its silhouette touches. Words and chains are stored separately, so a path over empty
+//! squares reads words only.
 
 use super::Seat;
 use std::ops::Range;
@@ -12,17 +12,17 @@ use super::cover::Cover;
 use super::pool::{Cell, Chain, Pool};
 use super::silhouettes::{Bundle, Lane, NONE};
 
-/// Most cells of the grid; pieces farther out are stored in the open cell.
+/// Most cells of the grid; pieces farther out are entered in the open cell.
 const MOST_CELLS: i64 = 1 << 18;
 
-/// The cells of the squares, and one open cell for pieces too large or too far out for them.
+/// Cells, one for each square, and the open cell, which holds pieces too large or too far out for squares.
 #[derive(Debug, Clone)]
 pub(crate) struct Grid {
     area: Area,
-    /// Ends of the area of the grid.
+    /// Limits of the area that the grid covers.
     pub(super) ends: Ends,
     pub(super) columns: usize,
-    /// Words of the cells, as in [`Cell`]; the last one belongs to the open cell.
+    /// Words of the cells, as in [`Cell`].
     pub(super) layers: Vec<u64>,
     pub(super) heads: Vec<u32>,
     pub(super) open_layers: u64,
@@ -46,7 +46,7 @@ impl Default for Grid {
 }
 
 impl Grid {
-    /// Enters a piece in every cell that its silhouette touches.
+    /// Enters a piece in every cell that its silhouette touches, or in the open cell.
     pub(crate) fn put(&mut self, piece: u32, cover: &Cover, seat: &Seat) {
         let (area, lane) = (&seat.area, Lane::of(piece, cover, seat));
         if seat.is_small && self.reach_over(area) {
@@ -62,7 +62,7 @@ impl Grid {
         if seat.is_small && self.area.holds(&seat.area) {
             self.each_cell(&seat.area, |pool, cell| known = pool.take(cell, piece));
         }
-        // A piece that was too far out when entered is in the open cell, even if the grid has grown since.
+        // A piece that was too far out when it was entered is in the open cell, even if the grid has grown since.
         if !known {
             self.in_the_open(|pool, cell| {
                 pool.take(cell, piece);
@@ -85,7 +85,7 @@ impl Grid {
         change(&mut self.pool, Cell { layers, head });
     }
 
-    /// Returns the part of an area that has cells.
+    /// Returns the part of an area that the grid covers.
     #[inline]
     pub(crate) fn common(&self, area: &Area) -> Option<Area> {
         let own = &self.area;
@@ -94,21 +94,21 @@ impl Grid {
         (low[0] <= high[0] && low[1] <= high[1]).then_some(Area { low, high })
     }
 
-    /// Returns the number of the cell of a column and a row within [`Grid::common`]; the next column has the next
-    /// number.
+    /// Returns the number of the cell in a column and a row, both within [`Grid::common`]; the cell in the next column
+    /// has the next number.
     #[inline]
     pub(crate) fn place(&self, column: i32, row: i32) -> usize {
         number(self.area.low, self.columns, [column, row])
     }
 
-    /// Returns the difference of cell numbers to the next column (axis 0) or row (axis 1).
+    /// Returns by how much the cell number grows to the next column (axis 0) or row (axis 1).
     #[inline]
     pub(crate) fn stride(&self, axis: usize) -> usize {
         [1, self.columns][axis]
     }
 
-    /// Whether one of `steps` + 1 cells in a line may have a piece in one of these layers. Reads up to four cells
-    /// without a branch between them; returns true for more.
+    /// Returns true when one of `steps` + 1 cells in a line may have a piece in one of these layers. Reads up to four
+    /// cells without a branch between them; for more cells it returns true without reading.
     #[inline]
     pub(crate) fn may_have_piece(
         &self,
@@ -121,13 +121,13 @@ impl Grid {
         steps > 3 || steps >= 0 && (word(0) | word(1) | word(2) | word(3)) & layers != 0
     }
 
-    /// Returns the layers in which a cell has pieces; 0 for a number without a cell.
+    /// Returns the layers in which a cell has pieces; 0 when no cell has this number.
     #[inline]
     pub(super) fn word(&self, place: usize) -> u64 {
         self.layers.get(place).copied().unwrap_or(0)
     }
 
-    /// Returns the bundles of a cell that has a piece in one of these layers.
+    /// Returns the bundles of a cell; `None` when it has no piece in one of these layers.
     #[inline]
     pub(crate) fn in_layers(&self, place: usize, layers: u64) -> Option<Chain<'_>> {
         (self.word(place) & layers != 0).then(|| self.pool.chain(self.heads[place]))
@@ -139,20 +139,20 @@ impl Grid {
         self.pool.bundle(number)
     }
 
-    /// Returns the bundles of the open cell, if it has a piece in one of these layers.
+    /// Returns the bundles of the open cell; `None` when it has no piece in one of these layers.
     #[inline]
     pub(crate) fn open_in_layers(&self, layers: u64) -> Option<Chain<'_>> {
         (self.open_layers & layers != 0).then(|| self.pool.chain(self.open_head))
     }
 
-    /// Heap in use, bytes.
+    /// Returns the heap in use, bytes.
     pub(crate) fn heap_bytes(&self) -> usize {
         self.layers.capacity() * size_of::<u64>()
             + self.heads.capacity() * size_of::<u32>()
             + self.pool.heap_bytes()
     }
 
-    /// Extends the grid over `area`; returns false when it would become too large.
+    /// Extends the grid over `area`; returns false when it would need too many cells.
     fn reach_over(&mut self, area: &Area) -> bool {
         if self.area.holds(area) {
             return true;
@@ -197,8 +197,8 @@ impl Grid {
         }
     }
 
-    /// Makes a grid with pieces numbered from 0, equal to one built by [`Grid::put`] piece by piece. Counts the
-    /// squares first, so that every cell gets all its bundles at once.
+    /// Makes a grid with pieces numbered from 0, equal to one that [`Grid::put`] fills piece by piece. Counts the
+    /// silhouettes of each cell first, so that every cell gets all its bundles at once.
     pub(super) fn filled(covers: &[Cover], seats: &[Seat]) -> Grid {
         let with_squares = |(_, seat): &(&Cover, &Seat)| seat.is_small;
         let small = covers.iter().zip(seats).filter(with_squares);
@@ -219,13 +219,14 @@ impl Grid {
         grid
     }
 
-    /// Reserves the bundles for the pieces of `seats` and sets the words of the cells. Returns the lane for the
-    /// first silhouette of each cell.
+    /// Reserves the bundles for the pieces of `seats` and sets the words of the cells. Returns, for each cell, the lane
+    /// of its first silhouette.
     fn reserve<'a>(&mut self, seats: impl Iterator<Item = &'a Seat>) -> Vec<u32> {
         let mut counts = vec![0u32; self.layers.len()];
         for seat in seats {
             let word = seat.reach.word();
-            // At most two by two squares: their number is unpredictable, so the code always counts four, some by 0.
+            // Mostly two by two squares or fewer: their number is unpredictable, so the code counts four, some of them
+            // by 0.
             if seat.area.is_few() {
                 let (places, used) = few(self.area.low, self.columns, &seat.area);
                 for (square, place) in places.into_iter().enumerate() {
@@ -254,14 +255,14 @@ impl Grid {
     }
 }
 
-/// Returns the number of the cell of a column and a row in a grid that begins at `low`.
+/// Returns the number of the cell in a column and a row of a grid that begins at `low`.
 #[inline(always)]
 fn number(low: [i32; 2], columns: usize, [column, row]: [i32; 2]) -> usize {
     (row - low[1]) as usize * columns + (column - low[0]) as usize
 }
 
-/// Passes the number of each cell of `area` in a grid that begins at `low` to `show`. Areas of at most two by two
-/// cells, the majority, avoid nested loops, whose counts are mispredicted more often.
+/// Passes the number of each cell of `area`, in a grid that begins at `low`, to `show`. Areas of at most two by two
+/// cells, which most are, avoid nested loops, because processors predict the ends of these badly.
 #[inline(always)]
 fn each_place(low: [i32; 2], columns: usize, area: &Area, mut show: impl FnMut(usize)) {
     let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize);
@@ -282,8 +283,8 @@ fn each_place(low: [i32; 2], columns: usize, area: &Area, mut show: impl FnMut(u
     rows(low, columns, area).for_each(|row| row.for_each(&mut show));
 }
 
-/// Returns the numbers of the cells of an area of at most two by two cells in a grid that begins at `low`, and
-/// which of them differ (bit k: that at index k).
+/// Returns the numbers of the cells of an area of at most two by two cells, in a grid that begins at `low`, and a mask
+/// of those that differ (bit k: the one at index k).
 #[inline(always)]
 fn few(low: [i32; 2], columns: usize, area: &Area) -> ([usize; 4], u32) {
     let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize);

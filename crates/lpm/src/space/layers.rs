@@ -1,29 +1,29 @@
-//! Layers: the checking space cut along z, each layer with the actual bottom and top of its pieces.
+//! Layers: the checking space cut along z; each layer knows how low and how high its pieces really reach.
 //!
-//! A layer is `{h1, h2, V, B}`: a height interval of [`STEP_MM`], the lowest bottom that lies in it (`h1`) and the
-//! highest top (`h2`). A piece belongs to every layer into which it reaches, but no layer copies it. The grid
-//! information `V` of a layer is one bit in the word of each cell of the [`Grid`](super::grid::Grid) (bit k: the
-//! cell has a piece in layer k); the silhouettes `B` are stored per cell for all layers
+//! A layer is `{h1, h2, V, B}`: an interval of height of [`STEP_MM`], the lowest bottom of a piece that lies in it
+//! (`h1`) and the highest top (`h2`). A piece belongs to every layer into which it reaches, but no layer has a copy of
+//! it. `V` of a layer is one bit in the word of each cell of the [`Grid`](super::grid::Grid) (bit k: the cell has a
+//! piece in layer k). The silhouettes `B` are stored per cell, for all layers together
 //! ([`Bundle`](super::silhouettes::Bundle)).
 //!
-//! The checking space Omega reaches from the lowest `h1` to the highest `h2` and follows them.
+//! The checking space Omega reaches from the lowest `h1` to the highest `h2` and changes with them.
 
 use super::Seat;
 use super::cover::{Cover, larger, smaller};
 use super::four::Four;
 
-/// Number of layers: one per bit of a word.
+/// Number of layers: one for each bit of a word.
 const LAYERS: usize = 64;
 
-/// Most layers that nearly all pieces span between their lowest and highest.
+/// Number of layers between the lowest and the highest of a piece that few pieces exceed.
 const SHORT: usize = 8;
 
-/// Height of a layer, mm: a third of the lowest elements of a fixture, so that a gripper passing over them shares
+/// Height of a layer, mm: a third of the lowest elements of a fixture, so that a gripper which passes over them shares
 /// no layer with them.
 const STEP_MM: f32 = 8.0;
 
-/// Number of layers below the top of the baseplate, less the half that rounding to nearest adds. Anything lower
-/// belongs to the lowest layer, anything above all layers (440 mm) to the highest.
+/// Number of layers below the top of the baseplate, less the half that rounding to nearest adds. Anything lower belongs
+/// to the lowest layer, anything above all layers (440 mm) to the highest one.
 const STEPS_BELOW: f32 = 7.5;
 
 /// The lowest and the highest layer into which a piece reaches.
@@ -40,13 +40,13 @@ impl Reach {
         high: 0,
     };
 
-    /// Computes the layers between the heights of bottom and top, mm.
+    /// Returns the layers between the heights of bottom and top, mm.
     #[inline(always)]
     pub(crate) fn of(bottom_mm: f32, top_mm: f32) -> Reach {
         let heights = Four::of(&[bottom_mm, top_mm, 0.0, 0.0]);
         let steps = heights.times(Four::all(1.0 / STEP_MM));
         let steps = steps.plus(Four::all(STEPS_BELOW));
-        // Every step is monotone, which is sufficient for safety.
+        // Every step is monotone, which is enough for safety.
         let within = steps.within(Four::all(0.0), Four::all(LAYERS as f32 - 1.0));
         let [low, high, ..] = within.nearest();
         Reach {
@@ -55,10 +55,10 @@ impl Reach {
         }
     }
 
-    /// Returns the word with one bit per layer.
+    /// Returns a word with one bit set for each layer in reach.
     #[inline(always)]
     pub(crate) fn word(self) -> u64 {
-        // The modulus keeps the shift within the word.
+        // The modulus keeps the shift below the number of bits in the word.
         let last = LAYERS as u32 - 1;
         u64::MAX.wrapping_shl(u32::from(self.low))
             & u64::MAX.wrapping_shr(last.wrapping_sub(u32::from(self.high)))
@@ -68,11 +68,12 @@ impl Reach {
 /// Counts and heights of all layers, and Omega.
 #[derive(Debug, Clone)]
 pub(crate) struct Layers {
-    /// Number of pieces that pass through each layer; `beginning` and `ending` count those that begin and end in it.
+    /// Number of pieces that pass through each layer; `beginning` and `ending` count the pieces that begin or end in
+    /// it.
     passing: [u32; LAYERS + SHORT],
     beginning: [u32; LAYERS],
     ending: [u32; LAYERS],
-    /// Lowest bottom of the pieces that begin in each layer, highest top of those that end in it, mm.
+    /// Lowest bottom of the pieces that begin in each layer, and highest top of those that end in it, mm.
     h1: [f32; LAYERS],
     h2: [f32; LAYERS],
     /// Bottom and top of Omega, mm.
@@ -98,7 +99,7 @@ impl Layers {
     /// Builds the layers of many pieces at once.
     pub(super) fn of(seats: &[Seat], covers: &[Cover]) -> Layers {
         let mut layers = Layers::default();
-        // Counts pieces that begin and end in the same layer.
+        // Counts the pieces that begin and end in the same layer.
         let mut within = [0u32; LAYERS];
         for (Seat { reach, .. }, cover) in seats.iter().zip(covers) {
             layers.enclose(*reach, cover.low[2], cover.high[2]);
@@ -108,8 +109,8 @@ impl Layers {
         }
         layers.bottom = layers.h1.into_iter().fold(f32::INFINITY, smaller);
         layers.top = layers.h2.into_iter().fold(f32::NEG_INFINITY, larger);
-        // Passing pieces have begun below the layer and end neither below nor in it. Pieces of one layer only are
-        // subtracted; no piece ends before it begins.
+        // The pieces that pass a layer have begun below it and end neither below it nor in it. Pieces of one layer only
+        // are subtracted; no piece ends before it begins.
         let (mut begun, mut ended) = (0, 0);
         for (layer, within) in within.into_iter().enumerate() {
             ended += layers.ending[layer] - within;
@@ -119,7 +120,7 @@ impl Layers {
         layers
     }
 
-    /// Adds a piece between two heights (mm).
+    /// Adds a piece, which reaches from one height to another (mm).
     #[inline]
     pub(crate) fn join(&mut self, reach: Reach, bottom_mm: f32, top_mm: f32) {
         self.enclose(reach, bottom_mm, top_mm);
@@ -128,7 +129,7 @@ impl Layers {
         self.pass(reach, 1);
     }
 
-    /// Enters where a piece begins and ends. The modulus, which changes no valid layer, spares a bounds check.
+    /// Enters where a piece begins and ends. The modulus changes no valid layer and saves a bounds check.
     #[inline]
     fn enclose(&mut self, reach: Reach, bottom_mm: f32, top_mm: f32) {
         let [low, high] = [reach.low, reach.high].map(|layer| usize::from(layer) % LAYERS);
@@ -145,7 +146,8 @@ impl Layers {
         let between = usize::from(reach.high).saturating_sub(first);
         let passed = &mut self.passing[first..];
         match passed.first_chunk_mut::<SHORT>() {
-            // The number of layers is unpredictable, so the loop always writes `SHORT` counts, most of them unchanged.
+            // The number of layers is unpredictable, so the loop always writes `SHORT` counts; most of them stay
+            // unchanged.
             Some(few) if between <= SHORT => {
                 for (at, count) in few.iter_mut().enumerate() {
                     *count = count.wrapping_add(if at < between { more } else { 0 });
@@ -158,7 +160,8 @@ impl Layers {
         }
     }
 
-    /// Removes a piece. `h1` and `h2` of a layer stay (a superset is safe) until no piece begins or ends there.
+    /// Removes a piece. `h1` and `h2` of a layer stay until no piece begins or ends there; too wide an interval is
+    /// safe.
     pub(crate) fn remove(&mut self, reach: Reach) {
         let (low, high) = (usize::from(reach.low), usize::from(reach.high));
         self.pass(reach, u32::MAX);
@@ -178,7 +181,7 @@ impl Layers {
         }
     }
 
-    /// Returns one bit for each layer of the heights `low..=high` (mm); 0 outside Omega.
+    /// Returns a word with one bit set for each layer between the heights `low` and `high` (mm); 0 outside Omega.
     #[inline]
     pub(crate) fn between(&self, low: f32, high: f32) -> u64 {
         if high < self.bottom || low > self.top {
@@ -187,8 +190,8 @@ impl Layers {
         Reach::of(low, high).word()
     }
 
-    /// Like [`Layers::between`], but without layers in which no piece reaches into these heights. Worth its cost
-    /// for paths over many squares.
+    /// Returns the same as [`Layers::between`] without layers in which no piece reaches into these heights. For paths
+    /// over many squares this is worth its cost.
     #[inline]
     pub(crate) fn meeting(&self, low: f32, high: f32) -> u64 {
         let reach = Reach::of(low, high);
@@ -196,7 +199,7 @@ impl Layers {
         self.between(low, high) & !outermost
     }
 
-    /// Returns the bit of a layer in which `low..=high` lies strictly between the actual tops and bottoms, else 0.
+    /// Returns the bit of a layer if `low..=high` lies strictly between the tops and the bottoms of its pieces; else 0.
     #[inline]
     fn void(&self, layer: u8, low: f32, high: f32) -> u64 {
         let layer = usize::from(layer) % LAYERS;

@@ -1,14 +1,14 @@
 //! The checking space Omega over the baseplate: the broad phase of the layer-based projection model.
 //!
-//! Three tests in order, each of which may end the check. All of them compare boxes that were rounded outward, so
-//! that no piece is lost:
+//! Three tests follow each other, and each may end the check. All of them compare boxes that were rounded outward, so
+//! no piece is lost:
 //! 1. Does the swept mover reach into the height of Omega, and into which layers? ([`layers`])
-//! 2. Which squares of the baseplate does it pass, and does one of them have a piece in those layers? One word per
-//!    square decides ([`grid`]).
-//! 3. Do the silhouettes overlap while the mover passes? Tests eight at a time. ([`silhouettes`], [`boxes`])
+//! 2. Which squares of the baseplate does it pass, and has one of them a piece in these layers? One word per square
+//!    tells ([`grid`]).
+//! 3. Do the silhouettes overlap while the mover passes? Eight are tested at a time ([`silhouettes`], [`boxes`]).
 //!
-//! The remaining pairs go to the exact phase, which tests the planes of oriented boxes and shapes. Squares are
-//! visited in the order of the path, so that a question about the first contact ends there. Pieces are inserted and
+//! The pairs that remain go to the exact phase, which tests separating planes and the shapes themselves. Squares are
+//! visited in the order of the path, so a question about the first contact can end early. Pieces are inserted and
 //! removed one by one; nothing is rebuilt.
 
 mod area;
@@ -37,15 +37,15 @@ use grid::Grid;
 use layers::{Layers, Reach};
 use walk::Walk;
 
-/// Most cells of a piece; larger pieces, such as the baseplate, are stored in the open cell.
+/// Most cells in which a piece is entered; larger pieces, such as the baseplate, are entered in the open cell.
 const MOST_CELLS_OF_A_PIECE: i64 = 128;
 
-/// All stationary pieces, by their silhouettes.
+/// All stationary pieces, as the broad phase sees them: by their silhouettes.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Space {
     layers: Layers,
     grid: Grid,
-    /// Squares and layers of each piece, by its number.
+    /// Squares and layers of each piece, by the number of the piece.
     seats: Vec<Seat>,
 }
 
@@ -58,13 +58,13 @@ impl Space {
         self.grid.take(piece, seat);
     }
 
-    /// Heap in use, bytes.
+    /// Returns the heap in use, bytes.
     pub(crate) fn heap_bytes(&self) -> usize {
         self.grid.heap_bytes() + self.seats.capacity() * size_of::<Seat>()
     }
 
-    /// Returns the bundles with pieces that a box at rest may meet, each with a mask (bit k: lane k). A piece may
-    /// come more than once.
+    /// Returns the bundles with pieces that a box at rest may meet, each with a mask (bit k: lane k). The same piece
+    /// may come more than once.
     #[inline(always)]
     pub(crate) fn around<'a>(&'a self, cover: &'a Cover) -> Option<Around<'a>> {
         let layers = self.layers.between(cover.low[2], cover.high[2]);
@@ -93,7 +93,7 @@ impl Space {
 pub(crate) struct Seat {
     area: Area,
     reach: Reach,
-    /// Whether its squares are few enough to enter it in each.
+    /// True when it covers few enough squares to be entered in each.
     is_small: bool,
 }
 
@@ -109,9 +109,9 @@ impl Seat {
     }
 }
 
-/// A collection into which pieces are entered by their covers.
+/// A collection into which pieces are entered by the boxes that cover them.
 pub(crate) trait Entering {
-    /// Enters the piece of this number: the number of a removed piece, or the next new one.
+    /// Enters the piece with this number: the number of a removed piece, or the next new one.
     fn enter(&mut self, piece: u32, cover: &Cover);
 }
 
@@ -128,22 +128,22 @@ impl Entering for Space {
     }
 }
 
-/// A space under construction from many pieces, which are entered when all are known. Each step runs over all
-/// pieces before the next step: all steps for one piece form a long dependency chain that stalls the processor.
+/// Pieces from which a space is built once all are known. Each step then runs over all pieces before the next step
+/// begins: all steps for one piece in a row would form a long chain of dependencies, which stalls the processor.
 #[derive(Debug, Default)]
 pub(crate) struct Filling {
     covers: Vec<Cover>,
 }
 
 impl Filling {
-    /// Reserves room for `count` pieces.
+    /// Creates an empty collection with room for `count` pieces.
     pub(crate) fn of(count: usize) -> Filling {
         Filling {
             covers: Vec::with_capacity(count),
         }
     }
 
-    /// Builds the space, equal to one with the pieces inserted one by one.
+    /// Builds the space; it is equal to one into which the pieces are inserted one by one.
     pub(crate) fn space(self) -> Space {
         let seats: Vec<Seat> = self.covers.iter().map(Seat::of).collect();
         Space {
@@ -155,7 +155,7 @@ impl Filling {
 }
 
 impl Entering for Filling {
-    /// Pieces must come in the order of their numbers, from 0.
+    /// Enters the next piece; pieces must come in the order of their numbers, from 0.
     #[inline]
     fn enter(&mut self, _piece: u32, cover: &Cover) {
         self.covers.push(*cover);

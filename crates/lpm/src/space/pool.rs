@@ -1,15 +1,15 @@
-//! Bundles of all cells in one block, so that inserting and removing pieces seldom allocates.
+//! Bundles of all cells in one block of memory, so that inserting and removing pieces seldom allocates.
 
 use super::silhouettes::{Bundle, LANES, Lane, NONE};
 
-/// Entries of a cell: the layers in which it has pieces (bit k: layer k) and its newest bundle, the only one that
-/// may be partly filled.
+/// A cell: the layers in which it has pieces (bit k: layer k), and its newest bundle, the only one that may be partly
+/// filled.
 pub(super) struct Cell<'a> {
     pub(super) layers: &'a mut u64,
     pub(super) head: &'a mut u32,
 }
 
-/// All bundles, used and spare.
+/// All bundles, those in use and spare ones.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Pool {
     pub(super) bundles: Vec<Bundle>,
@@ -30,7 +30,7 @@ impl Pool {
         *cell.layers |= lane.reach.word();
     }
 
-    /// Returns an empty bundle that precedes `next` in its chain.
+    /// Returns the number of an empty bundle that comes before `next` in its chain.
     fn fresh(&mut self, next: u32) -> u32 {
         match self.spare.pop() {
             Some(spare) => {
@@ -44,9 +44,9 @@ impl Pool {
         }
     }
 
-    /// Reserves bundles for `counts` silhouettes of each of several new cells, in order. Writes the newest bundle
-    /// of each cell into `heads`, and replaces each count by the lane of the cell's first silhouette
-    /// ([`Pool::put_reserved`]).
+    /// Reserves bundles for several new cells, with `counts` silhouettes each, in order. Writes the newest bundle of
+    /// each cell into `heads`, and replaces each count by the lane of the cell's first silhouette, for
+    /// [`Pool::put_reserved`].
     pub(super) fn reserve(&mut self, heads: &mut [u32], counts: &mut [u32]) {
         let bundles = counts.iter().map(|count| count.div_ceil(LANES as u32));
         let whole = bundles.sum::<u32>() as usize;
@@ -68,13 +68,14 @@ impl Pool {
         }
     }
 
-    /// Writes a silhouette into a lane of the reserved bundles, counted across all bundles.
+    /// Writes a silhouette into a lane of the reserved bundles; lanes are counted across all bundles.
     #[inline]
     pub(super) fn put_reserved(&mut self, at: u32, lane: &Lane) {
         self.bundles[at as usize / LANES].set(at as usize % LANES, lane);
     }
 
-    /// Removes a silhouette from a cell, if present; the last one of the newest bundle fills the gap.
+    /// Removes a silhouette from a cell, and fills the gap with the last one of the newest bundle. Returns false when
+    /// the cell does not have it.
     #[inline(always)]
     pub(super) fn take(&mut self, cell: Cell<'_>, piece: u32) -> bool {
         let Some((at, lane)) = self.whereabouts(*cell.head, piece) else {
@@ -111,7 +112,7 @@ impl Pool {
         &self.bundles[number as usize]
     }
 
-    /// Returns the bundles of a cell, given its newest.
+    /// Returns the bundles of a cell whose newest bundle is `head`.
     #[inline]
     pub(super) fn chain(&self, head: u32) -> Chain<'_> {
         Chain {
@@ -120,7 +121,7 @@ impl Pool {
         }
     }
 
-    /// Heap in use, bytes.
+    /// Returns the heap in use, bytes.
     pub(super) fn heap_bytes(&self) -> usize {
         self.bundles.capacity() * size_of::<Bundle>() + self.spare.capacity() * size_of::<u32>()
     }

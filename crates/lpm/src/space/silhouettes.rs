@@ -1,4 +1,4 @@
-//! Silhouettes (`B` in the paper): the extents of each piece in x, y and z, eight pieces at a time.
+//! Silhouettes (`B` in the paper): the extents of each piece in x, y and z, compared eight at a time.
 
 use super::Seat;
 use super::boxes::Boxes;
@@ -6,10 +6,10 @@ use super::cover::Cover;
 use super::layers::Reach;
 use super::sweep::Sweep;
 
-/// Number of pieces of one bundle.
+/// Number of pieces in one bundle; the place of a piece in it is a lane.
 pub(crate) const LANES: usize = 8;
 
-/// Stands for no bundle and for no piece.
+/// Number that stands for no bundle and for no piece.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// One silhouette of a bundle.
@@ -31,7 +31,7 @@ impl Lane {
     }
 }
 
-/// Eight silhouettes and their pieces. Lanes from `count` on are unused.
+/// Eight silhouettes with their pieces. Lanes from `count` on are not in use.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct Bundle {
@@ -41,12 +41,12 @@ pub(crate) struct Bundle {
     lowest: [u8; LANES],
     highest: [u8; LANES],
     count: u32,
-    /// Next bundle of the same cell, always a full one; [`NONE`] at the end.
+    /// Next bundle of the same cell, which is always full; [`NONE`] at the end.
     pub(super) next: u32,
 }
 
 impl Bundle {
-    /// Returns an empty bundle that precedes `next` in its cell.
+    /// Returns an empty bundle that comes before `next` in its cell.
     #[inline]
     pub(super) fn before(next: u32) -> Bundle {
         Bundle {
@@ -74,7 +74,7 @@ impl Bundle {
         self.set(self.last(), lane);
     }
 
-    /// Counts lanes that [`Bundle::set`] will fill.
+    /// Counts `count` lanes as in use; [`Bundle::set`] will fill them.
     #[inline]
     pub(super) fn expect(&mut self, count: u32) {
         self.count = count;
@@ -109,14 +109,14 @@ impl Bundle {
         self.count = self.count.saturating_sub(1);
     }
 
-    /// The newest lane; in an empty bundle, an unused one.
+    /// Returns the newest lane; in an empty bundle, one that is not in use.
     #[inline]
     pub(super) fn last(&self) -> usize {
         (self.count as usize).wrapping_sub(1) % LANES
     }
 
-    /// Returns the lane of a piece. Tests the newest lane first: parts that pass through a fixture leave before the
-    /// fixture's own elements.
+    /// Returns the lane of a piece. Looks at the newest lane first, because parts that pass through a fixture leave it
+    /// before its own elements do.
     #[inline]
     pub(super) fn lane_of(&self, piece: u32) -> Option<usize> {
         let last = self.last();
@@ -129,10 +129,10 @@ impl Bundle {
         (word != 0).then(|| word.trailing_zeros() as usize % LANES)
     }
 
-    /// Returns the word of the layers from the lowest to the highest of this bundle, leaving one lane out.
+    /// Returns the word of the layers from the lowest to the highest of this bundle; leaves the lane `gone` out.
     ///
-    /// To be called before that lane is removed: reading eight bytes at once stalls right after they were written
-    /// one by one.
+    /// Call this before the lane is removed: reading eight bytes at once stalls the processor right after they were
+    /// written one by one.
     #[inline]
     pub(super) fn word_without(&self, gone: Option<usize>) -> u64 {
         let gone = gone.map_or(0, |lane| 0xff << (8 * lane));
@@ -151,27 +151,27 @@ impl Bundle {
         reach.word()
     }
 
-    /// Bit k: lane k is in use.
+    /// Returns a mask of the lanes in use (bit k: lane k).
     #[inline]
     fn used(&self) -> u32 {
         (1 << self.count) - 1
     }
 
-    /// Returns bit k when the silhouette of lane k shares a point with `cover` on every axis.
+    /// Returns a mask in which bit k is set when the silhouette of lane k shares a point with `cover`.
     #[inline]
     pub(super) fn meeting(&self, cover: &Cover) -> u32 {
         self.boxes.meeting(cover) & self.used()
     }
 
-    /// Returns the silhouettes that a moving box meets up to the fraction `until`, and the fraction before which it
-    /// does not.
+    /// Returns a mask of the silhouettes that a moving box meets up to the fraction `until` of its path, and for each
+    /// the fraction before which it is not met.
     #[inline(always)]
     pub(super) fn crossing(&self, sweep: &Sweep, until: f32) -> (u32, [f32; LANES]) {
         let crossing = self.boxes.crossing(&sweep.start, &sweep.pace, until);
         (crossing.lanes & self.used(), crossing.entry)
     }
 
-    /// Returns for each silhouette the fraction before which it is not met, along one axis.
+    /// Returns, for each silhouette, the fraction of the path before which it is not met along one axis.
     #[inline]
     pub(super) fn entry(&self, sweep: &Sweep, axis: usize) -> [f32; LANES] {
         self.boxes.entry(&sweep.start, &sweep.pace, axis)

@@ -1,36 +1,37 @@
-//! The squares that a moving box passes in each band (row or column) across its path: those between two lines.
+//! The squares that a moving box passes, band by band; a band is a row or column across its path, and the squares lie
+//! between two lines.
 //!
-//! Both lines are tracked in whole units of 2^-32 squares. The rounding to units, at most one per band, is added to
-//! the width in advance, so the strip contains every passed square. It ignores where the box starts and ends within
-//! a band: a superset is safe.
+//! Both lines are tracked in units of 2^-32 squares. The rounding to units, at most one per band, is added to the width
+//! in advance, so the strip contains every square that the box passes. Where the box starts and ends within a band is
+//! ignored: too many squares are safe.
 
 use super::area::{Area, PITCH_MM};
 use super::sweep::{SLACK_MM, Sweep};
 
-/// Units per square, and the exponent of this power of two.
+/// Number of units in a square, a power of two.
 const UNIT: f64 = (1u64 << UNIT_BITS) as f64;
 const UNIT_BITS: u32 = 32;
 
-/// Bound in squares, farther than any grid or any line within it reaches.
+/// Number of squares that stands for infinity: farther than any grid, or any line within it, reaches.
 const BEYOND: f64 = (1 << 28) as f64;
 
-/// The bands of an area in the order of the path, which moves farther across the bands than along them.
+/// The bands of an area, in the order of the path. The box moves farther across the bands than along them.
 pub(super) struct Strip {
     /// Number of the next band, counted from 0.
     pub(super) step: i32,
     band: i32,
-    /// Direction of the bands: 1 or -1.
+    /// Step to the next band: 1 or -1.
     towards: i32,
     /// Number of the last band.
     last: i32,
-    /// Positions of both lines over the next band, counted from the first row or column of the area, and their
-    /// advance per band; in units.
+    /// Positions of both lines over the next band, from the first row or column of the area, and how much they advance
+    /// per band; all in units.
     low: i64,
     high: i64,
     slope: i64,
     /// Last row or column of the area.
     width: i32,
-    /// Path until the box reaches the first band, and the whole path, both in bands.
+    /// Length of the path until the box reaches the first band, and of the whole path; both in bands.
     ahead: f64,
     run: f64,
 }
@@ -45,7 +46,7 @@ impl Strip {
         } else {
             (-1, area.high[AXIS])
         };
-        // Path of the box over the first band: begins and ends here in either direction.
+        // How far the box moves until it begins to lie over the first band, and until it ends to; for either direction.
         let edge = f64::from(band) * PITCH_MM;
         let first = edge - f64::from(sweep.start.high[AXIS]) - SLACK_MM;
         let end = edge + PITCH_MM - f64::from(sweep.start.low[AXIS]) + SLACK_MM;
@@ -63,7 +64,7 @@ impl Strip {
         };
         let low = f64::from(sweep.start.low[across]) - SLACK_MM + slope * least;
         let high = f64::from(sweep.start.high[across]) + SLACK_MM + slope * most;
-        // NaN comes from a box of infinite size, which covers every square.
+        // A box of infinite size, which covers every square, gives NaN.
         let low = if low.is_nan() { -BEYOND } else { low };
         let high = if high.is_nan() { BEYOND } else { high };
         let direction = f64::from(towards);
@@ -87,14 +88,15 @@ impl Strip {
         let bands = self.run * until - self.ahead;
         // NaN means all bands.
         if bands < f64::from(self.last) {
-            // The cast truncates towards 0, which rounds down the non-negative numbers that matter.
+            // The cast truncates towards 0; that rounds down the non-negative numbers, which alone matter.
             if bands < 0.0 { -1 } else { bands as i32 }
         } else {
             self.last
         }
     }
 
-    /// Returns the next band with its first and last square that the box may pass; none when these are crossed.
+    /// Returns the next band, with the first and the last square in it that the box may pass; none when last comes
+    /// before first.
     #[inline(always)]
     pub(super) fn next(&mut self) -> (i32, i32, i32) {
         let square = |units: i64| (units >> UNIT_BITS) as i32;
@@ -116,7 +118,7 @@ mod tests {
     use super::*;
     use crate::distance::tests::Dice;
 
-    /// Returns for each band its number and its first and last square.
+    /// Returns, for each band, its number and the first and last square in it.
     fn bands<const AXIS: usize>(sweep: &Sweep, area: &Area, until: f64) -> Vec<(i32, i32, i32)> {
         let mut strip = Strip::new::<AXIS>(sweep, area);
         let last = strip.last(until);
@@ -135,7 +137,7 @@ mod tests {
             let [x, y, z] = dice.vector().map(|member| 40.0 * member.abs());
             let mut at = dice.vector().map(|member| 500.0 * member);
             if dice.pick(2) == 0 {
-                // Places next to a line, on either side.
+                // Places beside a grid line, on either side.
                 let line = PITCH_MM * dice.pick(3) as f64 - PITCH_MM;
                 (at[0], at[1]) = (
                     line - x + 3e-6 * dice.signed(),

@@ -1,17 +1,17 @@
-//! A moving box, as the broad phase tests it.
+//! A moving box, as the broad phase sees it.
 
 use super::cover::Cover;
 use crate::vector::Vec3;
 
-/// Slack of a place along the path, mm, with a wide reserve over the rounding of slopes and products (at most 2e-9
-/// mm within 3e6 mm) and the loss of [`Area`](super::area::Area) next to 0 from subtracting half a square (at most
+/// Slack of a place along the path, mm. It has a wide reserve over the rounding of slopes and products (at most 2e-9 mm
+/// within 3e6 mm), and over what [`Area`](super::area::Area) loses next to 0 when it subtracts half a square (at most
 /// 2e-6 mm).
 pub(crate) const SLACK_MM: f64 = 1e-5;
 
-/// Displacement along an axis below which it counts as rest, mm; every moving box is widened by it.
+/// A displacement along an axis below this counts as rest, mm; every moving box is widened by as much.
 pub(crate) const SLOWEST_MM: f64 = 1e-9;
 
-/// Fraction of the path per millimetre of each axis; infinite at rest.
+/// Fraction of the path per millimetre along each axis; infinite for an axis at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Pace(pub(crate) [f32; 3]);
 
@@ -29,7 +29,7 @@ impl Pace {
         Pace([of(run[0]), of(run[1]), of(run[2])])
     }
 
-    /// Pace of the surroundings in the frame of the box.
+    /// Returns the pace at which the surroundings move in the frame of the box.
     #[inline]
     pub(crate) fn reversed(self) -> Pace {
         let [x, y, z] = self.0;
@@ -56,14 +56,14 @@ impl Sweep {
         }
     }
 
-    /// Returns the box around the path up to the fraction `until`.
+    /// Returns the box around the path of this box up to the fraction `until`.
     #[inline]
     pub(crate) fn cover(&self, until: f64) -> Cover {
         let [x, y, z] = self.run;
         self.start.swept([x * until, y * until, z * until])
     }
 
-    /// The axis of the longest displacement.
+    /// Returns the axis along which the box moves farthest.
     #[inline]
     pub(crate) fn axis(&self) -> usize {
         let [x, y, z] = [self.run[0].abs(), self.run[1].abs(), self.run[2].abs()];
@@ -74,7 +74,8 @@ impl Sweep {
         }
     }
 
-    /// Whether the box moves along more than one axis; then the box around its path holds much beside the path.
+    /// Returns true when the box moves along more than one axis; the box around its path is then much larger than the
+    /// path.
     #[inline]
     pub(crate) fn is_slanted(&self) -> bool {
         let moving = |axis: usize| u32::from(self.run[axis].abs() >= SLOWEST_MM);

@@ -1,4 +1,4 @@
-//! The path of a box over the squares of the baseplate, visited in the direction of motion.
+//! Walks along the path of a box over the squares of the baseplate, in the direction of motion.
 
 use super::area::Area;
 use super::cover::{Cover, above};
@@ -10,15 +10,16 @@ use super::sweep::{SLOWEST_MM, Sweep};
 
 /// Receives the pieces that a moving box may meet.
 pub(crate) trait Visit {
-    /// Whether the visitor needs the pieces in the order in which they are met.
+    /// Returns true when the visitor needs the pieces in the order in which they are met.
     fn in_order(&self) -> bool;
 
-    /// Receives a bundle by its number: the box may meet lane k if bit k of `lanes` is set, and not before the fraction
-    /// `entry[k]` of the path if `in_order`. A piece may come more than once. Returns true to end the walk.
+    /// Receives a bundle with its number. The box may meet lane k if bit k of `lanes` is set; if `in_order`, it does
+    /// not meet it before the fraction `entry[k]` of the path. The same piece may come more than once. Returns true to
+    /// end the walk.
     fn bundle(&mut self, shown: (u32, &Bundle), lanes: u32, entry: &[f32; LANES]) -> bool;
 
-    /// Called when all pieces still to come are met no earlier than those since the last pause. Returns the
-    /// fraction of the path that still matters; below 0 to end the walk.
+    /// Called when all pieces still to come are met no earlier than those that came since the last pause. Returns the
+    /// fraction of the path up to which pieces still matter; below 0 to end the walk.
     fn pause(&mut self) -> f64;
 }
 
@@ -28,12 +29,12 @@ pub(super) struct Walk<'a, V> {
     sweep: &'a Sweep,
     /// Layers into which the box reaches.
     layers: u64,
-    /// Box around the remaining path.
+    /// Box around the path that remains.
     cover: Cover,
-    /// Fraction of the path that still matters.
+    /// Fraction of the path up to which pieces still matter.
     until: f64,
     is_slanted: bool,
-    /// Axis of the longest displacement.
+    /// Axis along which the box moves farthest.
     axis: usize,
     visit: &'a mut V,
 }
@@ -87,7 +88,7 @@ impl<'a, V: Visit> Walk<'a, V> {
         let (sweep, until) = (self.sweep, above(self.until));
         let in_order = self.visit.in_order();
         for (number, bundle) in chain {
-            // A piece may overlap the box around a slanted path without being met at any time.
+            // A piece may overlap the box around a slanted path, and yet the moving box never meets it.
             let (lanes, entry) = if self.is_slanted {
                 bundle.crossing(sweep, until)
             } else {
@@ -134,8 +135,8 @@ impl<'a, V: Visit> Walk<'a, V> {
         self.visit.pause();
     }
 
-    /// Visits the squares band by band across the axis of the longest displacement, in its direction; of each band
-    /// only the squares that the box passes while it is over the band.
+    /// Visits the squares band by band; the bands lie across the axis along which the box moves farthest. In each band
+    /// visits only the squares that the box passes while it is over this band.
     fn along<const AXIS: usize>(&mut self, area: &Area) {
         let mut strip = Strip::new::<AXIS>(self.sweep, area);
         let stride = self.grid.stride(1 - AXIS);

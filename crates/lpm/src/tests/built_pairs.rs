@@ -1,13 +1,13 @@
-//! Pairs constructed to touch, to overlap and to miss by a known amount: from a millimetre down to a nanometre
+//! Tests: pairs constructed to touch, to overlap, or to miss by a known amount, from a millimetre down to a nanometre
 //! (2^-20 mm), near the origin and a kilometre away, where other libraries fail.
 use super::truth::agrees;
 use crate::distance::tests::Dice;
 use crate::exact::{Body, Form};
 
-/// Unit of 2^-20 mm, a little less than a nanometre, so that sums at 1e6 mm are still exact in f64.
+/// Unit of 2^-20 mm, a little less than a nanometre; sums at 1e6 mm are still exact in f64.
 const UNIT_MM: f64 = 1.0 / 1_048_576.0;
 const MM: i64 = 1_048_576;
-/// Distances in units: negative for overlap, positive for a gap.
+/// Distances, in units: negative for an overlap, positive for a gap.
 const DELTAS: [i64; 13] = [
     0,
     MM,
@@ -25,7 +25,7 @@ const DELTAS: [i64; 13] = [
 ];
 const OFFSETS_MM: [i64; 4] = [0, 1_000, 100_000, 990_000];
 
-/// Radius or half extent: 2 to 34 mm, on a grid of 1/64 mm.
+/// Draws a radius or half extent: 2 to 34 mm, a multiple of 1/64 mm.
 fn size(dice: &mut Dice) -> i64 {
     (2 * MM) + (dice.pick(32 * 64) as i64) * (MM / 64)
 }
@@ -39,7 +39,7 @@ fn upright(dice: &mut Dice) -> Body {
     }
 }
 
-/// Half extents of the bounding box.
+/// Returns the half extents of the bounding box.
 fn reach(body: &Body) -> [i64; 3] {
     match body.form {
         Form::Block { half, .. } => half,
@@ -48,7 +48,7 @@ fn reach(body: &Body) -> [i64; 3] {
     }
 }
 
-/// Checks the pair far from the origin, with either body as mover.
+/// Checks the pair far from the origin, with each body as mover in turn.
 fn judged(element: &Body, mover: &Body, run: [i64; 3], dice: &mut Dice) {
     let far = OFFSETS_MM[dice.pick(4) as usize] * MM;
     let place = [far, -far, far / 1_000];
@@ -69,7 +69,7 @@ fn stacked_and_adjacent_bodies_touch_exactly() {
             centre[axis] = a[axis] + b[axis] + delta;
             let mover = Body { centre, ..mover };
             judged(&element, &mover, [0; 3], &mut dice);
-            // Lifted off, and slid along.
+            // First lifted off, then slid along.
             let mut away = [0; 3];
             away[axis] = 5 * MM;
             judged(&element, &mover, away, &mut dice);
@@ -157,7 +157,7 @@ fn enclosed_and_coaxial_bodies_are_blocked() {
 
 #[test]
 fn turned_blocks_agree_with_exact_arithmetic() {
-    // In units of 1/1024 mm, quaternions with members of one digit, any axis: edges cross, corners meet faces.
+    // Units of 1/1024 mm, quaternions with members of one digit, any axis: edges cross edges, corners meet faces.
     for seed in 0..2_500 {
         let mut dice = Dice::new(5_000 + seed);
         let mut turned = |most: u64| {
@@ -179,7 +179,7 @@ fn turned_blocks_agree_with_exact_arithmetic() {
 
 #[test]
 fn triangles_agree_with_exact_arithmetic() {
-    // A coarse grid, so that corners often fall on edges and planes coincide.
+    // On a coarse grid corners often fall on edges, and planes coincide.
     let mut touched = 0;
     for seed in 0..2_500 {
         let mut dice = Dice::new(8_000 + seed);

@@ -1,7 +1,7 @@
-//! Points inside a mesh, however untidy its file.
+//! Tests: points inside a mesh, however untidy its file is.
 use super::*;
 
-/// Corners and triangles, facing outward.
+/// Corners, and triangles that face outward.
 #[derive(Clone, Default)]
 struct Soup {
     vertices: Vec<[f64; 3]>,
@@ -73,7 +73,7 @@ impl Soup {
     }
 }
 
-/// Whether the mesh encloses a grain of 1 mm at a place; asserts the same answer with the mesh as mover.
+/// Returns true when the mesh encloses a grain of 1 mm at this place; asserts the same answer with the mesh as mover.
 fn is_inside(soup: &Soup, at: [f64; 3]) -> bool {
     let grain = Shape::Block { half: [0.5; 3] };
     let mesh = soup.clone().shape();
@@ -116,11 +116,11 @@ fn a_repeated_surface_is_solid() {
         &cube.clone().with(cube.clone().turned_over()),
         MIDDLE
     ));
-    // One part with both orientations, another with one.
+    // One part has triangles in both orientations, the other in one.
     let other = Soup::cuboid([30.0; 3], [40.0; 3]);
     let both = cube.clone().with(cube.clone().turned_over()).with(other);
     assert!(is_inside(&both, MIDDLE) && is_inside(&both, [35.0; 3]));
-    // The same with a common corner.
+    // The same two, with a corner in common.
     let mut hinged = both;
     let first = hinged.vertices[7];
     hinged.vertices[16..]
@@ -207,7 +207,7 @@ fn an_inner_surface_of_opposite_orientation_is_a_hole() {
     let island = hollow.with(Soup::cube(2.0));
     assert!(is_inside(&island, MIDDLE));
     assert!(!is_inside(&island, [3.5, 0.3, 0.2]));
-    // With the same orientation it is another part in the same place.
+    // With the same orientation, it is another part in the same place.
     assert!(is_inside(&Soup::cube(10.0).with(Soup::cube(5.0)), MIDDLE));
 }
 

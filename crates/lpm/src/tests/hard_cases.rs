@@ -1,4 +1,4 @@
-//! Straight moves that are numerically hard: grazing, tiny tilts, foils, tangents.
+//! Tests: straight moves that are numerically hard: grazing, tiny tilts, foils, tangents.
 use super::*;
 use crate::distance::tests::Dice;
 
@@ -36,17 +36,17 @@ fn a_ten_metre_move_does_not_tunnel_a_foil() {
 
 #[test]
 fn published_missed_overlaps_at_the_start_are_blocked() {
-    // Cylinder on cylinder, 1 mm deep, sliding: a published miss.
+    // A cylinder slides on another, 1 mm deep: a published case that a library missed.
     let model = standing(&cylinder(13.5625, 55.75), Pose::IDENTITY);
     let slide = straight([0.0, 0.0, 39.203125], [1.0, 0.5, 39.203125]);
     assert_eq!(
         stop(&model, &cylinder(26.90625, 24.65625), &slide),
         Some(0.0)
     );
-    // Two coaxial cylinders, one inside the other, at rest.
+    // Two cylinders on one axis, one inside the other, at rest.
     let rest = straight([0.0; 3], [0.0; 3]);
     assert_eq!(stop(&model, &cylinder(5.0, 10.0), &rest), Some(0.0));
-    // A box going down into a box by 1 mm.
+    // A box goes down into another by 1 mm.
     let base = standing(&block(20.0, 20.0, 10.0), Pose::IDENTITY);
     let down = straight([0.0, 0.0, 30.0], [0.0, 0.0, 19.0]);
     let t = stop(&base, &block(5.0, 5.0, 10.0), &down).unwrap();
@@ -162,7 +162,7 @@ fn crossed_and_tangent_cylinders_touch_where_their_mantles_do() {
 
 #[test]
 fn a_rim_stops_on_a_corner() {
-    // The corner of the block lies at 45 degrees: the rim touches at distance r from it.
+    // The corner of the block lies at 45 degrees; the rim touches it at distance r.
     let model = standing(&block(10.0, 10.0, 10.0), Pose::IDENTITY);
     let mover = cylinder(5.0, 10.0);
     let slide = straight([40.0, 40.0, 15.0], [0.0, 0.0, 15.0]);
@@ -178,7 +178,7 @@ fn a_graze_in_one_point_stops_within_a_nanometre() {
     let across = straight([-3048.0, -2436.0, 0.0], [4952.0, 3564.0, 0.0]);
     let cases = [
         (across, cylinder(50.0, 10.0), 0.5),
-        // Along the mantle; and past a block whose side ends where the mantle touches.
+        // Along the mantle of the cylinder; and past a block whose side ends where the mantle touches it.
         (
             straight([1080.0, -500.0, 0.0], [1080.0, 1500.0, 0.0]),
             cylinder(50.0, 10.0),
@@ -198,8 +198,8 @@ fn a_graze_in_one_point_stops_within_a_nanometre() {
     }
 }
 
-/// How early the stop at a grazed round side may come where places were rounded, mm, within a metre: the root of
-/// twice the radius times the rounding.
+/// How early a move may stop at a round side that it only grazes, where places were rounded, mm, within a metre: the
+/// root of twice the radius times the rounding.
 const GRAZED_EARLY_MM: f64 = 1e-4;
 
 #[test]
@@ -234,7 +234,7 @@ fn a_graze_of_turned_bodies_stops_within_its_bound() {
         );
         earliest = earliest.max(early);
     }
-    // The bound is needed: the worst case comes within a factor of 100.
+    // The bound is not far too wide: the worst case comes within a factor of 100.
     assert!(earliest > GRAZED_EARLY_MM / 100.0, "{earliest}");
 }
 

@@ -1,4 +1,4 @@
-//! Meshes from files: one body in three formats, and errors in damaged files.
+//! Tests: one body as a mesh file in three formats, and the errors for damaged files.
 use super::*;
 use crate::scene::{Format, Scene, read_scene};
 
@@ -6,7 +6,7 @@ mod accepted;
 mod faces;
 mod refused;
 
-/// Corners and triangles of a box of half extents 3, 4, 5; closed unless the lid is left out.
+/// Returns the triangles of a box with half extents 3, 4, 5; without the lid the box is open.
 fn box_triangles(lid: bool) -> Vec<[[f64; 3]; 3]> {
     let corner = |index: usize| {
         [0, 1, 2]
@@ -44,7 +44,7 @@ fn stl_text(triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
 }
 
 fn stl_binary(triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
-    // Some programs write a binary header that begins like a text file.
+    // Some programs write a header of a binary file that begins like a text file.
     let mut bytes = b"solid in name only".to_vec();
     bytes.resize(80, b' ');
     bytes.extend((triangles.len() as u32).to_le_bytes());

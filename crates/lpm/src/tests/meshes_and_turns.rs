@@ -1,4 +1,4 @@
-//! Triangles of every kind, closed meshes, turning moves.
+//! Tests: triangles of every kind, closed meshes, turning moves.
 use super::*;
 
 #[test]
@@ -65,7 +65,7 @@ fn slivers_segments_and_points_are_legal_triangles() {
     );
 }
 
-/// A closed box as a mesh, optionally without its lid.
+/// Returns a box as a mesh; without the lid the box is open.
 fn box_mesh(half: f64, lid: bool) -> Shape {
     let corner =
         |index: usize| [0, 1, 2].map(|axis| if index >> axis & 1 == 1 { half } else { -half });
@@ -103,7 +103,7 @@ fn a_closed_mesh_is_solid_an_open_one_hollow() {
     let open = standing(&box_mesh(20.0, false), Pose::IDENTITY);
     assert_eq!(stop(&open, &mover, &inside), None);
     assert!((least(&open, &mover, &inside) - 18.0).abs() < 1e-9);
-    // Exchanged: the mover surrounds the element.
+    // The other way round: the mover surrounds the element.
     let pin = standing(&cylinder(1.0, 2.0), Pose::IDENTITY);
     assert_eq!(stop(&pin, &box_mesh(20.0, true), &inside), Some(0.0));
     assert_eq!(stop(&pin, &box_mesh(20.0, false), &inside), None);

@@ -1,9 +1,9 @@
-//! Changes that must not alter an answer: exchanging mover and element, mirrors, other axes, a shift, an element
-//! inserted and removed again. And changes that may alter it in one direction only.
+//! Tests of changes that must not alter an answer: exchanging mover and element, mirrors, other axes, a shift, an
+//! element inserted and removed again; and of changes that may alter it in one direction only.
 use super::*;
 use crate::distance::tests::Dice;
 
-/// A random pair near each other: places on a grid of 1/64 mm, so that sums are exact.
+/// A random pair of bodies near each other; places are multiples of 1/64 mm, so that sums are exact.
 struct Drawn {
     element: Shape,
     mover: Shape,

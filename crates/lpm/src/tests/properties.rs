@@ -1,4 +1,4 @@
-//! Properties over many random scenes.
+//! Tests of properties that must hold for many random scenes.
 use super::*;
 use crate::distance::tests::Dice;
 

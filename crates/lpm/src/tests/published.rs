@@ -1,15 +1,15 @@
-//! Situations in which other libraries were reported to fail, with numbers chosen here.
+//! Tests of situations in which other libraries were reported to fail; the numbers are chosen here.
 //!
-//! Brackets name the library, the number of the report and the failure.
+//! Brackets name the library, the number of the report, and the failure.
 use super::truth::agrees;
 use super::*;
 use crate::exact::{Body, Form};
 
-/// 1/1024 mm.
+/// Unit of 1/1024 mm.
 const UNIT_MM: f64 = 1.0 / 1024.0;
 const MM: i64 = 1024;
 
-/// Checks the pair with either body as mover, at the origin and far away.
+/// Checks the pair with each body as mover in turn, at the origin and far from it.
 fn holds(element: Body, mover: Body, run: [i64; 3]) {
     for place in [
         [0; 3],

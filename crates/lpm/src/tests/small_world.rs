@@ -1,10 +1,10 @@
-//! Small worlds, enumerated completely instead of sampled.
+//! Tests of small worlds, in which every case is tried instead of samples.
 //!
 //! `relayrig study collision` enumerates the larger world of corners 0 to 3 (16 million moves).
 use super::truth::agrees;
 use crate::exact::{Body, Form};
 
-/// Every body with corners 0, 1, 2 in each axis, in half units: blocks, and cylinders of radius 1.
+/// Returns every body with corners at 0, 1, 2 along each axis: blocks, and cylinders of radius 1; in half units.
 fn every_body() -> Vec<Body> {
     let spans = [[0, 1], [0, 2], [1, 2]];
     let mut bodies = Vec::new();

@@ -1,11 +1,12 @@
-//! Compares answers with exact truth, and exact truth with results known independently.
+//! Tests: compares answers with the exact truth, and the exact truth with results that are known otherwise.
 use super::*;
 use crate::exact::{Body, Form, first_contact};
 
-/// How early a stop may come before the truth, mm of the path; for a long path 1e-10 of it instead.
+/// How much earlier than the truth a move may stop, mm of the path; for a long path, 1e-10 of it instead.
 const LOST_MM: f64 = 5e-8;
-/// How early a grazing stop may come, mm; for a long path 1e-8 of it instead. Along a grazing pass the distance
-/// changes with the square of the path, so a rounding of 2e-12 mm in the distance amounts to this much.
+/// How much earlier than the truth a grazing move may stop, mm; for a long path, 1e-8 of it instead. Along a grazing
+/// pass the distance changes with the square of the path, so a rounding of 2e-12 mm in the distance shifts the stop
+/// this much.
 const GRAZING_LOST_MM: f64 = 5e-5;
 
 /// Returns the answer of the core for one pair.
@@ -25,7 +26,7 @@ pub(super) fn agrees(element: &Body, mover: &Body, run: [i64; 3], unit_mm: f64) 
     let said = || format!("{element:?} {mover:?} {run:?}: found {found:?}, truth {truth:?}");
     assert_eq!(found.is_some(), truth.is_some(), "{}", said());
     if let (Some(found), Some(truth)) = (found, truth) {
-        // The time of the truth is itself rounded, by a few units in the last place.
+        // The time of the exact truth is itself rounded, by a few units in the last place.
         assert!(found <= truth * (1.0 + 1e-15), "late: {}", said());
         let length_mm = unit_mm
             * run
@@ -43,7 +44,7 @@ pub(super) fn agrees(element: &Body, mover: &Body, run: [i64; 3], unit_mm: f64) 
     }
 }
 
-/// Whether the mover would pass if it were smaller by one unit: a double root, or nearly.
+/// Returns true when the mover would pass if it were smaller by one unit; the contact is then (nearly) a double root.
 fn is_grazing(element: &Body, mover: &Body, run: [i64; 3]) -> bool {
     let form = match mover.form {
         Form::Block { half, rotation } => Form::Block {
@@ -61,7 +62,7 @@ fn is_grazing(element: &Body, mover: &Body, run: [i64; 3]) -> bool {
 
 #[test]
 fn the_exact_truth_solves_a_3_4_5_triangle() {
-    // Corner of a block at (10, 10); a disc of radius 5 whose centre passes (13, 14), or slightly beside it.
+    // A block has a corner at (10, 10); the centre of a disc of radius 5 passes (13, 14), or slightly beside it.
     let block = Body::block([0; 3], [10_000, 10_000, 5]);
     let disc = |x: i64, y: i64| Body::cylinder([x, y, 0], 5_000, 5);
     let still = [0; 3];
@@ -83,7 +84,7 @@ fn the_exact_truth_solves_a_3_4_5_triangle() {
 
 #[test]
 fn the_exact_truth_agrees_with_dense_sampling() {
-    // A coarse world in which sampling at a thousand places cannot miss a contact of whole units.
+    // In this coarse world, whose contacts lie at whole units, a thousand samples cannot miss one.
     let mut dice = crate::distance::tests::Dice::new(5);
     let mut met = 0;
     for _ in 0..3_000 {
@@ -131,7 +132,7 @@ fn the_exact_truth_agrees_with_dense_sampling() {
     assert!((500..2_500).contains(&met), "{met}");
 }
 
-/// Distance in the plane from an upright body at the origin to a point.
+/// Returns the distance in the plane from an upright body at the origin to a point.
 fn flat_distance(body: &Body, [x, y]: [f64; 2]) -> f64 {
     match body.form {
         Form::Cylinder { radius, .. } => (x.hypot(y) - radius as f64).max(0.0),

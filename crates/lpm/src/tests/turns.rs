@@ -1,10 +1,10 @@
-//! Turning moves against dense sampling with an independent rotation.
+//! Tests: turning moves, compared with dense sampling by an independent rotation.
 use super::*;
 use crate::distance::tests::Dice;
 
 /// How early a turning move may be blocked, mm.
 const FALSE_BLOCK_MM: f64 = 1e-3;
-/// How far above the truth the clearance of a turning move may lie, mm.
+/// How far the clearance of a turning move may exceed the truth, mm.
 const ABOVE_MM: f64 = 5e-4;
 const SAMPLES: usize = 160;
 
@@ -13,7 +13,7 @@ fn rotated(pose: &Pose) -> [f64; 4] {
     pose.rotation.map(|it| it / size)
 }
 
-/// Linear position, rotation along the shorter great circle.
+/// Returns the pose at fraction `t`: position linear, rotation along the shorter great circle.
 fn pose_at(from: &Pose, to: &Pose, t: f64) -> Pose {
     let (a, mut b) = (rotated(from), rotated(to));
     let mut cos: f64 = (0..4).map(|i| a[i] * b[i]).sum();
@@ -69,7 +69,7 @@ impl Turned {
         }
     }
 
-    /// Distance of the bodies at `t`, from a path of length zero.
+    /// Returns the distance of the bodies at fraction `t`, found by a move of length zero.
     fn distance(&self, t: f64) -> f64 {
         let pose = pose_at(&self.from, &self.to, t);
         let found = self.model.clearance(&self.mover, &way(pose, pose), 1e6);
@@ -160,8 +160,8 @@ fn the_clearance_of_a_turn_matches_dense_samples() {
 
 #[test]
 fn the_clearance_of_a_turn_finds_the_deeper_valley() {
-    // The samples find the other valley, 14.92486 mm. On the slope of the deeper one a distance is lower by just
-    // the resolution, 2e-4 mm; a search that demands more than the resolution cannot advance there.
+    // The samples find the other valley, 14.92486 mm. On the slope of the deeper valley a distance is lower by just the
+    // resolution, 2e-4 mm; a search that demands more than the resolution cannot advance there.
     let model = standing(&Shape::Block { half: [3.0; 3] }, Pose::IDENTITY);
     let block = Shape::Block { half: [5.0; 3] };
     let swung = Shape::Compound(vec![(Pose::at([5.0, 0.0, 0.0]), block)]);
@@ -213,7 +213,7 @@ fn a_reversed_turn_has_the_same_verdict() {
 
 #[test]
 fn a_disc_turning_near_a_wall_stays_clear() {
-    // The distance never changes, the hardest case for conservative advancement. Turned about its axis, and tumbled.
+    // The distance never changes, which is hardest for conservative advancement: turned about its axis, and tumbled.
     let wall = standing(&block(5.0, 100.0, 100.0), Pose::IDENTITY);
     let disc = cylinder(30.0, 8.0);
     for (gap, is_blocked) in [(-1e-3, true), (0.0, true), (1e-3, false), (0.1, false)] {
@@ -244,7 +244,7 @@ fn a_tiny_turn_equals_the_straight_move() {
 
 #[test]
 fn a_long_arm_sweeps_its_arc_not_its_chord() {
-    // The part lies 400 mm from the axis; a quarter turn bulges 117 mm out of the chord.
+    // The part lies 400 mm from the axis; on a quarter turn its arc is up to 117 mm away from the chord.
     let arm = Shape::Compound(vec![(Pose::at([400.0, 0.0, 0.0]), block(2.0, 2.0, 2.0))]);
     let quarter = way(
         Pose::IDENTITY,

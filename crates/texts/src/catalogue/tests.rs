@@ -1,4 +1,4 @@
-//! Both languages say the same things, with the same arguments, in literals and arguments alone.
+//! Tests: both languages have the same texts with the same arguments, made of literals and arguments only.
 
 use super::*;
 

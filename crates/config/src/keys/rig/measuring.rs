@@ -1,4 +1,4 @@
-//! Promised accuracies, calibration.
+//! Keys about measuring: promised accuracies, calibration.
 
 use machine::dut::em_relay::keys::board::{GATE_DELAY, OPERATION_SCATTER};
 use machine::form::{Form, Key, above_zero, from_to, key, optional};

@@ -1,4 +1,4 @@
-//! Lines, modules, and what holds on every line.
+//! Keys of serial lines and modules, and of what holds for every line.
 
 use machine::form::{Form, Key, above_zero, from_to, key, optional, whole};
 use machine::rig::model::Model;

@@ -1,4 +1,4 @@
-//! Points, actuators, the axis and the bins.
+//! Keys of points, actuators, the axis and the bins.
 
 use machine::form::{Form, Key, above_zero, from_to, key, whole};
 

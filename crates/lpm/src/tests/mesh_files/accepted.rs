@@ -1,4 +1,4 @@
-//! Variants of file formats that must be accepted.
+//! Tests: variants of the file formats that must be accepted.
 use super::*;
 
 pub(super) fn shape(name: &str, bytes: &[u8]) -> Shape {

@@ -1,9 +1,9 @@
-//! Faces of more than three corners: which of them can be cut into a fan.
+//! Tests: faces of more than three corners, and which of them can be cut into triangles.
 use super::accepted::shape;
 use super::refused::refusal;
 use super::*;
 
-/// Writes an OBJ of one face, corners with six digits.
+/// Writes an OBJ file of one face; corners have six digits.
 fn face(corners: &[[f64; 3]]) -> Vec<u8> {
     let mut text = String::new();
     for [x, y, z] in corners {
@@ -55,7 +55,7 @@ fn a_degenerate_face_is_legal() {
     }
 }
 
-/// Writes an OBJ per first corner and direction of one face.
+/// Writes one OBJ file of the face for each first corner and each direction around it.
 fn faces(corners: &[[f64; 3]]) -> Vec<Vec<u8>> {
     let mut text = String::new();
     for [x, y, z] in corners {

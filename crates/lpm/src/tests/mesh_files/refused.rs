@@ -1,4 +1,4 @@
-//! Damaged or ambiguous files, which must be refused.
+//! Tests: damaged or ambiguous files, which must be refused.
 use super::*;
 
 pub(super) fn refusal(name: &str, bytes: &[u8]) -> String {
