@@ -5,6 +5,7 @@ use super::calibration::Calibration;
 use super::em_relay;
 use super::em_relay::settings::{ReferenceSet, ReferenceSettings};
 use super::procedure::Procedure;
+use super::promise::Broken;
 use super::recipe::{DeviceRecipe, Recipe};
 use super::record::TestRecord;
 use super::resistor;
@@ -226,6 +227,14 @@ impl Device {
         match self {
             Self::EmRelay(relay) => Ok(relay.check(serial, record)?),
             Self::Resistor(_) => panic!("{NO_REFERENCE_PARTS}"),
+        }
+    }
+
+    /// Promises of the rig's file found broken since the last call.
+    pub fn broken_promises(&mut self) -> Vec<Broken> {
+        match self {
+            Self::EmRelay(relay) => relay.broken_promises(),
+            Self::Resistor(_) => Vec::new(),
         }
     }
 

@@ -60,6 +60,8 @@ impl Station {
                 }
             }
         }
+        let broken = self.device.broken_promises().into_iter();
+        outcome.trouble.extend(broken.map(Alarm::promise_broken));
         output.notes.trouble.extend(outcome.trouble);
         output.record.checked = outcome.checked;
     }

@@ -10,6 +10,7 @@ use super::measure::{Context, Observed, Test};
 use super::overshoot::OvershootModel;
 use super::points::{AnalogIn, AnalogOut, Points};
 use super::probe_contact::Trend;
+use super::promise::{Promises, operation};
 use super::recipe::RelayRecipe;
 use super::reference::{self, ReferenceFault};
 use super::reference_part::{self, Misfit, ReferenceRun};
@@ -17,7 +18,9 @@ use super::settings::ReferencePart;
 use super::threshold::Direction;
 use crate::dut::Recipe;
 use crate::dut::device::{Made, Rig, TestOrder};
+use crate::dut::promise::{Broken, Promise};
 use crate::dut::record::{Own, TestRecord};
+use crate::gauge::evidence::Residuals;
 use crate::instrument::act::Act;
 use crate::instrument::readings::Readings;
 use crate::rig::point::MissingPoint;
@@ -37,6 +40,7 @@ pub struct Device {
     /// The same models, learned from parts of this lot alone.
     of_lot: (OvershootModel, OvershootModel),
     probe_contact: Trend,
+    promises: Promises,
 }
 
 impl Device {
@@ -77,7 +81,7 @@ impl Device {
     }
 
     pub(super) fn of(
-        context: Context,
+        mut context: Context,
         voltage_gain: f64,
         certificates: Vec<ReferencePart>,
     ) -> Self {
@@ -87,6 +91,9 @@ impl Device {
             .map_or(untaught(), |overshoots| {
                 (overshoots.operate.coarse, overshoots.release.coarse)
             });
+        let broken = context.calibration.broken.clone();
+        let promises = Promises::new(context.accuracy, broken);
+        context.accuracy = promises.accuracy();
         Self {
             context,
             voltage_gain,
@@ -95,6 +102,7 @@ impl Device {
             coarse,
             of_lot: untaught(),
             probe_contact: Trend::default(),
+            promises,
         }
     }
 
@@ -128,6 +136,9 @@ impl Device {
         readings: &Readings,
         made: Made,
     ) -> Result<(), ReferenceFault> {
+        let noise_lsb = self.promises.promised().ai_noise_lsb;
+        let noise = reference::noise(&self.context, readings, noise_lsb);
+        self.observe(Promise::AiNoise, noise);
         let calibration = reference::conclude(
             &self.context,
             readings,
@@ -137,6 +148,7 @@ impl Device {
         )?;
         self.context.calibration = Arc::new(Calibration {
             simulated: made.simulated,
+            broken: self.promises.broken().to_vec(),
             ..calibration
         });
         Ok(())
@@ -212,6 +224,7 @@ impl Device {
     /// Learns from a part of the lot; the overshoot models take only parts that `pass`.
     pub fn learn(&mut self, record: &TestRecord, pass: bool) {
         let observed = observed(record);
+        self.watch_operations(record, pass);
         if let Some(ohm) = observed.probe_contact {
             self.probe_contact.add(ohm);
         }
@@ -246,6 +259,35 @@ impl Device {
     /// Returns [`Self::probe_contact`] once it is the mean of enough parts for an alarm.
     pub fn settled_probe_contact(&self) -> Option<Ohm> {
         self.probe_contact.settled()
+    }
+
+    /// Returns the promises of the rig's file found broken since the last call.
+    pub fn broken_promises(&mut self) -> Vec<Broken> {
+        self.promises.announce()
+    }
+
+    fn observe(&mut self, promise: Promise, residuals: Vec<Residuals>) {
+        self.promises.observe(promise, residuals);
+        self.context.accuracy = self.promises.accuracy();
+    }
+
+    /// Observes the scatter of operations: repeated ramps, and for a part that passes the residuals of both models.
+    fn watch_operations(&mut self, record: &TestRecord, pass: bool) {
+        let scatter_v = self
+            .promises
+            .promised()
+            .operation_v(self.context.relay.part.nominal_v);
+        let mut residuals: Vec<Residuals> = operation::of_repeats(record, scatter_v).collect();
+        let ramps = observed(record);
+        let models = [
+            (ramps.operate, &self.of_lot.0),
+            (ramps.release, &self.of_lot.1),
+        ];
+        let models = models.into_iter().filter(|_| pass);
+        residuals.extend(
+            models.filter_map(|(ramp, law)| operation::of_overshoot(law, &ramp?, scatter_v)),
+        );
+        self.observe(Promise::OperationScatter, residuals);
     }
 
     fn certificate(&self, serial: &str) -> Option<&ReferencePart> {

@@ -17,10 +17,12 @@ use crate::dut::em_relay::points::DigitalOut::{
     Arm, CoilDrive, KelvinTest, RampMode, ReferenceCoil, ReferenceContact, SourceOn, SourceReverse,
 };
 use crate::dut::em_relay::points::{AnalogIn, Points};
+use crate::dut::em_relay::promise::noise;
 use crate::dut::em_relay::readings::{CoilScan, Readings};
 use crate::dut::em_relay::timing::counts;
 use crate::gauge::Factor;
 use crate::gauge::budget::rectangular;
+use crate::gauge::evidence::Residuals;
 use crate::instrument::act;
 use crate::instrument::readings::Readings as ByPoint;
 use crate::rig::point::AnalogInput;
@@ -160,6 +162,20 @@ fn pulses(acts: &mut Vec<Act>) {
         acts.extend(pulse.clone());
     }
     acts.push(Act::Read(Read::Gates));
+}
+
+/// Returns the residuals of all conversions of a constant voltage, against the promised noise.
+pub fn noise(context: &Context, readings: &ByPoint, noise_lsb: f64) -> Vec<Residuals> {
+    let readings = Readings::of(readings, &context.points, None);
+    let levels = [0, SCANS, 2 * SCANS, 3 * SCANS, 4 * SCANS + RAMP_SCANS];
+    let scans = levels.into_iter();
+    let scans = scans.filter_map(|from| readings.coil.get(from..from + SCANS));
+    let drops = readings.drops.chunks(DROPS);
+    let drops = drops.filter_map(|drops| noise::of_constant(drops.iter(), noise_lsb));
+    scans
+        .flat_map(|scans| noise::of_scans(scans, noise_lsb))
+        .chain(drops)
+        .collect()
 }
 
 /// Returns the mean of one channel over scans; fails when a scan lacks it.
@@ -306,6 +322,7 @@ pub fn conclude(
         coil_input,
         overshoots: None,
         probe_contact_ohm: 0.0,
+        broken: Vec::new(),
     })
 }
 

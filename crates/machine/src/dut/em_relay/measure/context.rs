@@ -18,7 +18,7 @@ use std::sync::Arc;
 use units::{Celsius, Ohm, Span};
 
 /// Resolution of a +-10 V input of 12 bits, volts per step.
-const LSB_V: f64 = 20.0 / 4096.0;
+pub const LSB_V: f64 = 20.0 / 4096.0;
 
 /// Assumed overshoot of a 96 V/s ramp before the first reference part, volts; it only places the first fine ramp.
 const UNTAUGHT_OPERATE_V: f64 = 0.85;
