@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 pub struct Args(BTreeMap<Cow<'static, str>, String>);
 
 /// Arguments whose values are codes: `bin` = `coil` becomes the text `bin-coil`, `needed_role` uses the family `role`.
-const NAMES: [&str; 11] = [
+const NAMES: [&str; 12] = [
     "alarm",
     "bin",
     "characteristic",
@@ -22,6 +22,7 @@ const NAMES: [&str; 11] = [
     "interruption",
     "place",
     "motion",
+    "promise",
     "side",
     "wears",
     "found_role",

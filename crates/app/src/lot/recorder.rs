@@ -129,8 +129,12 @@ impl Recorder {
                 }
             }
             Event::Calibrated(calibration) => self.calibrated(calibration, &lot.context)?,
-            // `PartDone` covers a landed part.
-            Event::State(_) | Event::Left(_) | Event::Landed(_) | Event::LotBegan(_) => {}
+            // `PartDone` covers a landed part, the alarm a broken promise.
+            Event::State(_)
+            | Event::Left(_)
+            | Event::Landed(_)
+            | Event::LotBegan(_)
+            | Event::PromiseBroken(_) => {}
         }
         Ok(())
     }

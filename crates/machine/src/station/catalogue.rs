@@ -2,6 +2,7 @@
 //!
 //! The catalogue of texts holds cause, consequence and action as attributes of the code.
 
+use crate::dut::promise::Promise;
 use crate::handling::moves::ActuatorKey;
 use crate::handling::wear::Wearing;
 use std::fmt;
@@ -161,6 +162,8 @@ codes! {
     ProbeContact = "probe_contact", Nothing, Operator;
     /// Probes or jaws have reached their limit of uses.
     Worn of Wearing = "worn", Nothing, Operator;
+    /// A promise of the rig's file does not hold.
+    PromiseBroken of Promise = "promise_broken", Nothing, Operator;
     /// The stored calibration is not valid for a lot.
     CalibrationInvalid = "calibration_invalid", Abort, Operator;
 }

@@ -4,6 +4,7 @@ use super::orders::{Order, Refused};
 use super::packml::Command;
 use super::trouble::Alarm;
 use crate::dut::Calibration;
+use crate::dut::promise::Broken;
 use crate::handling::output::{Commands, NestDone, PartEvents};
 use crate::handling::trouble::Trouble;
 use crate::rig::image::Image;
@@ -74,6 +75,8 @@ pub struct Record {
     pub alarms_changed: bool,
     /// A complete calibration.
     pub calibrated: Option<Calibration>,
+    /// Promises of rig and recipe found broken in this turn.
+    pub broken: Vec<Broken>,
     /// Result of a reference check.
     pub checked: Option<Checked>,
     /// True when the lot itself begins, after calibration and reference parts.

@@ -9,20 +9,23 @@ use super::measure::{Context, Observed, Test};
 use super::overshoot::OvershootModel;
 use super::points::{AnalogOut, Points};
 use super::probe_contact::Trend;
+use super::promise::{Promises, closure, operation};
 use super::recipe::RelayRecipe;
 use super::reference;
 use super::reference_part::{self, Misfit, ReferenceRun};
 use super::settings::ReferencePart;
 use super::threshold::Direction;
 use crate::dut::device::{CalibrationFault, DeviceUnderTest, Made, Rig, TestOrder};
+use crate::dut::promise::{Broken, Promise};
 use crate::dut::record::{Own, TestRecord};
 use crate::dut::{self, Procedure, Recipe};
 use crate::gauge::budget::COVERAGE_FACTOR;
+use crate::gauge::evidence::Residuals;
 use crate::instrument::act::Act;
 use crate::instrument::readings::Readings;
 use crate::rig::point::MissingPoint;
 use std::sync::Arc;
-use units::{Ohm, RigTime};
+use units::{Ohm, RigTime, Volt};
 
 /// A relay recipe on a rig.
 #[derive(Debug, Clone)]
@@ -35,6 +38,7 @@ pub struct Device {
     /// The same models, learned from parts of this lot alone.
     of_lot: (OvershootModel, OvershootModel),
     probe_contact: Trend,
+    promises: Promises,
 }
 
 impl Device {
@@ -76,13 +80,15 @@ impl Device {
         Ok(Self::of(context, certificates.collect()))
     }
 
-    pub(super) fn of(context: Context, certificates: Vec<ReferencePart>) -> Self {
+    pub(super) fn of(mut context: Context, certificates: Vec<ReferencePart>) -> Self {
         let coarse = context
             .calibration
             .overshoots
             .map_or(context.assumed_models(), |overshoots| {
                 (overshoots.operate.coarse, overshoots.release.coarse)
             });
+        let promises = Promises::new(&context);
+        promises.apply(&mut context);
         Self {
             of_lot: context.assumed_models(),
             context,
@@ -90,7 +96,44 @@ impl Device {
             reference_parts: ReferenceRun::default(),
             coarse,
             probe_contact: Trend::default(),
+            promises,
         }
+    }
+
+    fn observe(&mut self, promise: Promise, residuals: impl IntoIterator<Item = Residuals>) {
+        self.promises.observe(promise, residuals);
+        self.promises.apply(&mut self.context);
+    }
+
+    /// Observes the scatter of operations, by repeated ramps and for a part that passes by the residuals of both models,
+    /// and the scatter of closures of a part that passes.
+    fn watch(&mut self, record: &TestRecord, pass: bool) {
+        let scale = self.context.scale();
+        let scatter = self.promises.promised(Promise::OperationScatter) / 1e3;
+        let scatter = scale.of_coil(Volt(scatter));
+        self.observe(
+            Promise::OperationScatter,
+            operation::of_repeats(record, scatter).collect::<Vec<_>>(),
+        );
+        if !pass {
+            return;
+        }
+        let ramps = observed(record);
+        let models = [
+            (ramps.operate, &self.of_lot.0),
+            (ramps.release, &self.of_lot.1),
+        ];
+        let both = (scatter, scale.of_coil(operation::MODEL));
+        let residuals = models.into_iter();
+        let residuals = residuals
+            .filter_map(|(ramp, model)| operation::of_overshoot(model, &ramp?, both))
+            .collect::<Vec<_>>();
+        self.observe(Promise::OperationScatter, residuals);
+        let scatter_pct = self.promises.promised(Promise::ClosureScatter);
+        self.observe(
+            Promise::ClosureScatter,
+            closure::of_closures(&ramps.nc_mohm, scatter_pct),
+        );
     }
 
     fn certificate(&self, serial: &str) -> Option<&ReferencePart> {
@@ -178,9 +221,13 @@ impl DeviceUnderTest for Device {
         readings: &Readings,
         made: Made,
     ) -> Result<(), CalibrationFault> {
+        let noise_lsb = self.promises.promised(Promise::AiNoise);
+        let noise = reference::noise(&self.context, readings, noise_lsb);
+        self.observe(Promise::AiNoise, noise);
         let calibration = reference::conclude(&self.context, readings, made.at_us, made.valid_us)?;
         self.context.calibration = Arc::new(Calibration {
             simulated: made.simulated,
+            broken: self.promises.broken(),
             ..calibration
         });
         Ok(())
@@ -188,6 +235,8 @@ impl DeviceUnderTest for Device {
 
     fn forget_calibration(&mut self) {
         self.reference_parts = ReferenceRun::default();
+        self.promises.restart();
+        self.promises.apply(&mut self.context);
         self.calibrate(|calibration| calibration.overshoots = None);
     }
 
@@ -228,6 +277,7 @@ impl DeviceUnderTest for Device {
     /// The overshoot models take only parts that `pass`, the trend of the probes takes every part.
     fn learn(&mut self, record: &TestRecord, pass: bool) {
         let observed = observed(record);
+        self.watch(record, pass);
         if let Some(ohm) = observed.probe_contact {
             self.probe_contact.add(ohm);
         }
@@ -247,6 +297,10 @@ impl DeviceUnderTest for Device {
 
     fn probe_contact(&self) -> Option<Ohm> {
         self.probe_contact.mean()
+    }
+
+    fn broken_promises(&mut self) -> Vec<Broken> {
+        self.promises.announce()
     }
 
     /// Less what the calibration of the supply level leaves in doubt (k = 2): an ohm cannot be told from the error of the
