@@ -141,7 +141,7 @@ pub trait DeviceUnderTest {
     ///
     /// # Errors
     /// Names the result that does not agree.
-    fn check(&self, serial: &str, _record: &TestRecord) -> Result<(), CalibrationFault> {
+    fn check(&mut self, serial: &str, _record: &TestRecord) -> Result<(), CalibrationFault> {
         panic!("{NO_REFERENCE_PARTS}: {serial}")
     }
 

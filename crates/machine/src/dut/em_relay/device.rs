@@ -9,7 +9,7 @@ use super::measure::{Context, Observed, Test};
 use super::overshoot::OvershootModel;
 use super::points::{AnalogOut, Points};
 use super::probe_contact::Trend;
-use super::promise::{Promises, closure, operation};
+use super::promise::Promises;
 use super::recipe::RelayRecipe;
 use super::reference;
 use super::reference_part::{self, Misfit, ReferenceRun};
@@ -20,12 +20,11 @@ use crate::dut::promise::{Broken, Promise};
 use crate::dut::record::{Own, TestRecord};
 use crate::dut::{self, Procedure, Recipe};
 use crate::gauge::budget::COVERAGE_FACTOR;
-use crate::gauge::evidence::Residuals;
 use crate::instrument::act::Act;
 use crate::instrument::readings::Readings;
 use crate::rig::point::MissingPoint;
 use std::sync::Arc;
-use units::{Ohm, RigTime, Volt};
+use units::{Ohm, RigTime};
 
 /// A relay recipe on a rig.
 #[derive(Debug, Clone)]
@@ -100,40 +99,21 @@ impl Device {
         }
     }
 
-    fn observe(&mut self, promise: Promise, residuals: impl IntoIterator<Item = Residuals>) {
-        self.promises.observe(promise, residuals);
+    /// Observes the promises that the repeats of any part show.
+    fn watch(&mut self, record: &TestRecord) {
+        let scale = self.context.scale();
+        self.promises.watch_repeats(record, scale);
         self.promises.apply(&mut self.context);
     }
 
-    /// Observes the scatter of operations, by repeated ramps and for a part that passes by the residuals of both models,
-    /// and the scatter of closures of a part that passes.
-    fn watch(&mut self, record: &TestRecord, pass: bool) {
-        let scale = self.context.scale();
-        let scatter = self.promises.promised(Promise::OperationScatter) / 1e3;
-        let scatter = scale.of_coil(Volt(scatter));
-        self.observe(
-            Promise::OperationScatter,
-            operation::of_repeats(record, scatter).collect::<Vec<_>>(),
-        );
-        if !pass {
-            return;
-        }
-        let ramps = observed(record);
-        let models = [
-            (ramps.operate, &self.of_lot.0),
-            (ramps.release, &self.of_lot.1),
-        ];
-        let both = (scatter, scale.of_coil(operation::MODEL));
-        let residuals = models.into_iter();
-        let residuals = residuals
-            .filter_map(|(ramp, model)| operation::of_overshoot(model, &ramp?, both))
-            .collect::<Vec<_>>();
-        self.observe(Promise::OperationScatter, residuals);
-        let scatter_pct = self.promises.promised(Promise::ClosureScatter);
-        self.observe(
-            Promise::ClosureScatter,
-            closure::of_closures(&ramps.nc_mohm, scatter_pct),
-        );
+    /// Observes the promises that a good part of the lot shows.
+    fn watch_good(&mut self, record: &TestRecord) {
+        let (observed, scale) = (observed(record), self.context.scale());
+        let (operate, release) = &self.of_lot;
+        self.promises.watch_closures(observed);
+        self.promises
+            .watch_overshoots(observed, [operate, release], scale);
+        self.promises.apply(&mut self.context);
     }
 
     fn certificate(&self, serial: &str) -> Option<&ReferencePart> {
@@ -223,7 +203,8 @@ impl DeviceUnderTest for Device {
     ) -> Result<(), CalibrationFault> {
         let noise_lsb = self.promises.promised(Promise::AiNoise);
         let noise = reference::noise(&self.context, readings, noise_lsb);
-        self.observe(Promise::AiNoise, noise);
+        self.promises.observe(Promise::AiNoise, noise);
+        self.promises.apply(&mut self.context);
         let calibration = reference::conclude(&self.context, readings, made.at_us, made.valid_us)?;
         self.context.calibration = Arc::new(Calibration {
             simulated: made.simulated,
@@ -247,6 +228,7 @@ impl DeviceUnderTest for Device {
         last: bool,
     ) -> Result<Option<dut::Calibration>, CalibrationFault> {
         let observed = observed(record);
+        self.watch(record);
         self.learn_ramps(observed, false);
         let part = self.certified(serial)?.clone();
         let reference = self.context.reference_temperature();
@@ -277,7 +259,10 @@ impl DeviceUnderTest for Device {
     /// The overshoot models take only parts that `pass`, the trend of the probes takes every part.
     fn learn(&mut self, record: &TestRecord, pass: bool) {
         let observed = observed(record);
-        self.watch(record, pass);
+        self.watch(record);
+        if pass {
+            self.watch_good(record);
+        }
         if let Some(ohm) = observed.probe_contact {
             self.probe_contact.add(ohm);
         }
@@ -291,7 +276,8 @@ impl DeviceUnderTest for Device {
         });
     }
 
-    fn check(&self, serial: &str, record: &TestRecord) -> Result<(), CalibrationFault> {
+    fn check(&mut self, serial: &str, record: &TestRecord) -> Result<(), CalibrationFault> {
+        self.watch(record);
         Ok(reference_part::check(self.certified(serial)?, record)?)
     }
 

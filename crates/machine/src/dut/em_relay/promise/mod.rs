@@ -8,8 +8,9 @@
 //!
 //! From the alarm on, budgets use the larger value; parts judged before keep theirs.
 
-pub mod closure;
-pub mod operation;
+mod closure;
+mod operation;
+mod watch;
 
 use super::measure::Context;
 use crate::dut::promise::{Broken, Promise};
