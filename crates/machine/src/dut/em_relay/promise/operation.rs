@@ -12,6 +12,9 @@ use units::Volt;
 const TAUGHT: u32 = 8;
 /// Standard deviation that a taught overshoot model leaves without any scatter of operations, of a 12 V coil.
 pub const REST: Volt = Volt(0.003);
+/// Greatest ratio of the factors of range and coil at which [`REST`] holds: a ramp that is steeper for its coil leaves more
+/// than operations scatter, as that of a 3 V coil does.
+pub const STEEPEST: f64 = 1.5;
 /// Largest residual that counts, in promised standard deviations: now and then a part lies far off the model, which says
 /// nothing of operations.
 const OUTLIER: f64 = 3.5;

@@ -24,13 +24,17 @@ impl Promises {
         self.observe(Promise::ClosureScatter, closures);
     }
 
-    /// Observes the scatter of operations of a good part by what the models of both overshoots, operate and release, leave.
+    /// Observes the scatter of operations of a good part by what the models of both overshoots, operate and release, leave;
+    /// not where the ramp is too steep for the coil.
     pub fn watch_overshoots(
         &mut self,
         observed: &Observed,
         models: [&OvershootModel; 2],
         scale: Scale,
     ) {
+        if scale.range() > operation::STEEPEST * scale.coil() {
+            return;
+        }
         let scatters = (self.scatter(scale), scale.of_coil(operation::REST));
         let ramps = [observed.operate, observed.release].into_iter();
         let of = |(ramp, model): (Option<Ramp>, &OvershootModel)| {
