@@ -21,6 +21,8 @@ use studies::{Order, Report, Study};
   relayrig study cycle --out figures
   relayrig study collision --out figures
   relayrig study accuracy --seeds 2 --parts 50 --recipe jzc-22f-009
+  relayrig study promises --seeds 20 --lots 600
+  relayrig study promises --term operation_scatter_mv --lots 0
   relayrig study storm --seeds 10000
   relayrig study storm --seeds 1000 --from 10001
   relayrig study storm --seed 17
@@ -46,6 +48,12 @@ pub struct StudyArgs {
     /// Only this seed of `storm`
     #[arg(long, value_name = "S", conflicts_with = "seeds")]
     pub seed: Option<u64>,
+    /// Lots of `promises` in worlds that keep every promise
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    pub lots: u64,
+    /// Only this broken promise of `promises`
+    #[arg(long, value_name = "KEY")]
+    pub term: Option<String>,
     /// Parts of each lot
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub parts: Option<u64>,
@@ -97,6 +105,8 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<Exit> {
         from: args.from.unwrap_or(1),
         seed: args.seed,
         parts: args.parts.unwrap_or(parts),
+        kept: args.lots,
+        term: args.term.clone(),
     };
     let report = wanted.report(&order)?;
     if let (Study::Cycle, Some(folder)) = (wanted, &args.out) {

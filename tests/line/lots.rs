@@ -415,3 +415,23 @@ fn a_diode_recipe_times_the_release_into_the_diode() {
         assert!(found_ms > 8.0 && off_ms < 0.05, "{part} {truth}");
     }
 }
+
+#[test]
+fn a_rig_noisier_than_promised_gets_a_wider_uncertainty() {
+    let workshop = Workshop::new("lots_noisy");
+    workshop.change(
+        "config/sim.toml",
+        "ai_noise_lsb = 0.5 ",
+        "ai_noise_lsb = 1.0 ",
+    );
+    let lot = run_in(workshop, "jzc-22f-012", 3, "--seed 1");
+    let broken = &lot.summary["broken_promises"][0];
+    assert_eq!(text(broken, "promise"), "ai_noise", "{}", lot.summary);
+    assert_eq!(broken["after_parts"], 0);
+    let seen_lsb = broken["seen"].as_f64().unwrap();
+    assert!((0.9..1.1).contains(&seen_lsb), "{broken}");
+    let alarms = lot.workshop.texts("SELECT code FROM alarm");
+    assert_eq!(alarms, ["ai_noise_promise_broken"]);
+    let u = |lot: &Lot| lot.parts[0]["uncertainty"]["contact_resistance_no_mohm"].as_f64();
+    assert!(u(&lot) > u(twelve()).map(|it| 1.5 * it), "{:?}", u(&lot));
+}

@@ -37,6 +37,7 @@ mod pace;
 mod parameters;
 mod path;
 mod pool;
+mod promises;
 mod risk;
 mod scatter;
 mod stop;
@@ -86,6 +87,8 @@ pub enum Study {
     Pace,
     /// Good parts rejected, defects by bin, over many lots
     Sorting,
+    /// Whether a rig that breaks a promise of its files is noticed, or its results still covered; false alarms
+    Promises,
     /// Short lots under random faults, orders and kills: bodies, rows, motions and endings
     Storm,
     /// Error of times and bounce: latched and raw gates, reference clock, gate delay
@@ -109,6 +112,7 @@ impl Study {
             Self::History => (1, 1_000_000),
             Self::Kill => (300, 1),
             Self::Pace => (3, 300),
+            Self::Promises => (2, 60),
             Self::Sorting => (100, 110),
             Self::Storm => (200, 4),
             Self::Stop => (16, 25),
@@ -131,6 +135,7 @@ impl Study {
             Self::History => history::study(order),
             Self::Kill => kill::study(order),
             Self::Pace => pace::study(order),
+            Self::Promises => promises::study(order),
             Self::Sorting => bins::study(order),
             Self::Stop => stop::study(order),
             Self::Storm => storm::study(order),

@@ -134,9 +134,24 @@ pub struct Summary {
     /// Hash of all bytes on each line, by name of the line.
     #[serde(default)]
     pub bytes: BTreeMap<String, String>,
+    /// Promises of rig and recipe that the run found broken.
+    #[serde(default)]
+    pub broken_promises: Vec<BrokenPromise>,
+    /// `complete`, `stopped` or `alarm`.
+    #[serde(default)]
+    pub ended: String,
     /// Wall time by activity, seconds.
     #[serde(default)]
     pub wall_profile: BTreeMap<String, f64>,
+}
+
+/// A promise that a run found broken.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct BrokenPromise {
+    /// Name of the promise.
+    pub promise: String,
+    /// Parts of the lot judged before.
+    pub after_parts: u64,
 }
 
 /// One lot.

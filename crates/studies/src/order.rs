@@ -36,6 +36,10 @@ pub struct Order {
     pub seed: Option<u64>,
     /// Parts of each lot.
     pub parts: u64,
+    /// Lots in worlds that keep every promise; only `promises` reads it.
+    pub kept: u64,
+    /// The only broken promise; only `promises` reads it.
+    pub term: Option<String>,
 }
 
 impl Order {

@@ -173,7 +173,11 @@ fn set(table: &mut Table, path: &str, value: Value) -> anyhow::Result<()> {
     }
 }
 
-fn table(path: &Path) -> anyhow::Result<Table> {
+/// Reads a TOML file.
+///
+/// # Errors
+/// A file that cannot be read, or that is not TOML.
+pub fn table(path: &Path) -> anyhow::Result<Table> {
     let named = || path.display().to_string();
     let text = std::fs::read_to_string(path).with_context(named)?;
     text.parse().with_context(named)

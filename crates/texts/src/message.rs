@@ -15,7 +15,7 @@ pub struct Args(BTreeMap<Cow<'static, str>, String>);
 
 /// Arguments whose values are codes: `bin` = `coil` shows the text `bin-coil`; `needed_role` shows a text of family
 /// `role`.
-const NAMES: [&str; 11] = [
+const NAMES: [&str; 12] = [
     "alarm",
     "bin",
     "characteristic",
@@ -23,6 +23,7 @@ const NAMES: [&str; 11] = [
     "interruption",
     "place",
     "motion",
+    "promise",
     "side",
     "wears",
     "found_role",

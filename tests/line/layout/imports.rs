@@ -18,6 +18,7 @@ const PURE: &[(&str, &[&str])] = &[
             "lpm",
             "serde",
             "serde_json",
+            "statrs",
             "texts",
             "thiserror",
             "toml",

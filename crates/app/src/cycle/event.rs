@@ -1,6 +1,7 @@
 //! Events of a run for the history.
 
 use machine::dut::Calibration;
+use machine::dut::promise::Broken;
 use machine::handling::inside::Inside;
 use machine::handling::output::{Interrupted, Judged, Landed, NestExit};
 use machine::handling::wear::Uses;
@@ -30,6 +31,8 @@ pub enum Event {
     ListedAlarms(Vec<ListedAlarm>, RigTime),
     /// The rig is calibrated: references and reference parts are measured.
     Calibrated(Box<Calibration>),
+    /// Rig or parts scatter more than promised; later parts have the larger uncertainty.
+    PromiseBroken(Broken),
     /// A reference check ended with this result, at this rig time.
     Checked(Checked, RigTime),
     /// The station answered an order, at this rig time.

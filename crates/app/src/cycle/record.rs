@@ -22,6 +22,9 @@ impl Cycle {
         if let Some(calibration) = output.record.calibrated.take() {
             self.send(Event::Calibrated(Box::new(calibration)));
         }
+        for broken in output.record.broken.drain(..) {
+            self.send(Event::PromiseBroken(broken));
+        }
         if output.record.lot_began {
             self.send(Event::LotBegan(now));
         }

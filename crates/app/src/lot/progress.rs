@@ -4,7 +4,7 @@ use super::context::LotContext;
 use super::counts::Counts;
 use super::event::LotEvent;
 use super::rows;
-use super::summary::{Summary, WallProfile};
+use super::summary::{BrokenPromise, Summary, WallProfile};
 use crate::cycle::{Event, Profile};
 use crate::exit::{Cause, Exit};
 use crate::links::EepromCount;
@@ -51,6 +51,7 @@ pub struct LotProgress<'a> {
     under_way: BTreeMap<u64, PartUnderWay>,
     eeprom: EepromCount,
     eeprom_at_start: Option<u64>,
+    broken: Vec<BrokenPromise>,
     /// First alarm of the present trouble; without present trouble, the last alarm.
     trouble: Option<Alarm>,
 }
@@ -68,6 +69,7 @@ impl<'a> LotProgress<'a> {
             under_way: BTreeMap::new(),
             eeprom,
             eeprom_at_start: None,
+            broken: Vec::new(),
             trouble: None,
         }
     }
@@ -111,6 +113,10 @@ impl<'a> LotProgress<'a> {
                 self.lot_began = Some(*at);
                 self.eeprom_at_start = (self.eeprom)();
             }
+            Event::PromiseBroken(broken) => self.broken.push(BrokenPromise {
+                after_parts: self.counts.parts(),
+                broken: *broken,
+            }),
             Event::State(_)
             | Event::Calibrated(_)
             | Event::Checked(..)
@@ -192,6 +198,7 @@ impl<'a> LotProgress<'a> {
         let eeprom = self.eeprom_at_start.zip((self.eeprom)());
         let mut summary = Summary::new(&self.counts, (ending, cause), elapsed_s, wall, logs);
         summary.eeprom_writes = eeprom.map(|(before, after)| after - before);
+        summary.broken_promises = self.broken.clone();
         summary.bodies_watched = self.context.source.bodies_watched();
         summary.wall_profile = WallProfile::new(profile, writing, wall);
         summary

@@ -123,8 +123,12 @@ impl Recorder {
                 }
             }
             Event::Calibrated(calibration) => self.calibrated(calibration, &lot.context)?,
-            // The rows of a landed part come with `PartDone`.
-            Event::State(_) | Event::Left(_) | Event::Landed(_) | Event::LotBegan(_) => {}
+            // The rows of a landed part come with `PartDone`, that of a broken promise with its alarm.
+            Event::State(_)
+            | Event::Left(_)
+            | Event::Landed(_)
+            | Event::LotBegan(_)
+            | Event::PromiseBroken(_) => {}
         }
         Ok(())
     }

@@ -5,6 +5,7 @@ use super::rows::rounded;
 use crate::cycle::Profile;
 use crate::exit::Cause;
 use bus::LineLog;
+use machine::dut::promise::Broken;
 use machine::station::turn::Ending;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -44,6 +45,9 @@ pub struct Summary {
     /// True when the simulated rig checks bodies for contact; absent on a real rig.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bodies_watched: Option<bool>,
+    /// Promises of rig and recipe that did not hold.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub broken_promises: Vec<BrokenPromise>,
     /// Wall time by phase of the control cycle.
     pub wall_profile: WallProfile,
     /// Fingerprint of all bytes that passed on each line, by the name of the line.
@@ -74,6 +78,7 @@ impl Summary {
             cause: cause.cloned(),
             eeprom_writes: None,
             bodies_watched: None,
+            broken_promises: Vec::new(),
             wall_profile: WallProfile::default(),
             bytes: logs
                 .iter()
@@ -81,6 +86,16 @@ impl Summary {
                 .collect(),
         }
     }
+}
+
+/// A promise that did not hold, and since when.
+#[derive(Debug, Clone, Serialize)]
+pub struct BrokenPromise {
+    /// Parts of the lot judged before, with the uncertainty that was promised.
+    pub after_parts: u64,
+    /// Promise, what is seen of it, and the value that the uncertainty of later parts contains.
+    #[serde(flatten)]
+    pub broken: Broken,
 }
 
 /// Wall time of a run by phase, seconds.

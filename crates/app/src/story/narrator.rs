@@ -86,7 +86,8 @@ impl Narrator {
             | Event::Checked(..)
             | Event::Ordered(..)
             | Event::Inside(..)
-            | Event::Calibrated(_) => {}
+            | Event::Calibrated(_)
+            | Event::PromiseBroken(_) => {}
         }
     }
 

@@ -194,7 +194,8 @@ impl Observed {
             | Event::Checked(..)
             | Event::Ordered(..)
             | Event::Inside(..)
-            | Event::Calibrated(_) => {}
+            | Event::Calibrated(_)
+            | Event::PromiseBroken(_) => {}
         }
     }
 

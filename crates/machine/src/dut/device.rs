@@ -5,6 +5,7 @@ use super::calibration::Calibration;
 use super::em_relay;
 use super::em_relay::settings::{ReferenceSet, ReferenceSettings};
 use super::procedure::Procedure;
+use super::promise::Broken;
 use super::record::TestRecord;
 use super::resistor;
 use crate::instrument::act::Act;
@@ -142,8 +143,13 @@ pub trait DeviceUnderTest {
     ///
     /// # Errors
     /// Fails with the result that disagrees with the certificate.
-    fn check(&self, serial: &str, _record: &TestRecord) -> Result<(), CalibrationFault> {
+    fn check(&mut self, serial: &str, _record: &TestRecord) -> Result<(), CalibrationFault> {
         panic!("{NO_REFERENCE_PARTS}: {serial}")
+    }
+
+    /// Returns the promises of `rig.toml` and the recipe found broken since the last call.
+    fn broken_promises(&mut self) -> Vec<Broken> {
+        Vec::new()
     }
 
     /// Returns the resistance of the probes in series with the part, mean over the last parts of the lot; none before

@@ -14,6 +14,7 @@ pub mod instruments;
 pub mod keys;
 pub mod made_up;
 pub mod procedure;
+pub mod promise;
 pub mod reason;
 pub mod recipe;
 pub mod record;

@@ -4,10 +4,12 @@
 //! no part, bus, clock or sequence.
 
 pub mod budget;
+pub mod evidence;
 pub mod factor;
 pub mod judgement;
 pub mod repetition;
 
 pub use budget::{Budget, Reading};
+pub use evidence::Evidence;
 pub use factor::Factor;
 pub use judgement::{Judgement, Limit, Rule, Side, judge};

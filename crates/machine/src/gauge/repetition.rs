@@ -24,7 +24,7 @@ const STUDENT: [f64; 10] = [13.97, 4.53, 3.31, 2.87, 2.65, 2.52, 2.43, 2.37, 2.3
 
 /// Returns the factor that widens a standard deviation with `freedom` degrees of freedom. Beyond the table t - 2 falls
 /// in proportion to 1 / `freedom`, accurate to a hundredth.
-fn student(freedom: usize) -> f64 {
+pub fn student(freedom: usize) -> f64 {
     let listed = STUDENT.get(freedom.saturating_sub(1)).copied();
     listed.map_or(1.0 + 1.4 / freedom as f64, |t| t / COVERAGE_FACTOR)
 }

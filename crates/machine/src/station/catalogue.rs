@@ -2,6 +2,7 @@
 //!
 //! The catalogue of texts holds cause, consequence and action as attributes of the code.
 
+use crate::dut::promise::Promise;
 use crate::handling::wear::Wearing;
 use crate::rig::stroke::ActuatorKey;
 use std::fmt;
@@ -165,6 +166,8 @@ codes! {
     ProbeContact = "probe_contact", Nothing, Operator;
     /// The use count of the probes or the jaws has reached its limit.
     Worn of Wearing = "worn", Nothing, Operator;
+    /// A promise of the rig's file does not hold.
+    PromiseBroken of Promise = "promise_broken", Nothing, Operator;
     /// The stored calibration is not valid for a lot.
     CalibrationInvalid = "calibration_invalid", Abort, Operator;
 }

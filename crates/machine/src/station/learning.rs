@@ -56,6 +56,10 @@ impl Station {
                 }
             }
         }
+        let broken = self.device.broken_promises();
+        let alarms = broken.iter().map(Alarm::promise_broken);
+        outcome.trouble.extend(alarms);
+        output.record.broken = broken;
         output.notes.trouble.extend(outcome.trouble);
         output.record.checked = outcome.checked;
     }

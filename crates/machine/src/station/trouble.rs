@@ -3,6 +3,7 @@
 mod parts;
 
 use super::catalogue::AlarmCode;
+use crate::dut::promise::Broken;
 use crate::handling::Move;
 use crate::handling::trouble::Trouble;
 use crate::handling::wear::Wearing;
@@ -192,6 +193,18 @@ impl Alarm {
             .with("wears", what.name())
             .with("count", count)
             .with("limit", limit)
+    }
+
+    /// Returns the alarm that the rig scatters more than its file or the recipe promises.
+    pub fn promise_broken(broken: &Broken) -> Self {
+        Self::from(AlarmCode::PromiseBroken(broken.promise))
+            .with("promise", broken.promise.name())
+            .with("key", broken.promise.key())
+            .with("promised", broken.promised)
+            .with("seen", format!("{:.2}", broken.seen))
+            .with("low", format!("{:.2}", broken.interval.0))
+            .with("high", format!("{:.2}", broken.interval.1))
+            .with("freedom", format!("{:.0}", broken.freedom))
     }
 
     /// Returns the alarm that an interrupted calibration has left its channel mask in a module.

@@ -4,6 +4,7 @@ use super::orders::{Order, Refused};
 use super::packml::Command;
 use super::trouble::Alarm;
 use crate::dut::Calibration;
+use crate::dut::promise::Broken;
 use crate::handling::output::{Commands, NestDone, PartEvents};
 use crate::handling::trouble::Trouble;
 use crate::rig::image::Image;
@@ -101,6 +102,8 @@ pub struct Record {
     pub alarms_changed: bool,
     /// Calibration that was completed in this turn.
     pub calibrated: Option<Calibration>,
+    /// Promises of rig and recipe found broken in this turn.
+    pub broken: Vec<Broken>,
     /// Result of the reference check that ended in this turn.
     pub checked: Option<Checked>,
     /// True when the lot itself begins, after calibration and reference parts.

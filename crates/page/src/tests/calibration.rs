@@ -37,6 +37,7 @@ fn made(at_us: i64, simulated: bool, nominal_v: f64) -> CalibrationRecord {
         fine_v_per_s: known,
         overshoots: None,
         probe_contact_ohm: 0.0,
+        broken: Vec::new(),
     });
     let body = body.unwrap();
     CalibrationRecord {

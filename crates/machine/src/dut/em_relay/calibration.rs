@@ -9,6 +9,7 @@ use super::overshoot::OvershootModel;
 use super::recipe::CoilChannels;
 use super::threshold::Direction;
 use crate::dut::calibration::CalibrationFacts;
+use crate::dut::promise::Broken;
 use crate::gauge::Factor;
 use crate::gauge::factor::Named;
 use serde::{Deserialize, Serialize};
@@ -174,6 +175,9 @@ pub struct Calibration {
     /// contains it. 0 when unknown.
     #[serde(default)]
     pub probe_contact_ohm: f64,
+    /// Promises of the rig's file that the calibration has disproved.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub broken: Vec<Broken>,
 }
 
 impl Calibration {
@@ -202,6 +206,7 @@ impl Calibration {
             fine_v_per_s: unknown,
             overshoots: None,
             probe_contact_ohm: 0.0,
+            broken: Vec::new(),
         }
     }
 

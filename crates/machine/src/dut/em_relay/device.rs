@@ -9,12 +9,14 @@ use super::measure::{Context, Observed, Test};
 use super::overshoot::OvershootModel;
 use super::points::{AnalogOut, Points};
 use super::probe_contact::Trend;
+use super::promise::Promises;
 use super::recipe::RelayRecipe;
 use super::reference;
 use super::reference_part::{self, Misfit, ReferenceRun};
 use super::settings::ReferencePart;
 use super::threshold::Direction;
 use crate::dut::device::{CalibrationFault, DeviceUnderTest, Made, Rig, TestOrder};
+use crate::dut::promise::{Broken, Promise};
 use crate::dut::record::{Own, TestRecord};
 use crate::dut::{self, Procedure, Recipe};
 use crate::gauge::budget::COVERAGE_FACTOR;
@@ -36,6 +38,7 @@ pub struct Device {
     /// The same models, learned from parts of this lot alone.
     of_lot: (OvershootModel, OvershootModel),
     probe_contact: Trend,
+    promises: Promises,
 }
 
 impl Device {
@@ -77,13 +80,15 @@ impl Device {
         Ok(Self::of(context, certificates.collect()))
     }
 
-    pub(super) fn of(context: Context, certificates: Vec<ReferencePart>) -> Self {
+    pub(super) fn of(mut context: Context, certificates: Vec<ReferencePart>) -> Self {
         let coarse = context
             .calibration
             .overshoots
             .map_or(context.assumed_models(), |overshoots| {
                 (overshoots.operate.coarse, overshoots.release.coarse)
             });
+        let promises = Promises::new(&context);
+        promises.apply(&mut context);
         Self {
             of_lot: context.assumed_models(),
             context,
@@ -91,7 +96,25 @@ impl Device {
             reference_parts: ReferenceRun::default(),
             coarse,
             probe_contact: Trend::default(),
+            promises,
         }
+    }
+
+    /// Observes the promises that the repeats of any part show.
+    fn watch(&mut self, record: &TestRecord) {
+        let scale = self.context.scale();
+        self.promises.watch_repeats(record, scale);
+        self.promises.apply(&mut self.context);
+    }
+
+    /// Observes the promises that a good part of the lot shows.
+    fn watch_good(&mut self, record: &TestRecord) {
+        let (observed, scale) = (observed(record), self.context.scale());
+        let (operate, release) = &self.of_lot;
+        self.promises.watch_closures(observed);
+        self.promises
+            .watch_overshoots(observed, [operate, release], scale);
+        self.promises.apply(&mut self.context);
     }
 
     fn certificate(&self, serial: &str) -> Option<&ReferencePart> {
@@ -179,9 +202,14 @@ impl DeviceUnderTest for Device {
         readings: &Readings,
         made: Made,
     ) -> Result<(), CalibrationFault> {
+        let noise_lsb = self.promises.promised(Promise::AiNoise);
+        let noise = reference::noise(&self.context, readings, noise_lsb);
+        self.promises.observe(Promise::AiNoise, noise);
+        self.promises.apply(&mut self.context);
         let calibration = reference::conclude(&self.context, readings, made.at_us, made.valid_us)?;
         self.context.calibration = Arc::new(Calibration {
             simulated: made.simulated,
+            broken: self.promises.broken(),
             ..calibration
         });
         Ok(())
@@ -189,6 +217,8 @@ impl DeviceUnderTest for Device {
 
     fn forget_calibration(&mut self) {
         self.reference_parts = ReferenceRun::default();
+        self.promises.restart();
+        self.promises.apply(&mut self.context);
         self.calibrate(|calibration| calibration.overshoots = None);
     }
 
@@ -199,6 +229,7 @@ impl DeviceUnderTest for Device {
         last: bool,
     ) -> Result<Option<dut::Calibration>, CalibrationFault> {
         let observed = observed(record);
+        self.watch(record);
         self.learn_ramps(observed, false);
         let part = self.certified(serial)?.clone();
         let reference = self.context.reference_temperature();
@@ -229,6 +260,10 @@ impl DeviceUnderTest for Device {
     /// Only parts that `pass` teach the overshoot models; every part adds to the trend of the probe contact.
     fn learn(&mut self, record: &TestRecord, pass: bool) {
         let observed = observed(record);
+        self.watch(record);
+        if pass {
+            self.watch_good(record);
+        }
         if let Some(ohm) = observed.probe_contact {
             self.probe_contact.add(ohm);
         }
@@ -242,12 +277,17 @@ impl DeviceUnderTest for Device {
         });
     }
 
-    fn check(&self, serial: &str, record: &TestRecord) -> Result<(), CalibrationFault> {
+    fn check(&mut self, serial: &str, record: &TestRecord) -> Result<(), CalibrationFault> {
+        self.watch(record);
         Ok(reference_part::check(self.certified(serial)?, record)?)
     }
 
     fn probe_contact(&self) -> Option<Ohm> {
         self.probe_contact.mean()
+    }
+
+    fn broken_promises(&mut self) -> Vec<Broken> {
+        self.promises.announce()
     }
 
     /// Subtracts the expanded uncertainty (k = 2) that the gain of the supply level causes: on a coil of thousands of

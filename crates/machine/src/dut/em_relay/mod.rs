@@ -20,6 +20,7 @@
 //! | times and bounce | [`timing`] |
 //! | contact resistance | [`contact`] |
 //! | contact of the probes at the coil | [`probe_contact`] |
+//! | whether the rig keeps what its file promises | [`promise`] |
 //! | what curves prove of a part without a value | [`evidence`] |
 //! | lines of the process card | [`card`] |
 //! | figures of made-up relays, for trying a history | [`made_up`] |
@@ -41,6 +42,7 @@ pub mod overshoot;
 pub mod parameter;
 pub mod points;
 pub mod probe_contact;
+pub mod promise;
 pub mod readings;
 pub mod recipe;
 pub mod reference;

@@ -88,6 +88,8 @@ pub struct Predicted {
     pub volts: f64,
     /// Standard uncertainty, volts.
     pub u_v: f64,
+    /// Variance of the line at this part, as a multiple of the scatter about the line.
+    pub spread: f64,
     /// True when the part lies among those that taught the model.
     pub alike: bool,
 }
@@ -176,6 +178,7 @@ impl OvershootModel {
             volts: self.guess_v + dot(line, terms),
             u_v: (left / freedom * (1.0 + spread) * student).sqrt()
                 * beyond.unwrap_or(1.0).max(1.0),
+            spread,
             alike: logarithms.is_some() && beyond.is_some_and(|it| it < 1.0),
         }
     }

@@ -8,6 +8,7 @@
 mod check;
 mod fault;
 mod levels;
+mod noise;
 mod ohms;
 mod slope;
 mod taken;
@@ -15,6 +16,7 @@ mod taken;
 use check::{check_gain, check_range, check_supply};
 pub use fault::ReferenceFault;
 use levels::Levels;
+pub use noise::noise;
 use ohms::Ohms;
 use slope::slope;
 use taken::{Level, Taken, current, level};
@@ -284,6 +286,7 @@ pub fn conclude(
         coil_input: input,
         overshoots: None,
         probe_contact_ohm: 0.0,
+        broken: Vec::new(),
     })
 }
 

@@ -96,6 +96,7 @@ fn calibration() -> Calibration {
         coarse_v_per_s: exact(96.0),
         fine_v_per_s: exact(1.5),
         probe_contact_ohm: 0.0,
+        broken: Vec::new(),
         overshoots: Some(Overshoots {
             operate: overshoot(0.85),
             release: overshoot(-1.05),

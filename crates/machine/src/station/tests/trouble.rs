@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+use crate::dut::promise::{Broken, Promise};
 use crate::handling::Place;
 use crate::handling::moves::Move;
 use crate::handling::tests::wiring;
@@ -84,6 +85,9 @@ fn every_alarm() -> Vec<Alarm> {
         Alarm::worn(Wearing::Probes, 8, 8),
         Alarm::worn(Wearing::Jaws, 8, 8),
         Alarm::probe_contact(3.2, 3.0),
+        Alarm::promise_broken(&broken(Promise::AiNoise)),
+        Alarm::promise_broken(&broken(Promise::OperationScatter)),
+        Alarm::promise_broken(&broken(Promise::ClosureScatter)),
         Alarm::calibration_cut_off("coil_ai"),
     ];
     let bins: Vec<Bin> = wiring().axis.bins().collect();
@@ -99,6 +103,17 @@ fn every_alarm() -> Vec<Alarm> {
         .filter(|it| !codes.contains(it))
         .map(Alarm::from);
     bare.chain(known.iter().cloned()).collect()
+}
+
+fn broken(promise: Promise) -> Broken {
+    Broken {
+        promise,
+        promised: 2.0,
+        seen: 4.0,
+        interval: (3.5, 4.6),
+        freedom: 60.0,
+        used: 4.1,
+    }
 }
 
 #[test]

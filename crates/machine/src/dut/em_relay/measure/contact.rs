@@ -163,11 +163,13 @@ pub(super) fn is_clear(context: &Context, state: &TestState, parameter: Paramete
 /// Adds one NC closure; the result is the mean of all NC closures.
 pub(super) fn add_nc(context: &Context, drop: Volt, samples: &[Sample], state: &mut TestState) {
     let (drops, record) = (&mut state.plan.nc_drops, &mut state.record);
+    let per_v = context.calibration.contact_mohm_per_v;
     drops.push(drop);
+    record.own.nc_mohm.push(per_v.value * drop.0);
     let first = context.relay.test.strategy.contact.polarities.signs().len();
     let later = drops.len() - 1;
     let u = u_with_later_v(first, later, context.reading_u_v(), EMF_MOVES_V);
-    if let Some(reading) = resistance(drops, context.calibration.contact_mohm_per_v, u) {
+    if let Some(reading) = resistance(drops, per_v, u) {
         if is_implausible(Contact::Nc, reading.value, record) {
             return;
         }

@@ -20,7 +20,7 @@ use std::sync::Arc;
 use units::{Celsius, Ohm, Span, Volt};
 
 /// Resolution of a +-10 V input of 12 bits, volts per step.
-const LSB_V: f64 = 20.0 / 4096.0;
+pub const LSB_V: f64 = 20.0 / 4096.0;
 
 /// Assumed overshoot of a 96 V/s ramp before the first reference part; it only places the first fine ramp. In another
 /// supply range the overshoot lasts as long, so its volts are proportional to the rate of the ramp.

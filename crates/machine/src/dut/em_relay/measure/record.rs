@@ -38,6 +38,8 @@ pub struct Observed {
     pub probe_contact: Option<Ohm>,
     /// Temperature of the magazine track when the test began.
     pub track: Option<Celsius>,
+    /// Resistance of each NC closure, milliohms.
+    pub nc_mohm: Vec<f64>,
     /// Judgements of limits that were proven without a measured value.
     pub proven: Vec<(Parameter, Judgement)>,
     /// Operate ramps.

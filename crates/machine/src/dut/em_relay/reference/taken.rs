@@ -94,4 +94,10 @@ impl<'a> Taken<'a> {
             fine,
         })
     }
+
+    /// Returns the scans at each constant level.
+    pub(super) fn constants(&self) -> impl Iterator<Item = &'a [CoilScan]> {
+        let steps = self.steps.iter().map(|(_, scans)| *scans);
+        steps.chain([self.zero, self.coarse, self.fine])
+    }
 }

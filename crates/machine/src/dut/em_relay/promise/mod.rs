@@ -1,0 +1,156 @@
+//! Promises that this kind observes: residuals of its measurements against `[accuracy]` of the rig and the recipe.
+//!
+//! | promise | residuals |
+//! |---|---|
+//! | noise of the analog inputs | repeated conversions of constant references during the calibration ([`super::reference::noise`]) |
+//! | scatter of operations | repeated fine ramps of one part, and what the overshoot model leaves unexplained ([`operation`]) |
+//! | scatter of closures | closures of one part's NC contact ([`closure`]) |
+//!
+//! From the alarm on, budgets use the larger value; parts judged before keep theirs.
+
+mod closure;
+mod operation;
+mod watch;
+
+use super::measure::Context;
+use crate::dut::promise::{Broken, Promise};
+use crate::gauge::Evidence;
+use crate::gauge::evidence::Residuals;
+use std::sync::Arc;
+
+/// Share of the lots in which a promise that holds raises its alarm, at most.
+const FALSE_ALARMS: f64 = 5e-5;
+
+/// Promises and the evidence against them.
+#[derive(Debug, Clone)]
+pub struct Promises {
+    watched: [Watched; Promise::ALL.len()],
+    /// Broken promises that the station has not announced yet.
+    new: Vec<Promise>,
+}
+
+/// A promise with the evidence against it.
+#[derive(Debug, Clone)]
+struct Watched {
+    promise: Promise,
+    /// Promised value, in the unit of its key.
+    promised: f64,
+    evidence: Evidence,
+    broken: Option<Broken>,
+}
+
+impl Promises {
+    /// Starts from the promises of rig and recipe, and what a stored calibration has disproved of them.
+    pub fn new(context: &Context) -> Self {
+        let stored = &context.calibration.broken;
+        let watched = Promise::ALL.map(|promise| {
+            let promised = promised(context, promise);
+            let mut stored = stored.iter().filter(|it| it.promise == promise);
+            Watched {
+                promise,
+                promised,
+                evidence: Evidence::default(),
+                // The file may promise less by now.
+                broken: stored.find(|it| it.used > promised).copied(),
+            }
+        });
+        let broken = watched.iter().filter_map(|it| it.broken);
+        Self {
+            new: broken.map(|it| it.promise).collect(),
+            watched,
+        }
+    }
+
+    /// Returns the promised value, in the unit of its key.
+    pub fn promised(&self, promise: Promise) -> f64 {
+        let mut watched = self.watched.iter();
+        let of = watched.find(|it| it.promise == promise);
+        of.map_or(f64::NAN, |it| it.promised)
+    }
+
+    /// Returns the promises that do not hold.
+    pub fn broken(&self) -> Vec<Broken> {
+        self.watched.iter().filter_map(|it| it.broken).collect()
+    }
+
+    /// Returns the promises that do not hold and are not announced yet.
+    pub fn announce(&mut self) -> Vec<Broken> {
+        let new = std::mem::take(&mut self.new);
+        let mut broken = self.broken();
+        broken.retain(|it| new.contains(&it.promise));
+        broken
+    }
+
+    /// Makes the budgets of `context` use the larger of the promised and the observed values.
+    pub fn apply(&self, context: &mut Context) {
+        let accuracy = &mut context.accuracy;
+        for it in &self.watched {
+            let used = it.broken.map_or(it.promised, |broken| broken.used);
+            match it.promise {
+                Promise::AiNoise => accuracy.ai_noise_lsb = used,
+                Promise::OperationScatter => accuracy.operation_scatter_mv = used,
+                Promise::ClosureScatter => {
+                    let relay = Arc::make_mut(&mut context.relay);
+                    relay.test.strategy.contact.closure_scatter_pct = used.ceil() as u32;
+                }
+            }
+        }
+    }
+
+    /// Discards the evidence, so that the promises hold again: a new calibration begins.
+    pub fn restart(&mut self) {
+        self.new.clear();
+        for it in &mut self.watched {
+            it.evidence = Evidence::default();
+            it.broken = None;
+        }
+    }
+
+    /// Adds residuals; a promise that they disprove counts as broken from now on, with the newest figures.
+    pub fn observe(&mut self, promise: Promise, residuals: impl IntoIterator<Item = Residuals>) {
+        let mut watched = self.watched.iter_mut();
+        let Some(of) = watched.find(|it| it.promise == promise) else {
+            return;
+        };
+        let was_broken = of.broken.is_some();
+        of.observe(residuals);
+        if of.broken.is_some() && !was_broken {
+            self.new.push(promise);
+        }
+    }
+}
+
+impl Watched {
+    fn observe(&mut self, residuals: impl IntoIterator<Item = Residuals>) {
+        residuals.into_iter().for_each(|it| self.evidence.add(it));
+        let seen = self.evidence.seen();
+        let Some(seen) = seen.filter(|_| self.evidence.disproves(FALSE_ALARMS)) else {
+            return;
+        };
+        self.broken = Some(Broken {
+            promise: self.promise,
+            promised: self.promised,
+            seen: self.promised * seen.value,
+            interval: (
+                self.promised * seen.interval.0,
+                self.promised * seen.interval.1,
+            ),
+            freedom: seen.freedom,
+            used: self.promised * self.evidence.covering(),
+        });
+    }
+}
+
+/// Returns the value in force in `context`, in the unit of its key.
+fn promised(context: &Context, promise: Promise) -> f64 {
+    match promise {
+        Promise::AiNoise => context.accuracy.ai_noise_lsb,
+        Promise::OperationScatter => context.accuracy.operation_scatter_mv,
+        Promise::ClosureScatter => {
+            f64::from(context.relay.test.strategy.contact.closure_scatter_pct)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

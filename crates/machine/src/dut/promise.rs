@@ -1,0 +1,55 @@
+//! Promises of `config/rig.toml` and of a recipe that a rig disproves while it measures.
+
+use serde::{Deserialize, Serialize};
+
+/// A promised standard deviation that a kind observes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Promise {
+    /// Noise of the analog inputs.
+    AiNoise,
+    /// Scatter of a threshold from operation to operation.
+    OperationScatter,
+    /// Scatter of a contact resistance from closure to closure.
+    ClosureScatter,
+}
+
+impl Promise {
+    /// Every promise.
+    pub const ALL: [Self; 3] = [Self::AiNoise, Self::OperationScatter, Self::ClosureScatter];
+
+    /// Returns the name in alarms and rows.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::AiNoise => "ai_noise",
+            Self::OperationScatter => "operation_scatter",
+            Self::ClosureScatter => "closure_scatter",
+        }
+    }
+
+    /// Returns the file and the key that hold it; its last syllable is the unit.
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::AiNoise => "rig.toml accuracy.ai_noise_lsb",
+            Self::OperationScatter => "rig.toml accuracy.operation_scatter_mv",
+            Self::ClosureScatter => "recipe test.strategy.contact.closure_scatter_pct",
+        }
+    }
+}
+
+/// A promise that does not hold, with the standard deviations in the unit of its key.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Broken {
+    /// Promise that does not hold.
+    pub promise: Promise,
+    /// Value of the file.
+    pub promised: f64,
+    /// Value that the residuals show.
+    pub seen: f64,
+    /// Ends of its 95 % interval.
+    pub interval: (f64, f64),
+    /// Degrees of freedom.
+    pub freedom: f64,
+    /// Value that budgets use from now on: `seen`, widened by Student's t.
+    pub used: f64,
+}
