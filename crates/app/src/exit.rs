@@ -2,8 +2,8 @@
 //!
 //! The cause of a run travels through these files:
 //!
-//! - chosen in `lot/mod.rs` (lost history, failed assertion), `lot/progress.rs` (the alarm, or an abort), `lib.rs` (the
-//!   rig refuses the lot before it begins) and `calibration/mod.rs` (reference parts without a calibration);
+//! - chosen in `lot/mod.rs` and `service/mod.rs` (lost history, failed assertion), `lot/progress.rs` (the alarm, or an
+//!   abort), `lib.rs` (the rig refuses the lot before it begins; `admission.rs` makes its row) and `calibration/mod.rs` (reference parts without a calibration);
 //! - made into a row in `lot/journal.rs`;
 //! - written by `history/src/run_end.rs`.
 //!

@@ -26,7 +26,7 @@ const MOST_OUTSTANDING: usize = 10_000;
 /// module and differ in form: three bytes in hexadecimal, a version, a product name.
 const IDENTIFICATIONS: [Common; 3] = [Common::ReadConfig, Common::ReadFirmware, Common::ReadName];
 
-/// Returns the first of these commands; its time-out applies to the others too.
+/// Returns the first of [`IDENTIFICATIONS`], addressed to `to`; callers use its time-out for all three.
 pub(super) fn identification(to: Address) -> Command {
     IDENTIFICATIONS[0].to(to)
 }

@@ -41,8 +41,6 @@ pub struct Plant {
     pub lot: LotSettings,
     /// Patience with a history that cannot be written.
     pub history: HistorySettings,
-    /// Text of `rig.toml`, which the record of a lot keeps.
-    pub rig_text: String,
 }
 
 /// Patience with a history that cannot be written.
@@ -96,7 +94,6 @@ impl Plant {
             reference_parts,
             lot: load_lot(dir)?,
             history: gauge.history,
-            rig_text: rig.text,
         })
     }
 

@@ -29,7 +29,7 @@ pub enum InputMode {
     Isolated0,
 }
 
-/// Which side of the digital filter or of the TTL threshold is meant.
+/// Signal level whose least pulse width or TTL threshold a command reads or sets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Edge {
     /// `H`.

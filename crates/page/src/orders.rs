@@ -58,8 +58,8 @@ pub(super) async fn order(
     }
 }
 
-/// Returns the weakest role that may give `order`; a maintainer for what takes knowledge of the machine, an
-/// engineer for a complete lot.
+/// Returns the weakest role that may give `order`: maintainer if it takes knowledge of the machine, engineer to reopen
+/// a complete lot, else operator.
 fn needs(order: &Order) -> Role {
     match order.order.as_str() {
         "mode" | "jog" | "step" | "shelve" | "release_lot" | "replaced" => Role::Maintainer,

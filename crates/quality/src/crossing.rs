@@ -1,4 +1,4 @@
-//! Arranges readings, in any order, as a complete crossing of parts, operators and trials.
+//! Arranges readings, in any order, as a full table: one reading for each combination of part, operator and trial.
 
 use super::gauge_rr::{GaugeRrError, Reading};
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,7 +1,7 @@
 //! Controls a rig for a whole day: page and API in front of the rig, one lot after another.
 //!
-//! The rig is always controlled by a *run*, like that of the command `run`. Between lots this run has no lot: the
-//! machine keeps its state until an operator resets it, the page shows inputs and alarms, motions by hand are possible,
+//! At every moment one *run* (a control cycle, from its start to its end) controls the rig; the command `run` makes one
+//! too. Between lots a run without a lot does: the machine keeps its state until an operator resets it, the page shows inputs and alarms, motions by hand are possible,
 //! and the rig discharges parts found inside. A lot that is ordered at the page and admitted ([`router`]) ends that
 //! run. The run of the lot then begins as every lot does: it verifies the modules, homes the machine, and calibrates
 //! the rig if necessary. After the lot the rig is between lots again.

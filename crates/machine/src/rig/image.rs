@@ -251,7 +251,8 @@ impl Image {
         self.input(point, now, self.wiring.answer_max_age(line))
     }
 
-    /// Returns the state of a digital input; none unless its request is at most `max_age` old.
+    /// Returns the state of a digital input; `None` if it was never read, or if the request that read it is older than
+    /// `max_age`.
     pub fn input(
         &self,
         point: impl Into<DigitalInput>,

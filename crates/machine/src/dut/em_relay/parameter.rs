@@ -1,5 +1,4 @@
-//! The nine characteristics of a relay, as data: a new one needs a variant, a place in [`Parameter::ALL`] and a table
-//! row.
+//! The nine characteristics of a relay, as data. `docs/extending.md` lists what else a new one needs.
 
 use super::card::CardStep;
 use super::coil::to_reference;

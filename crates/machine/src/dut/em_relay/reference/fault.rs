@@ -26,7 +26,7 @@ pub enum ReferenceFault {
         /// Name of the channel.
         name: &'static str,
     },
-    /// Scans are missing.
+    /// The number of scans differs from that of the act.
     Scans {
         /// Scans read.
         found: usize,
