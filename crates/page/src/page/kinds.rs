@@ -6,7 +6,7 @@ use texts::Lang;
 
 /// Families of texts that the first answer omits: they reach the page inside alarms, reasons and refusals, or appear in
 /// print only.
-const ELSEWHERE: [&str; 12] = [
+const ELSEWHERE: [&str; 13] = [
     "alarm",
     "card",
     "characteristic",
@@ -15,6 +15,7 @@ const ELSEWHERE: [&str; 12] = [
     "paper",
     "paper_verdict",
     "place",
+    "promise",
     "reason",
     "refusal",
     "side",
