@@ -7,7 +7,7 @@ use super::error::ConfigError;
 use super::nearest::{nearest, suggestion};
 use super::tree::{Node, Value};
 use machine::form::{Form, Key, Points, Range};
-use machine::rig::fault::Fault;
+use machine::rig::fault::{Fault, Requirement};
 use std::path::PathBuf;
 
 /// Faults in the order of the file, those of missing keys after the others of their table.
@@ -55,20 +55,35 @@ impl File {
             }
             None => fault.expected.clone(),
         };
-        self.value_error(&fault.key, fault.found.clone(), expected)
+        let key = self.label(&fault.key);
+        self.error_at(
+            &fault.key,
+            key,
+            fault.found.clone(),
+            expected,
+            fault.requirement.clone(),
+        )
     }
 
     fn value_error(&self, path: &str, found: String, expected: String) -> ConfigError {
-        self.error_at(path, self.label(path), found, expected)
+        self.error_at(path, self.label(path), found, expected, Requirement::Form)
     }
 
-    fn error_at(&self, path: &str, key: String, found: String, expected: String) -> ConfigError {
+    fn error_at(
+        &self,
+        path: &str,
+        key: String,
+        found: String,
+        expected: String,
+        requirement: Requirement,
+    ) -> ConfigError {
         ConfigError::Value {
             file: self.path.clone(),
             line: self.root.find(path).0.line,
             key,
             found,
             expected,
+            requirement,
         }
     }
 
@@ -230,7 +245,13 @@ impl File {
         } else {
             self.label(&own)
         };
-        self.error_at(path, key, "nothing".to_owned(), form.expected())
+        self.error_at(
+            path,
+            key,
+            "nothing".to_owned(),
+            form.expected(),
+            Requirement::Form,
+        )
     }
 }
 

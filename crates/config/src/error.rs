@@ -1,5 +1,6 @@
 //! Errors of a configuration: they name the file and, where known, line, key, what was found and what was expected.
 
+use machine::rig::fault::Requirement;
 use std::path::PathBuf;
 use thiserror::Error;
 
@@ -39,6 +40,8 @@ pub enum ConfigError {
         found: String,
         /// Accepted values.
         expected: String,
+        /// The requirement behind `expected`.
+        requirement: Requirement,
     },
     /// A file breaks a rule of the module that owns its settings, for example `scene.toml` a rule of the guard.
     #[error("{}:{line}: {problem}", file.display())]

@@ -139,9 +139,14 @@ impl ApiError {
             Self::Revision {
                 refused:
                     refused @ ConfigError::Value {
-                        found, expected, ..
+                        found,
+                        expected,
+                        requirement,
+                        ..
                     },
-            } => json!({ "key": refused.key(), "found": found, "expected": expected }),
+            } => {
+                json!({ "key": refused.key(), "found": found, "expected": expected, "requirement": requirement })
+            }
             _ => match self.message() {
                 Some(why) => {
                     json!({ "reason_zh": why.say(Lang::Zh), "code": why.code(), "args": why.args() })

@@ -12,7 +12,7 @@ use super::made_up::MadeUp;
 use super::resistor::recipe::ResistorRecipe;
 use super::{Calibration, Device, Kind};
 use crate::gauge::{Limit, Rule};
-use crate::rig::fault::Fault;
+use crate::rig::fault::{Fault, Requirement};
 use crate::rig::point::MissingPoint;
 use crate::rig::supply::SupplyDemand;
 use crate::rig::wiring::Wiring;
@@ -202,7 +202,8 @@ fn check_limit(key: &str, limit: Limit) -> Result<(), Fault> {
             format!("{key}.low"),
             low,
             format!("at most high, which is {high}"),
-        )),
+        )
+        .requires(Requirement::AtMostHigh(high.to_string()))),
         (Some(_) | None, Some(_) | None) => Ok(()),
     }
 }

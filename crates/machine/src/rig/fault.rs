@@ -1,6 +1,21 @@
 //! A setting that contradicts the other settings or the machine.
 
+use serde::Serialize;
 use thiserror::Error;
+
+/// What a value must be, for readers of other languages; `expected` says the same in English.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(tag = "code", content = "value", rename_all = "snake_case")]
+pub enum Requirement {
+    /// Type and range of the key.
+    Form,
+    /// At most the upper limit of the same characteristic, which has this value.
+    AtMostHigh(String),
+    /// Below this value with its unit.
+    Below(String),
+    /// A requirement that only `expected` states.
+    Other,
+}
 
 /// A rejected setting; the reader of the file adds file name and line.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -12,6 +27,8 @@ pub struct Fault {
     pub found: String,
     /// Values that would be accepted.
     pub expected: String,
+    /// The requirement behind `expected`.
+    pub requirement: Requirement,
     /// Path of the conflicting setting, if any.
     pub other: Option<String>,
     /// The known names, when the name is unknown; else empty.
@@ -25,6 +42,7 @@ impl Fault {
             key: key.into(),
             found: found.to_string(),
             expected: expected.into(),
+            requirement: Requirement::Other,
             other: None,
             known: Vec::new(),
         }
@@ -36,6 +54,14 @@ impl Fault {
         Self {
             known,
             ..Self::new(key, "an unknown key", expected)
+        }
+    }
+
+    /// Adds the requirement behind `expected`.
+    pub fn requires(self, requirement: Requirement) -> Self {
+        Self {
+            requirement,
+            ..self
         }
     }
 

@@ -20,7 +20,8 @@ pub(super) fn routes() -> Vec<Route> {
             .with(&[NAME, may("lang", "`zh` (without it) or `en`.")]),
         Route::post(
             "/api/recipes/revise",
-            "Saves the next revision of a recipe, which applies from the next run on; 400 with `key`, `found` and `expected` \
+            "Saves the next revision of a recipe, which applies from the next run on; 400 with `key`, `found`, `expected` and \
+             `requirement` \
              for a refused value, 409 when another revision came first.",
             recipes::revise,
         )

@@ -188,6 +188,34 @@ async fn a_refused_value_names_its_key_and_changes_nothing() {
 }
 
 #[tokio::test]
+async fn a_refused_value_has_its_requirement_as_a_code() {
+    let fixture = Fixture::new();
+    let engineer = fixture.session(Role::Engineer);
+    for (values, requirement) in [
+        (
+            json!({"limits.operate_voltage_v.high": -1}),
+            json!({"code": "form"}),
+        ),
+        (
+            json!({"limits.operate_voltage_v.high": 99}),
+            json!({"code": "other"}),
+        ),
+        (
+            json!({"limits.release_voltage_v.low": 5, "limits.release_voltage_v.high": 4}),
+            json!({"code": "at_most_high", "value": "4"}),
+        ),
+        (
+            json!({"test.prebias_v": 9}),
+            json!({"code": "below", "value": "7.88 V"}),
+        ),
+    ] {
+        let change = fixture.change(values).await;
+        let answer = fixture.revise(Some(&engineer), change).await;
+        assert_eq!(answer.json()["requirement"], requirement);
+    }
+}
+
+#[tokio::test]
 async fn a_second_revision_is_refused_in_both_languages() {
     let fixture = Fixture::new();
     let engineer = fixture.session(Role::Engineer);

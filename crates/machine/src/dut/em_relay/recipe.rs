@@ -12,7 +12,7 @@ use crate::dut::device::Rig;
 use crate::dut::made_up::MadeUp;
 use crate::dut::recipe::{KindRecipe, Limits, PartFacts};
 use crate::dut::{Calibration, Device, Kind, Recipe};
-use crate::rig::fault::Fault;
+use crate::rig::fault::{Fault, Requirement};
 use crate::rig::point::MissingPoint;
 use crate::rig::supply::SupplyDemand;
 use serde::{Deserialize, Serialize};
@@ -102,7 +102,8 @@ impl KindRecipe for RelayRecipe {
         for (low, low_v, high, high_v) in ordered {
             if low_v >= high_v {
                 let expected = format!("less than {high}, {high_v} V");
-                return Err(Fault::new(format!("test.{low}"), low_v, expected));
+                let fault = Fault::new(format!("test.{low}"), low_v, expected);
+                return Err(fault.requires(Requirement::Below(format!("{high_v} V"))));
             }
         }
         let most_v = HIGHEST_RAMP * self.part.nominal_v - test.prebias_v;

@@ -60,9 +60,9 @@ async function enterRecipes() {
 // Writes found and expected in the language of the page; expected stays English where the page has no words for it.
 function refusedValue(answer) {
   const field = recipe.fields.find((it) => (answer.key + ".").startsWith(it.path + "."));
-  const against = /^at most high, which is (.+)$/.exec(answer.expected), below = /^less than \w+, (.+) V$/.exec(answer.expected);
-  const ranged = field && field.low !== undefined && /^a (whole )?number/.test(answer.expected);
-  const expected = against ? word("r-at_most_high") + " " + against[1] : below ? "< " + below[1] + " V"
+  const {code, value} = answer.requirement;
+  const ranged = code === "form" && field && field.low !== undefined;
+  const expected = code === "at_most_high" ? word("r-at_most_high") + " " + value : code === "below" ? "< " + value
     : ranged ? word(field.form === "whole" ? "r-whole" : "r-number") + ", " + rangeText(field) + " " + unitText(field.unit)
       : answer.expected;
   return "▲ " + word("r-found") + " " + answer.found + word("r-expected") + " " + expected;
