@@ -66,7 +66,13 @@ impl File {
     }
 
     fn value_error(&self, path: &str, found: String, expected: String) -> ConfigError {
-        self.error_at(path, self.label(path), found, expected, Requirement::Form)
+        self.error_at(
+            path,
+            self.label(path),
+            found,
+            expected,
+            Box::new(Requirement::Form),
+        )
     }
 
     fn error_at(
@@ -75,7 +81,7 @@ impl File {
         key: String,
         found: String,
         expected: String,
-        requirement: Requirement,
+        requirement: Box<Requirement>,
     ) -> ConfigError {
         ConfigError::Value {
             file: self.path.clone(),
@@ -250,7 +256,7 @@ impl File {
             key,
             "nothing".to_owned(),
             form.expected(),
-            Requirement::Form,
+            Box::new(Requirement::Form),
         )
     }
 }

@@ -41,7 +41,7 @@ pub enum ConfigError {
         /// Accepted values.
         expected: String,
         /// The requirement behind `expected`.
-        requirement: Requirement,
+        requirement: Box<Requirement>,
     },
     /// A file breaks a rule of the module that owns its settings, for example `scene.toml` a rule of the guard.
     #[error("{}:{line}: {problem}", file.display())]

@@ -28,11 +28,11 @@ pub struct Fault {
     /// Values that would be accepted.
     pub expected: String,
     /// The requirement behind `expected`.
-    pub requirement: Requirement,
+    pub requirement: Box<Requirement>,
     /// Path of the conflicting setting, if any.
     pub other: Option<String>,
     /// The known names, when the name is unknown; else empty.
-    pub known: Vec<String>,
+    pub known: Box<[String]>,
 }
 
 impl Fault {
@@ -42,9 +42,9 @@ impl Fault {
             key: key.into(),
             found: found.to_string(),
             expected: expected.into(),
-            requirement: Requirement::Other,
+            requirement: Box::new(Requirement::Other),
             other: None,
-            known: Vec::new(),
+            known: Box::default(),
         }
     }
 
@@ -52,7 +52,7 @@ impl Fault {
     pub fn unknown(key: impl Into<String>, known: Vec<String>) -> Self {
         let expected = format!("one of {}", known.join(", "));
         Self {
-            known,
+            known: known.into(),
             ..Self::new(key, "an unknown key", expected)
         }
     }
@@ -60,7 +60,7 @@ impl Fault {
     /// Adds the requirement behind `expected`.
     pub fn requires(self, requirement: Requirement) -> Self {
         Self {
-            requirement,
+            requirement: Box::new(requirement),
             ..self
         }
     }
