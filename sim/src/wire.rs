@@ -92,7 +92,7 @@ impl Line {
         device
     }
 
-    /// Serves until the host has closed its end and nobody can open it again.
+    /// Serves until the host has closed its end and no plug is left to open it again.
     async fn serve(mut self, mut device: DuplexStream) {
         loop {
             // An error means that the host is gone, as an end of file does.

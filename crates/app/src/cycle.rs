@@ -101,7 +101,7 @@ pub struct Cycle {
     publish_at: RigTime,
     /// State of the whole rig (PackML) in the last event sent.
     published_state: packml::State,
-    /// Bus trouble because of which nobody knows whether a module of the measuring line has restarted.
+    /// Bus trouble that lost a reset status: whether a module of the measuring line has restarted is unknown.
     lost_status: Option<String>,
     /// Contents of the machine in the last event sent; the next run takes them over.
     inside: Inside,
@@ -215,10 +215,10 @@ impl Cycle {
     fn take(&mut self, line: LineId, purpose: Purpose, answer: Answer) {
         assert!(
             answer.answered_at >= answer.requested_at,
-            "answered before it was asked"
+            "an answer precedes its request"
         );
-        // Reading the reset status clears it, so the read cannot be repeated: when its reply is lost, nobody knows
-        // whether the module restarted while it measured the part, and the part is void.
+        // Reading the reset status clears it, so the read cannot be repeated: when its reply is lost, the
+        // module may have restarted while it measured the part, and the part is void.
         let is_status = matches!(
             answer.command,
             Command::Common(_, dcon::Common::ReadResetStatus)

@@ -58,7 +58,7 @@ pub enum ConfigError {
     UnknownRecipe {
         /// Folder of the recipes.
         dir: PathBuf,
-        /// Name that was asked for.
+        /// Name in the request.
         name: String,
         /// Names of the existing recipes.
         known: Vec<String>,
@@ -68,7 +68,7 @@ pub enum ConfigError {
     UnknownRevision {
         /// Name of the recipe.
         name: String,
-        /// Number that was asked for.
+        /// Number in the request.
         number: u32,
         /// Number of the newest revision.
         newest: u32,

@@ -4,6 +4,7 @@ use super::check::File;
 use super::error::ConfigError;
 use super::keys;
 use super::tree::{Node, Value};
+use data_encoding::HEXLOWER;
 use machine::dut::{Kind, Recipe};
 use machine::form::one_of;
 use machine::rig::fault::Fault;
@@ -79,8 +80,5 @@ pub(super) fn kind_of(file: &File) -> Result<Kind, ConfigError> {
 }
 
 pub(super) fn sha256_hex(bytes: &[u8]) -> String {
-    Sha256::digest(bytes)
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+    HEXLOWER.encode(&Sha256::digest(bytes))
 }

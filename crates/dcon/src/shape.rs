@@ -239,7 +239,7 @@ fn stored_bits(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
 
 fn config(fields: &mut Fields<'_>, expected: Address) -> Result<Reply, ReplyError> {
     let found = fields.address()?;
-    // A module in INIT* mode is asked at address 00 and reports its stored address.
+    // A module in INIT* mode answers at address 00 and reports its stored address.
     if found != expected && expected != Address(0) {
         return Err(ReplyError::WrongAddress { found, expected });
     }

@@ -34,7 +34,7 @@ pub enum HistoryError {
         "{path} is the history of {holds}, found {found}: name another file with --db, since real and simulated parts never share one"
     )]
     OtherRig {
-        /// The file asked for.
+        /// Path of the file.
         path: PathBuf,
         /// Rig of the file.
         holds: &'static str,

@@ -47,7 +47,7 @@ pub struct Filter {
     pub offset: Option<u64>,
 }
 
-/// An SQL statement with the values for its placeholders.
+/// An SQL statement with the values of its parameters.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Select {
     /// Statement with a `?` for each of `values`.

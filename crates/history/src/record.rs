@@ -7,6 +7,7 @@ use super::{
     AlarmChangeRecord, CurveRecord, InsideRecord, LotStateRecord, OrderRecord,
     ReferenceCheckRecord, ReopeningRecord, RunEndRecord, WearRecord,
 };
+use data_encoding::HEXLOWER;
 use machine::dut::Reason;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -217,8 +218,5 @@ pub enum Row {
 
 /// Returns the SHA-256 of a text as hexadecimal digits.
 pub fn snapshot_hash(text: impl AsRef<[u8]>) -> String {
-    Sha256::digest(text.as_ref())
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+    HEXLOWER.encode(&Sha256::digest(text))
 }

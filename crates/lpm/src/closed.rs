@@ -30,7 +30,7 @@ pub(crate) type Corners = [usize; 3];
 /// A surface that encloses a space.
 pub(crate) struct Surface {
     pub(crate) triangles: Vec<Corners>,
-    /// Each edge belongs to an even number of triangles, so whoever crosses the surface once changes sides.
+    /// Each edge belongs to an even number of triangles, so a path that crosses the surface once changes sides.
     pub(crate) is_even: bool,
     /// Along each edge, as many triangles run one way as the other, so the surface has an inside and an outside.
     pub(crate) is_oriented: bool,

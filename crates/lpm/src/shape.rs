@@ -8,7 +8,7 @@ use super::pose::Pose;
 pub const LARGEST_COORDINATE_MM: f64 = 1e6;
 
 /// Greatest nesting depth of compounds; [`Shape::check`] refuses deeper ones.
-const DEEPEST_COMPOUND: usize = 16;
+pub(crate) const DEEPEST_COMPOUND: usize = 16;
 
 /// A solid body in its own frame.
 #[derive(Debug, Clone, PartialEq)]

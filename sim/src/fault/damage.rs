@@ -69,13 +69,14 @@ impl Family for Damage {
             "noise" => &mut self.noise,
             "echo" => &mut self.echo,
             "garble" => &mut self.garble,
-            _ => match request.trigger()? {
+            "clash" => match request.trigger()? {
                 Trigger::Chance(..) => &mut self.clash,
                 Trigger::Target(module) => {
                     self.clashing.add(module, request.window);
                     return Ok(());
                 }
             },
+            name => unreachable!("fault `{name}` is listed without a branch here"),
         };
         chances.add(request.probability()?, request.window);
         Ok(())

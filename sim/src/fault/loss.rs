@@ -52,10 +52,11 @@ impl Family for Loss {
             "drop" => &mut self.drop,
             "deaf" => &mut self.deaf,
             "truncate" => &mut self.truncate,
-            _ => {
+            "silence" => {
                 self.silence.add(request.value.to_owned(), request.window);
                 return Ok(());
             }
+            name => unreachable!("fault `{name}` is listed without a branch here"),
         };
         chances.add(request.probability()?, request.window);
         Ok(())

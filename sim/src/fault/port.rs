@@ -51,7 +51,7 @@ impl Family for Port {
         match request.name {
             "line_cut" => self.dead.add(line, ended(request.window)),
             "baud_mismatch" => self.dead.add(line, request.window),
-            _ => match request.trigger()? {
+            "port_lost" => match request.trigger()? {
                 Trigger::Chance(probability, rest) => {
                     let away_us = rest.map_or(Ok(AWAY_US), |ms| request.ms(ms))?;
                     self.losses
@@ -59,6 +59,7 @@ impl Family for Port {
                 }
                 Trigger::Target(line) => self.lost.add(line, ended(request.window)),
             },
+            name => unreachable!("fault `{name}` is listed without a branch here"),
         }
         Ok(())
     }

@@ -65,13 +65,14 @@ impl Family for Upset {
     }
 
     fn add(&mut self, request: &FaultRequest<'_>) -> Result<(), SimError> {
-        if request.name == "wrong_type" {
-            self.wrong_type.push(request.value.to_owned());
-            return Ok(());
-        }
         let (event, chances) = match request.name {
             "reset" => (Event::Reset, &mut self.reset),
-            _ => (Event::Trip, &mut self.trip),
+            "watchdog_trip" => (Event::Trip, &mut self.trip),
+            "wrong_type" => {
+                self.wrong_type.push(request.value.to_owned());
+                return Ok(());
+            }
+            name => unreachable!("fault `{name}` is listed without a branch here"),
         };
         match request.trigger()? {
             Trigger::Chance(..) => chances.add(request.probability()?, request.window),

@@ -72,7 +72,7 @@ pub(super) fn cycle(
     };
     let mechanism = Mechanism::new(strokes, wiring.strokes, size_of(context.recipe));
     let mut station = Station::new(plan, device, wiring.axis.clone(), mechanism);
-    // An unattended run raises no alarms of earlier runs again, because nobody is there to acknowledge them.
+    // An unattended run raises no alarms of earlier runs again, because no operator is there to acknowledge them.
     for left in alarms.into_iter().filter(|_| attended) {
         raise_again(&mut station, left, context.epoch_us);
     }

@@ -59,7 +59,7 @@ impl Bench {
             ),
             controls: &self.controls,
         };
-        let mut nobody = ();
+        let mut no_subscriber = ();
         let (orders, asked) = mpsc::channel(4);
         let seen = self.controls.view.subscribe();
         let life = crate::runtime(&self.source).unwrap();
@@ -69,7 +69,7 @@ impl Bench {
                 std::future::pending::<()>().await;
             };
             tokio::select! {
-                exit = runner.run(OrderQueue::from(asked), &mut nobody) => exit.unwrap(),
+                exit = runner.run(OrderQueue::from(asked), &mut no_subscriber) => exit.unwrap(),
                 () = acting => unreachable!(),
             }
         })

@@ -89,7 +89,7 @@ fn a_rig_without_coil_board_refuses_relay_recipes() {
     assert_eq!(refused.len(), 9);
     for message in refused {
         let why = "[test]: found no [digital_in].kelvin_coil_a in rig.toml, \
-                   expected every point that its test needs";
+                   expected a rig with every point that its test needs";
         assert!(message.ends_with(why), "{message}");
         assert!(message.contains("recipes/jzc-22f-0"), "{message}");
     }

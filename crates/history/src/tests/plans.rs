@@ -10,7 +10,7 @@ fn plan(file: &File, select: &filter::Select) -> String {
     explained(&file.by_hand(), &select.sql)
 }
 
-/// Returns SQLite's plan for an SQL text; the values of its placeholders do not change the plan.
+/// Returns SQLite's plan for an SQL text; the values of its parameters do not change the plan.
 fn explained(by_hand: &rusqlite::Connection, sql: &str) -> String {
     let mut statement = by_hand
         .prepare(&format!("EXPLAIN QUERY PLAN {sql}"))

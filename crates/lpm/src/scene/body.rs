@@ -3,11 +3,10 @@
 use super::field::{Field, SceneError, Table, refuse};
 use super::mesh_file::{self, MeshFiles};
 use super::node::shown;
+use crate::shape::DEEPEST_COMPOUND;
 use crate::{Flaw, LARGEST_COORDINATE_MM, Mesh, Pose, Shape};
 
 const KINDS: &str = "\"block\", \"cylinder\", \"compound\" or \"mesh\"";
-/// Greatest nesting depth of compounds.
-const DEEPEST: usize = 16;
 
 /// Returns the keys that a body of this kind may have, and the `extra` keys that its place in the file allows; `None`
 /// for an unknown kind.
@@ -81,7 +80,7 @@ fn parts(
     depth: usize,
 ) -> Result<Vec<(Pose, Shape)>, SceneError> {
     let list = table.required("parts", "a list of bodies")?;
-    if depth >= DEEPEST {
+    if depth >= DEEPEST_COMPOUND {
         return list.refuse("compounds nested at most 16 deep");
     }
     let mut parts = Vec::new();

@@ -26,7 +26,7 @@ pub const MEASURING: Span = Span::ms(60_000);
 
 /// A test under way.
 pub trait TestProcedure {
-    /// Advances the test as far as it can. `done` answers the job that the test asked for before, and is passed once.
+    /// Advances the test as far as it can. `done` answers the job of the step before; the caller passes it once.
     fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress;
 
     /// Returns the kind of the part.

@@ -2,31 +2,21 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A promised standard deviation that a kind observes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Promise {
-    /// Noise of the analog inputs.
-    AiNoise,
-    /// Scatter of a threshold from operation to operation.
-    OperationScatter,
-    /// Scatter of a contact resistance from closure to closure.
-    ClosureScatter,
+named! {
+    /// A promised standard deviation that a kind observes.
+    #[derive(Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    Promise {
+        /// Noise of the analog inputs.
+        AiNoise = "ai_noise",
+        /// Scatter of a threshold from operation to operation.
+        OperationScatter = "operation_scatter",
+        /// Scatter of a contact resistance from closure to closure.
+        ClosureScatter = "closure_scatter",
+    }
 }
 
 impl Promise {
-    /// Every promise.
-    pub const ALL: [Self; 3] = [Self::AiNoise, Self::OperationScatter, Self::ClosureScatter];
-
-    /// Returns the name in alarms and rows.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::AiNoise => "ai_noise",
-            Self::OperationScatter => "operation_scatter",
-            Self::ClosureScatter => "closure_scatter",
-        }
-    }
-
     /// Returns the file and the key that hold it; its last syllable is the unit.
     pub const fn key(self) -> &'static str {
         match self {

@@ -22,6 +22,34 @@ use std::ops::Deref;
 use std::sync::Arc;
 use units::Celsius;
 
+impl Kind {
+    /// Returns the wiring in the supply range that serves `demand`, and the points of the kind.
+    ///
+    /// # Errors
+    /// Fails with the first bin, point or range that the rig does not have.
+    pub(super) fn reach<P>(
+        self,
+        rig: &Rig,
+        points: Result<P, MissingPoint>,
+        demand: &SupplyDemand,
+    ) -> Result<(Wiring, P), Fault> {
+        let wiring = rig.wiring;
+        let definition = self.definition();
+        if let Some(missing) = definition.bins.iter().find(|bin| !wiring.axis.has(**bin)) {
+            let found = format!("\"{}\"", definition.name);
+            let expected =
+                format!("a rig with the bins of this kind: rig.toml has no bin.{missing}");
+            return Err(Fault::new("kind", found, expected));
+        }
+        let points = points.map_err(|missing| {
+            let expected = "a rig with every point that its test needs";
+            Fault::new("test", missing, expected)
+        })?;
+        let range = demand.range(wiring)?;
+        Ok((wiring.in_range(range), points))
+    }
+}
+
 /// The limits of a recipe by characteristic; the key of the characteristic says the unit.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(transparent)]

@@ -113,11 +113,6 @@ impl Evidence {
         self.multiple(widened).max(1.0)
     }
 
-    /// Returns the probability of less scatter than seen while the promise holds; 0 without residuals.
-    pub fn probability(&self) -> f64 {
-        ChiSquared::new(self.freedom).map_or(0.0, |chi| chi.cdf(self.squares))
-    }
-
     /// Returns the multiple of the promised standard deviation that makes the whole variance `ratio` of the promised one.
     fn multiple(&self, ratio: f64) -> f64 {
         let share = self.shares / self.freedom;

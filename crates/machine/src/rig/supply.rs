@@ -9,12 +9,15 @@ use super::settings::{RigSettings, SupplyRangeSettings};
 use super::wiring::{Module, Wiring};
 use std::collections::BTreeMap;
 use std::fmt;
-use units::{Ampere, Volt};
+use units::{Ampere, Span, Volt};
 
 /// Outputs that select a range, bit 0 first.
 pub const SELECT: [&str; 2] = ["supply_range_0", "supply_range_1"];
 /// Inputs that read the range back, bit 0 first.
 pub const READ_BACK: [&str; 2] = ["supply_range_0_set", "supply_range_1_set"];
+
+/// Longest time until the relays of a range have switched while all sources are at zero.
+pub const SWITCHING_TIMEOUT: Span = Span::ms(500);
 
 /// One range of the supply.
 #[derive(Debug, Clone, PartialEq)]

@@ -41,7 +41,7 @@ pub enum HistoryState {
     /// Rows are written.
     #[default]
     Written,
-    /// Rows wait, and nobody is there to clear an alarm: no part goes, no timeout applies.
+    /// Rows wait in an unattended run, where no operator can clear an alarm: no part leaves the nest, no timeout applies.
     Waiting,
     /// Rows cannot be written at present.
     Lost(Alarm),

@@ -6,12 +6,12 @@
 mod limits;
 mod supply;
 
-use super::bins;
 use super::coil::relative_per_kelvin;
 use super::parameter::Expected;
 use super::recipe::RelayRecipe;
 use super::settings::ReferenceSet;
 use super::{Parameter, Strategy};
+use crate::dut::Kind;
 use crate::dut::accuracy::AccuracySettings;
 use crate::dut::device::Rig;
 use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Counter, Points};
@@ -57,17 +57,9 @@ struct Reach {
 /// # Errors
 /// Fails with the first of them that the rig does not have.
 fn reach(recipe: &RelayRecipe, limits: &Limits, rig: &Rig) -> Result<Reach, Fault> {
-    let wiring = rig.wiring;
-    if let Some(missing) = bins::BY_RANK.iter().find(|bin| !wiring.axis.has(**bin)) {
-        let expected = format!("a rig with the bins of this kind: rig.toml has no bin.{missing}");
-        return Err(Fault::new("kind", "\"em_relay\"", expected));
-    }
-    let points = Points::resolve(wiring).map_err(|missing| {
-        let expected = "every point that its test needs";
-        Fault::new("test", missing, expected)
-    })?;
-    let range = demand(recipe, limits, rig.accuracy).range(wiring)?;
-    let wiring = wiring.in_range(range);
+    let points = Points::resolve(rig.wiring);
+    let demand = demand(recipe, limits, rig.accuracy);
+    let (wiring, points) = Kind::EmRelay.reach(rig, points, &demand)?;
     Ok(Reach { wiring, points })
 }
 

@@ -18,14 +18,12 @@ use crate::instrument::readings::Readings;
 use crate::rig::image::Image;
 use crate::rig::point::{MissingPoint, Point};
 use crate::rig::sample::{Quality, Sample};
-use crate::rig::supply::{RangeMismatch, RangeSelector, SupplyRange, code_of};
+use crate::rig::supply::{RangeMismatch, RangeSelector, SWITCHING_TIMEOUT, SupplyRange, code_of};
 use std::sync::Arc;
 use units::{RigTime, Span, Unit, Volt};
 
 /// Settling time of current and amplifier after the drive is off.
 const OFF: Span = Span::ms(5);
-/// Longest time until the relays of a range have switched.
-const SWITCHES: Span = Span::ms(500);
 /// Signal name of the inputs that read the range back.
 const RANGE: &str = "supply_range";
 
@@ -85,7 +83,7 @@ impl Device {
                 Act::Agree {
                     expected: selector.expects(range.code).to_vec(),
                     word: Arc::new(word),
-                    within: SWITCHES,
+                    within: SWITCHING_TIMEOUT,
                 },
             ]
         });

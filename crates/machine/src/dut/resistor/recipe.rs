@@ -1,7 +1,7 @@
 //! Resistor part of a recipe: the part, and how to measure it.
 
 use super::accuracy::ChannelAccuracy;
-use super::parameter::{BIN, Parameter};
+use super::parameter::Parameter;
 use super::points::Points;
 use super::{card, made_up};
 use crate::dut::accuracy::AccuracySettings;
@@ -77,7 +77,9 @@ impl KindRecipe for ResistorRecipe {
     }
 
     fn infeasible(&self, limits: &Limits, rig: &Rig) -> Vec<Fault> {
-        let (wiring, points) = match self.reach(limits, rig) {
+        let demand = self.demand(limits, rig.accuracy);
+        let points = Points::resolve(rig.wiring);
+        let (wiring, points) = match Kind::Resistor.reach(rig, points, &demand) {
             Ok(reach) => reach,
             Err(fault) => return vec![fault],
         };
@@ -119,24 +121,6 @@ impl KindRecipe for ResistorRecipe {
 }
 
 impl ResistorRecipe {
-    /// Returns the wiring in the supply range of the recipe, and its points.
-    ///
-    /// # Errors
-    /// Fails with the bin, the point or the range that the rig does not have.
-    fn reach(&self, limits: &Limits, rig: &Rig) -> Result<(Wiring, Points), Fault> {
-        let wiring = rig.wiring;
-        if !wiring.axis.has(BIN) {
-            let expected = format!("a rig with the bins of this kind: rig.toml has no bin.{BIN}");
-            return Err(Fault::new("kind", "\"resistor\"", expected));
-        }
-        let points = Points::resolve(wiring).map_err(|missing| {
-            let expected = "a rig with every point that its test needs";
-            Fault::new("test", missing, expected)
-        })?;
-        let range = self.demand(limits, rig.accuracy).range(wiring)?;
-        Ok((wiring.in_range(range), points))
-    }
-
     fn check_limit(&self, limit: Limit, channel: &ChannelAccuracy) -> Result<(), Fault> {
         if limit.is_open() {
             let expected = "a low or a high limit: nothing else is measured";

@@ -12,18 +12,17 @@ use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::points::DigitalOut::KelvinTest;
 use crate::dut::em_relay::readings::Readings;
+use crate::rig::supply::SWITCHING_TIMEOUT;
 use units::Span;
 
 const PINS: [&str; 5] = ["coil A", "coil B", "COM", "NO", "NC"];
 const COM: usize = 2;
-/// Longest time until the relays of a range have switched.
-const SWITCHES: Span = Span::ms(500);
 
 /// Returns the acts of the check. They also select the supply range, which the safe outputs had deselected with all
 /// sources at zero.
 pub(super) fn acts(context: &Context) -> Vec<Act> {
     let kelvin = [set(&[(KelvinTest, true)]), Act::Wait(Span::ms(1))];
-    let within = SWITCHES;
+    let within = SWITCHING_TIMEOUT;
     match context.range_code() {
         Some(code) => [Act::SelectRange(code)]
             .into_iter()

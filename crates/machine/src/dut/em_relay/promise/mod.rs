@@ -24,7 +24,8 @@ const FALSE_ALARMS: f64 = 5e-5;
 /// Promises and the evidence against them.
 #[derive(Debug, Clone)]
 pub struct Promises {
-    watched: [Watched; Promise::ALL.len()],
+    /// One for each promise, by its index.
+    watched: Vec<Watched>,
     /// Broken promises that the station has not announced yet.
     new: Vec<Promise>,
 }
@@ -43,7 +44,7 @@ impl Promises {
     /// Starts from the promises of rig and recipe, and what a stored calibration has disproved of them.
     pub fn new(context: &Context) -> Self {
         let stored = &context.calibration.broken;
-        let watched = Promise::ALL.map(|promise| {
+        let watched = Promise::ALL.iter().map(|&promise| {
             let promised = promised(context, promise);
             let mut stored = stored.iter().filter(|it| it.promise == promise);
             Watched {
@@ -54,6 +55,7 @@ impl Promises {
                 broken: stored.find(|it| it.used > promised).copied(),
             }
         });
+        let watched: Vec<Watched> = watched.collect();
         let broken = watched.iter().filter_map(|it| it.broken);
         Self {
             new: broken.map(|it| it.promise).collect(),
@@ -63,9 +65,7 @@ impl Promises {
 
     /// Returns the promised value, in the unit of its key.
     pub fn promised(&self, promise: Promise) -> f64 {
-        let mut watched = self.watched.iter();
-        let of = watched.find(|it| it.promise == promise);
-        of.map_or(f64::NAN, |it| it.promised)
+        self.watched[promise.index()].promised
     }
 
     /// Returns the promises that do not hold.
@@ -108,13 +108,10 @@ impl Promises {
 
     /// Adds residuals; a promise that they disprove counts as broken from now on, with the newest figures.
     pub fn observe(&mut self, promise: Promise, residuals: impl IntoIterator<Item = Residuals>) {
-        let mut watched = self.watched.iter_mut();
-        let Some(of) = watched.find(|it| it.promise == promise) else {
-            return;
-        };
-        let was_broken = of.broken.is_some();
-        of.observe(residuals);
-        if of.broken.is_some() && !was_broken {
+        let watched = &mut self.watched[promise.index()];
+        let was_broken = watched.broken.is_some();
+        watched.observe(residuals);
+        if watched.broken.is_some() && !was_broken {
             self.new.push(promise);
         }
     }

@@ -30,7 +30,7 @@ pub enum ReferenceFault {
     Scans {
         /// Scans read.
         found: usize,
-        /// Scans asked for.
+        /// Scans of the act.
         expected: usize,
     },
     /// The gain error exceeds 1.5 times the maker's accuracy.
