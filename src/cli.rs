@@ -9,6 +9,7 @@ pub mod config;
 #[cfg(feature = "sim")]
 pub mod demo;
 pub mod history;
+pub mod init;
 pub mod lot;
 mod output;
 pub mod rig;
@@ -25,11 +26,17 @@ mod terminal;
 pub mod user;
 pub mod wear;
 
+use ::config::Folder;
 use app::exit::Exit;
 use app::order::Files;
 use clap::{Parser, Subcommand};
 use machine::view::By;
+#[cfg(feature = "sim")]
+use std::path::Path;
 use std::path::PathBuf;
+
+/// Directory of the configuration without `--config`.
+const CONFIG: &str = "config";
 
 /// Controller of a JZC-22F relay performance tester with automatic feed and discharge.
 #[derive(Debug, Parser)]
@@ -41,14 +48,15 @@ use std::path::PathBuf;
   relayrig serve --line measure=/dev/ttyUSB0 --line motion=/dev/ttyUSB1
   relayrig run --sim --pace virtual --lot A --recipe jzc-22f-012 --count 20
   relayrig history list
+  relayrig init rig1
   relayrig config check
 
 Exit status: 0 done, 1 done and the answer is no, 2 bad input, 3 the rig has trouble, 4 stopped by the operator."
 )]
 pub struct Cli {
-    /// Directory with rig.toml, scene.toml, golden.toml, sim.toml and recipes/
-    #[arg(long, global = true, default_value = "config", value_name = "DIR")]
-    pub config: PathBuf,
+    /// Directory of the configuration, as `init` writes it [default: config; demo: the one inside this program]
+    #[arg(long, global = true, value_name = "DIR")]
+    pub config: Option<PathBuf>,
     /// History file of one rig, real or simulated [default: relayrig.db, or relayrig-demo.db for demo]
     #[arg(long, global = true, value_name = "FILE")]
     pub db: Option<PathBuf>,
@@ -80,6 +88,8 @@ pub enum Command {
     Story(story::StoryArgs),
     /// Reproducible figures, each beside its bar
     Study(study::StudyArgs),
+    /// Write a configuration of your own, with comments, in a new directory
+    Init(init::InitArgs),
     /// Check the configuration, or print the schema of a file
     #[command(subcommand)]
     Config(config::Args),
@@ -112,15 +122,27 @@ impl Command {
             _ => "relayrig.db",
         }
     }
+
+    /// Returns the configuration without `--config`. A demo does not read the directory `config`, so that it is the same
+    /// everywhere.
+    fn own_config(&self) -> Folder {
+        match self {
+            #[cfg(feature = "sim")]
+            Self::Demo(_) => Folder::built_in(),
+            #[cfg(feature = "sim")]
+            Self::Sim(args) if args.faults && !Path::new(CONFIG).exists() => Folder::built_in(),
+            _ => Folder::Directory(CONFIG.into()),
+        }
+    }
 }
 
 impl Cli {
     /// Runs the command. An error is bad input; the caller prints it once.
     pub fn execute(self) -> anyhow::Result<Exit> {
-        let own = self.command.own_history();
+        let (own_config, own_history) = (self.command.own_config(), self.command.own_history());
         let files = Files {
-            config: self.config,
-            db: self.db.unwrap_or_else(|| own.into()),
+            config: self.config.clone().map_or(own_config, Folder::Directory),
+            db: self.db.unwrap_or_else(|| own_history.into()),
         };
         let (config, db) = (&files.config, &files.db);
         match self.command {
@@ -133,7 +155,10 @@ impl Cli {
             Command::Sim(args) => sim::run(config, &args),
             #[cfg(feature = "sim")]
             Command::Story(args) => story::run(&files, &args),
-            Command::Study(args) => study::run(config, &args),
+            Command::Study(args) => {
+                study::run(&self.config.unwrap_or_else(|| CONFIG.into()), &args)
+            }
+            Command::Init(args) => init::run(&args),
             Command::Config(args) => config::run(config, &args),
             Command::Bus(args) => bus::run(&args),
             Command::Check(args) => check::run(args),

@@ -6,10 +6,11 @@
 //! a shared reader would hide its mistakes from the tests.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde::Deserialize;
 
+pub use crate::files::Files;
 use crate::terminal::ModuleSpec;
 pub use crate::world::board::supply::SupplyRange;
 pub use crate::world::table::{DeviceWorld, FaultSpec, WorldTable, read_world};
@@ -152,44 +153,12 @@ pub struct RigFile {
     pub reference: References,
 }
 
-/// Reads `rig.toml` of the configuration folder.
+/// Reads `rig.toml`.
 ///
 /// # Errors
 /// Fails when the file cannot be read, is not TOML, or lacks a required key.
-pub fn read_rig(dir: &Path) -> Result<RigFile, ConfigError> {
-    let path = dir.join("rig.toml");
-    let text = read_text(&path)?;
-    let raw: RawRig = toml::from_str(&text).map_err(|e| content(&path, &text, &e))?;
-    Ok(resolve(raw))
-}
-
-/// Reads a configuration file as text.
-pub(crate) fn read_text(path: &Path) -> Result<String, ConfigError> {
-    std::fs::read_to_string(path).map_err(|source| ConfigError::Read {
-        path: path.to_path_buf(),
-        source,
-    })
-}
-
-/// Builds the error for invalid TOML, with its line.
-pub(crate) fn content(path: &Path, text: &str, error: &toml::de::Error) -> ConfigError {
-    let line = error.span().map_or(0, |s| line_of(text, s.start));
-    let message = error.message().lines().collect::<Vec<_>>().join(" ");
-    ConfigError::Content {
-        path: path.to_path_buf(),
-        line,
-        message,
-    }
-}
-
-/// Returns the line (from 1) of a byte offset.
-fn line_of(text: &str, offset: usize) -> usize {
-    text.as_bytes()
-        .iter()
-        .take(offset)
-        .filter(|&&b| b == b'\n')
-        .count()
-        + 1
+pub fn read_rig(files: &Files) -> Result<RigFile, ConfigError> {
+    Ok(resolve(files.read("rig.toml")?.parse()?))
 }
 
 #[derive(Deserialize)]

@@ -28,6 +28,7 @@ pub mod config;
 pub mod dcon;
 mod error;
 pub mod fault;
+mod files;
 pub mod fingerprint;
 pub mod journal;
 pub mod line;
@@ -43,4 +44,5 @@ pub mod wire;
 pub mod world;
 
 pub use error::SimError;
+pub use files::Files;
 pub use shared::{Options, SharedRig, build, build_bench, faults};

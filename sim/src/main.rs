@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use rigsim::pty::{self, Ptys, Rates};
-use rigsim::{Options, SharedRig, SimError};
+use rigsim::{Files, Options, SharedRig, SimError};
 
 struct Arguments {
     options: Options,
@@ -55,7 +55,7 @@ fn serve(arguments: &Arguments) -> Result<(SharedRig, Ptys), SimError> {
 fn arguments(mut given: impl Iterator<Item = String>) -> Result<Arguments, String> {
     let mut arguments = Arguments {
         options: Options {
-            config_dir: "config".into(),
+            files: Files::Directory("config".into()),
             world: None,
             seed: 1,
             recipe: "jzc-22f-012".into(),
@@ -72,7 +72,7 @@ fn arguments(mut given: impl Iterator<Item = String>) -> Result<Arguments, Strin
             .ok_or_else(|| format!("{name}: a value is missing"))?;
         let options = &mut arguments.options;
         match name.as_str() {
-            "--config" => options.config_dir = value.into(),
+            "--config" => options.files = Files::Directory(value.into()),
             "--world" => options.world = Some(value.into()),
             "--recipe" => options.recipe = value,
             "--fault" => options.faults.push(value),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::bench;
-use crate::config::{LineSpec, RigFile, WorldTable, read_rig, read_world};
+use crate::config::{Files, LineSpec, RigFile, WorldTable, read_rig, read_world};
 use crate::error::SimError;
 use crate::fault::{self, FaultInfo, LineFaults};
 use crate::module::Module;
@@ -18,8 +18,8 @@ use crate::world::{World, WorldOptions};
 /// Choice of rig, lot and faults.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// Folder with `rig.toml`, `sim.toml`, `golden.toml`, `recipes/`.
-    pub config_dir: PathBuf,
+    /// Files `rig.toml`, `scene.toml`, `sim.toml`, `golden.toml`, `recipes/`.
+    pub files: Files,
     /// World file in place of `sim.toml`.
     pub world: Option<PathBuf>,
     /// Seed of the rig's errors and of the lot.
@@ -47,7 +47,7 @@ impl std::fmt::Debug for SharedRig {
 impl Options {
     fn of_world(&self, faults: Vec<(String, f64)>) -> WorldOptions {
         WorldOptions {
-            config_dir: self.config_dir.clone(),
+            files: self.files.clone(),
             world_file: self.world.clone(),
             seed: self.seed,
             recipe: self.recipe.clone(),
@@ -58,13 +58,13 @@ impl Options {
     }
 }
 
-/// Builds the rig of `config_dir`; the seed draws its errors and parts.
+/// Builds the rig of its files; the seed draws its errors and parts.
 ///
 /// # Errors
 /// Fails when a file is missing or wrong, a module is not simulated, or a fault is unknown or has an unfit value.
 pub fn build(options: &Options) -> Result<SharedRig, SimError> {
-    let file = read_rig(&options.config_dir)?;
-    let table = read_world(&options.config_dir, options.world.as_deref())?;
+    let file = read_rig(&options.files)?;
+    let table = read_world(&options.files, options.world.as_deref())?;
     let mut faults = LineFaults::none(options.seed);
     let mut world_faults = Vec::new();
     for text in &options.faults {
@@ -103,8 +103,8 @@ pub fn build_bench(file: &Path, faults: &[String]) -> Result<SharedRig, SimError
 ///
 /// # Errors
 /// Fails when the world file, which lists the faults of the world, cannot be read.
-pub fn faults(config_dir: &Path, world: Option<&Path>) -> Result<Vec<FaultInfo>, SimError> {
-    let table = read_world(config_dir, world)?;
+pub fn faults(files: &Files, world: Option<&Path>) -> Result<Vec<FaultInfo>, SimError> {
+    let table = read_world(files, world)?;
     let of_the_world = table.fault.iter().map(|(name, spec)| FaultInfo {
         name: name.clone(),
         unit: spec.unit.clone(),

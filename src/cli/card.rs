@@ -3,9 +3,8 @@
 use super::history::paper::PaperArgs;
 use app::exit::Exit;
 use clap::Args;
-use config::{load_card, load_recipe};
+use config::{Folder, load_card, load_recipe};
 use history::report::card::card;
-use std::path::Path;
 
 /// Arguments of `card`.
 #[derive(Debug, Args)]
@@ -22,7 +21,7 @@ pub struct CardArgs {
 ///
 /// # Errors
 /// Fails when the configuration is faulty or the file cannot be written.
-pub fn run(config: &Path, args: &CardArgs) -> anyhow::Result<Exit> {
+pub fn run(config: &Folder, args: &CardArgs) -> anyhow::Result<Exit> {
     let recipe = load_recipe(config, &args.recipe)?;
     let plant = load_card(config)?;
     let paper = args.paper.paper();

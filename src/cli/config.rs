@@ -2,10 +2,9 @@
 
 use anyhow::Context;
 use app::exit::Exit;
-use config::overview;
 use config::schema::{FILES, of_file};
+use config::{Folder, overview};
 use std::io::Write;
-use std::path::Path;
 
 /// Checks the configuration or prints a schema.
 #[derive(Debug, Clone, clap::Subcommand)]
@@ -24,13 +23,13 @@ pub enum Args {
     },
 }
 
-/// Runs the command on the configuration in `dir`.
+/// Runs the command on the configuration in `folder`.
 ///
 /// # Errors
 /// Fails with every fault of the configuration: exit status 2.
-pub fn run(dir: &Path, args: &Args) -> anyhow::Result<Exit> {
+pub fn run(folder: &Folder, args: &Args) -> anyhow::Result<Exit> {
     let text = match args {
-        Args::Check => overview(dir)?,
+        Args::Check => overview(folder)?,
         Args::Schema { name } => {
             let known = || format!("found {name:?}, expected one of {}", FILES.join(", "));
             let schema = of_file(name).with_context(known)?;

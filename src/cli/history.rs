@@ -24,6 +24,7 @@ use super::output::Output;
 use app::copies;
 use app::exit::Exit;
 use clap::{Args, Subcommand};
+use config::Folder;
 use history::Archive;
 use history::inquiry::InquiryError;
 use std::path::{Path, PathBuf};
@@ -106,7 +107,7 @@ enum Command {
 }
 
 /// Runs the command on the history file `db`. An error is bad input: exit status 2.
-pub fn run(config: &Path, db: &Path, args: HistoryArgs) -> anyhow::Result<Exit> {
+pub fn run(config: &Folder, db: &Path, args: HistoryArgs) -> anyhow::Result<Exit> {
     super::unless_pipe_closed(dispatch(config, db, *args.command).map_err(by_option))
 }
 
@@ -118,7 +119,7 @@ fn by_option(error: anyhow::Error) -> anyhow::Error {
     }
 }
 
-fn dispatch(config: &Path, db: &Path, command: Command) -> anyhow::Result<Exit> {
+fn dispatch(config: &Folder, db: &Path, command: Command) -> anyhow::Result<Exit> {
     match command {
         Command::Import(args) => return import::run(db, &args),
         Command::Generate(args) => return generate::run(config, db, &args),

@@ -2,13 +2,15 @@
 
 use anyhow::Context;
 use app::exit::Exit;
+use app::simulated;
 use app::truth_file::TruthFile;
+use config::Folder;
 use rigsim::Options;
 use rigsim::fault::FaultInfo;
 use rigsim::pty::{self, Rates};
 use serde_json::{Value, json};
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// The simulated rig.
@@ -57,9 +59,13 @@ pub struct SimArgs {
 }
 
 /// Runs the command until it is interrupted.
-pub fn run(config: &Path, args: &SimArgs) -> anyhow::Result<Exit> {
+pub fn run(config: &Folder, args: &SimArgs) -> anyhow::Result<Exit> {
+    let files = simulated::files(config);
+    if args.bench.is_none() {
+        config.check_exists()?;
+    }
     if args.faults {
-        let faults = rigsim::faults(config, args.world.as_deref())?;
+        let faults = rigsim::faults(&files, args.world.as_deref())?;
         let row = |fault: FaultInfo| {
             format!(
                 "{:<14} {:<30} default {:<12} {}\n",
@@ -75,7 +81,7 @@ pub fn run(config: &Path, args: &SimArgs) -> anyhow::Result<Exit> {
     let rig = match &args.bench {
         Some(file) => rigsim::build_bench(file, &args.fault)?,
         None => rigsim::build(&Options {
-            config_dir: config.to_path_buf(),
+            files,
             world: args.world.clone(),
             seed: args.seed,
             recipe: args.recipe.clone(),

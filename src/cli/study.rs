@@ -98,7 +98,7 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<Exit> {
     let order = Order {
         program: std::env::current_exe().context("finding this program")?,
         config: config.to_owned(),
-        recipe: Arc::new(load_recipe(config, &args.recipe)?),
+        recipe: Arc::new(load_recipe(&config.into(), &args.recipe)?),
         world: args.world.clone(),
         faults: Vec::new(),
         lots: args.seeds.unwrap_or(lots),

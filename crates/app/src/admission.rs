@@ -118,7 +118,7 @@ pub fn admit(
     if order.count == Some(0) && purpose == Purpose::Lot {
         return Err(AdmissionError::NoParts);
     }
-    let recipe = load_recipe(&plant.dir, &order.recipe)?;
+    let recipe = load_recipe(&plant.folder, &order.recipe)?;
     plant.admit(&recipe)?;
     if purpose == Purpose::Lot {
         check_lot_state(db, &recipe, order)?;

@@ -1,5 +1,6 @@
-//! What a person or a program orders: a lot, and the paths of its files.
+//! What a person or a program orders: a lot, and its files.
 
+use config::Folder;
 use std::path::PathBuf;
 
 /// Order of a lot.
@@ -16,11 +17,11 @@ pub struct LotOrder {
     pub retest: Option<String>,
 }
 
-/// Paths of configuration and history.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// Configuration and history.
+#[derive(Debug, Clone)]
 pub struct Files {
-    /// Folder of the configuration.
-    pub config: PathBuf,
+    /// Files of the configuration.
+    pub config: Folder,
     /// History file.
     pub db: PathBuf,
 }

@@ -2,9 +2,9 @@
 
 use super::order::LotOrder;
 use super::source::Simulated;
-use config::Plant;
+use config::{Folder, Plant};
 use machine::dut::Calibration;
-use rigsim::{Options, SharedRig};
+use rigsim::{Files, Options, SharedRig};
 
 /// A simulated rig that exists before and after the run.
 #[derive(Debug, Clone)]
@@ -28,6 +28,14 @@ impl LiveRig {
     }
 }
 
+/// Returns the configuration as the simulated rig reads it; of files in memory, as they are now.
+pub fn files(folder: &Folder) -> Files {
+    match folder {
+        Folder::Directory(dir) => Files::Directory(dir.clone()),
+        Folder::Memory(memory) => Files::Texts(memory.texts()),
+    }
+}
+
 /// Returns the faults of the source, and one more that loads reference parts as often as the lot's checks need them.
 fn faults(plant: &Plant, source: &Simulated) -> Vec<String> {
     let mut faults = source.faults.clone();
@@ -40,7 +48,7 @@ fn faults(plant: &Plant, source: &Simulated) -> Vec<String> {
 /// Returns the options that fill the magazine with reference parts and the parts of the lot.
 fn loaded(plant: &Plant, source: &Simulated, order: &LotOrder) -> Options {
     Options {
-        config_dir: plant.dir.clone(),
+        files: files(&plant.folder),
         world: source.world.clone(),
         seed: source.seed,
         recipe: order.recipe.clone(),

@@ -17,6 +17,15 @@ pub enum ConfigError {
         /// Error of the operating system.
         source: std::io::Error,
     },
+    /// The directory does not exist.
+    #[error(
+        "{0}: found no such folder, expected a configuration (`relayrig init {0}` writes one, --config names another one)",
+        dir.display()
+    )]
+    NoFolder {
+        /// Path of the directory.
+        dir: PathBuf,
+    },
     /// The text is not TOML: a stray character, a key given twice, a string without end.
     #[error("{}:{line}: {problem}, expected valid TOML", file.display())]
     Syntax {
@@ -110,6 +119,7 @@ impl ConfigError {
                 Some(path.replace('[', ".").replace(']', ""))
             }
             Self::Unreadable { .. }
+            | Self::NoFolder { .. }
             | Self::Syntax { .. }
             | Self::Rule { .. }
             | Self::UnknownRecipe { .. }

@@ -1,16 +1,16 @@
 //! Every fault of a configuration, file by file.
 
 use super::card::load_card;
-use super::check::{Faults, File};
+use super::check::Faults;
 use super::error::ConfigError;
+use super::folder::Folder;
 use super::keys;
 use super::lot::load_lot;
 use super::plant::{Plant, load_scene};
-use super::recipes::{kind_of, parse_recipe, recipe_names};
+use super::recipes::{kind_of, parse_recipe, read_recipe, recipe_names};
 use machine::form::Key;
 use std::collections::BTreeSet;
 use std::fmt;
-use std::path::Path;
 use thiserror::Error;
 
 /// The faults of a configuration, at least one. The text has a line for each.
@@ -35,12 +35,12 @@ impl fmt::Display for ConfigFaults {
     }
 }
 
-/// Checks all files of `dir`. A file whose keys are wrong hides what else the plant would refuse in it, and a wrong rig hides
+/// Checks all files of `folder`. A file whose keys are wrong hides what else the plant would refuse in it, and a wrong rig hides
 /// what it cannot perform of a recipe.
 ///
 /// # Errors
 /// Every fault found.
-pub fn check_all(dir: &Path) -> Result<Plant, ConfigFaults> {
+pub fn check_all(folder: &Folder) -> Result<Plant, ConfigFaults> {
     let mut found = Found::default();
     for (name, keys) in [
         ("rig.toml", keys::rig::FILE),
@@ -48,14 +48,14 @@ pub fn check_all(dir: &Path) -> Result<Plant, ConfigFaults> {
         ("lot.toml", keys::lot::FILE),
         ("card.toml", keys::card::FILE),
     ] {
-        found.keys(dir, name, keys);
+        found.keys(folder, name, keys);
     }
-    let plant = found.note(Plant::load(dir));
-    found.note(load_scene(&dir.join("scene.toml")));
-    found.note(load_lot(dir));
-    found.note(load_card(dir));
-    for name in recipe_names(dir) {
-        found.recipe(dir, plant.as_ref(), &name);
+    let plant = found.note(Plant::load(folder));
+    found.note(load_scene(folder));
+    found.note(load_lot(folder));
+    found.note(load_card(folder));
+    for name in recipe_names(folder) {
+        found.recipe(folder, plant.as_ref(), &name);
     }
     match plant {
         Some(plant) if found.faults.is_empty() => Ok(plant),
@@ -81,18 +81,17 @@ impl Found {
         result.map_err(|fault| self.add(fault)).ok()
     }
 
-    fn keys(&mut self, dir: &Path, name: &str, keys: &[Key]) {
+    fn keys(&mut self, folder: &Folder, name: &str, keys: &[Key]) {
         // Loading reports a file that is missing or not TOML.
-        if let Ok(file) = File::read(dir.join(name), "a file of the configuration") {
+        if let Ok(file) = folder.file(name, "a file of the configuration") {
             file.faults(keys)
                 .into_iter()
                 .for_each(|fault| self.add(fault));
         }
     }
 
-    fn recipe(&mut self, dir: &Path, plant: Option<&Plant>, name: &str) {
-        let path = dir.join("recipes").join(format!("{name}.toml"));
-        let Some(file) = self.note(File::read(path, "a recipe")) else {
+    fn recipe(&mut self, folder: &Folder, plant: Option<&Plant>, name: &str) {
+        let Some(file) = self.note(read_recipe(folder, name)) else {
             return;
         };
         let Some(kind) = self.note(kind_of(&file)) else {

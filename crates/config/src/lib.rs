@@ -19,11 +19,14 @@
 //!
 //! The controller does not read `sim.toml`, which describes the simulated world.
 
+mod built_in;
 mod card;
 pub mod check;
 mod edit;
 pub mod error;
 mod faults;
+mod folder;
+mod init;
 pub mod keys;
 mod lot;
 pub mod nearest;
@@ -43,6 +46,8 @@ mod tests;
 pub use card::load_card;
 pub use error::ConfigError;
 pub use faults::{ConfigFaults, check_all};
+pub use folder::{Folder, Memory};
+pub use init::{InitError, init};
 pub use overview::overview;
 pub use plant::Plant;
 pub use recipes::{load_recipe, recipe_names};

@@ -1,21 +1,21 @@
 //! Overview of a checked configuration, as `config check` prints it.
 
 use super::faults::{ConfigFaults, check_all};
+use super::folder::Folder;
 use super::plant::Plant;
-use super::recipes::{load_recipe, recipe_names};
+use super::recipes::{load_recipe, recipe_file, recipe_names};
 use machine::rig::wiring::{LineId, Wiring};
-use std::path::Path;
 
 /// Checks every file and returns a text with a line per file, serial line and recipe.
 ///
 /// # Errors
 /// Fails with every fault of the configuration.
-pub fn overview(dir: &Path) -> Result<String, ConfigFaults> {
-    let plant = check_all(dir)?;
+pub fn overview(folder: &Folder) -> Result<String, ConfigFaults> {
+    let plant = check_all(folder)?;
     let wiring = &plant.wiring;
     let mut lines = vec![format!(
         "{}: {} lines, {} modules",
-        dir.join("rig.toml").display(),
+        folder.path("rig.toml").display(),
         wiring.lines.len(),
         wiring.modules.len()
     )];
@@ -29,18 +29,18 @@ pub fn overview(dir: &Path) -> Result<String, ConfigFaults> {
         .push("  every point has its own terminal; every address is unique on its line".to_owned());
     lines.push(format!(
         "{}: {} bodies, every actuator has its stroke",
-        dir.join("scene.toml").display(),
+        folder.path("scene.toml").display(),
         plant.scene.elements.len()
     ));
     if let Some(file) = &plant.calibration.reference_file {
         let count = plant.reference_parts.parts.len();
         lines.push(format!(
             "{}: {count} reference parts",
-            dir.join(file).display()
+            folder.path(file).display()
         ));
     }
-    for name in recipe_names(dir) {
-        lines.push(describe_recipe(dir, &plant, &name)?);
+    for name in recipe_names(folder) {
+        lines.push(describe_recipe(folder, &plant, &name)?);
     }
     lines.push("ok\n".to_owned());
     Ok(lines.join("\n"))
@@ -60,9 +60,9 @@ fn describe_line(wiring: &Wiring, line: LineId) -> String {
     )
 }
 
-fn describe_recipe(dir: &Path, plant: &Plant, name: &str) -> Result<String, ConfigFaults> {
-    let recipe = load_recipe(dir, name)?;
-    let file = dir.join("recipes").join(format!("{name}.toml"));
+fn describe_recipe(folder: &Folder, plant: &Plant, name: &str) -> Result<String, ConfigFaults> {
+    let recipe = load_recipe(folder, name)?;
+    let file = folder.path(&recipe_file(name));
     let nominal_v = recipe.device.part().nominal_v;
     let reference = match nominal_v.map(|volts| plant.reference_parts.of_nominal(volts).count()) {
         None => "no reference parts needed".to_owned(),

@@ -2,8 +2,10 @@
 
 use super::check::File;
 use super::error::ConfigError;
+use super::folder::Folder;
 use super::keys;
 use super::lot::load_lot;
+use super::recipes::recipe_file;
 use super::tree::{Node, NotToml, not_toml};
 use machine::dut::accuracy::AccuracySettings;
 use machine::dut::device::Rig;
@@ -17,14 +19,14 @@ use machine::rig::wiring::Wiring;
 use machine::station::gates::LotSettings;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Configuration of a plant, checked.
 #[derive(Debug, Clone)]
 pub struct Plant {
-    /// Folder of the configuration.
-    pub dir: PathBuf,
+    /// Files of the configuration.
+    pub folder: Folder,
     /// Serial lines, modules, points and mechanism of the rig.
     pub wiring: Arc<Wiring>,
     /// Bodies around the nest.
@@ -68,31 +70,31 @@ struct GaugeSections {
 }
 
 impl Plant {
-    /// Reads and checks the files of `dir`; opens no port and moves no actuator.
+    /// Reads and checks the files of `folder`; opens no port and moves no actuator.
     ///
     /// # Errors
     /// Fails on the first fault; the error names file, line, key, what was found and what was expected.
-    pub fn load(dir: &Path) -> Result<Self, ConfigError> {
-        let rig = File::read(dir.join("rig.toml"), "the wiring of the rig")?;
+    pub fn load(folder: &Folder) -> Result<Self, ConfigError> {
+        let rig = folder.file("rig.toml", "the wiring of the rig")?;
         let settings: RigSettings = rig.settings(keys::rig::FILE)?;
         let gauge: GaugeSections = rig.settings(keys::rig::FILE)?;
         let wiring =
             Wiring::resolve(&settings, dut::FIXTURES).map_err(|fault| rig.locate(&fault))?;
         let reference_parts = match &gauge.calibration.reference_file {
-            Some(name) => load_reference_parts(&dir.join(name))?,
+            Some(name) => load_reference_parts(folder, name)?,
             None => ReferenceSet::default(),
         };
-        let scene = load_scene(&dir.join("scene.toml"))?;
+        let scene = load_scene(folder)?;
         check_axis(&wiring, &scene, &rig)?;
         Ok(Self {
-            dir: dir.to_owned(),
+            folder: folder.clone(),
             wiring: Arc::new(wiring),
             scene,
             reference: gauge.reference,
             accuracy: gauge.accuracy,
             calibration: gauge.calibration,
             reference_parts,
-            lot: load_lot(dir)?,
+            lot: load_lot(folder)?,
             history: gauge.history,
         })
     }
@@ -121,10 +123,7 @@ impl Plant {
     /// Returns every reason why this plant cannot carry out a recipe, each with file, line, key and cause.
     pub fn infeasible(&self, recipe: &Recipe) -> Vec<ConfigError> {
         let faults = recipe.infeasible(&self.rig());
-        let path = self
-            .dir
-            .join("recipes")
-            .join(format!("{}.toml", recipe.name));
+        let path = self.folder.path(&recipe_file(&recipe.name));
         match File::parse(path, recipe.source_text.clone()) {
             Ok(file) => faults.iter().map(|fault| file.locate(fault)).collect(),
             Err(error) => vec![error],
@@ -133,18 +132,6 @@ impl Plant {
 }
 
 impl File {
-    /// Reads and parses a file; when the file is missing, the message says that `expected` should be in it.
-    pub fn read(path: PathBuf, expected: &'static str) -> Result<Self, ConfigError> {
-        match std::fs::read_to_string(&path) {
-            Ok(text) => Self::parse(path, text),
-            Err(source) => Err(ConfigError::Unreadable {
-                file: path,
-                expected,
-                source,
-            }),
-        }
-    }
-
     /// Parses a text; messages name it as the file at `path`.
     pub fn parse(path: PathBuf, text: String) -> Result<Self, ConfigError> {
         match Node::parse(&text) {
@@ -165,8 +152,8 @@ impl File {
 }
 
 /// Loads the reference parts; fails when a serial number appears twice.
-fn load_reference_parts(path: &Path) -> Result<ReferenceSet, ConfigError> {
-    let file = File::read(path.to_owned(), "the reference parts")?;
+fn load_reference_parts(folder: &Folder, name: &str) -> Result<ReferenceSet, ConfigError> {
+    let file = folder.file(name, "the reference parts")?;
     let set: ReferenceSet = file.settings(keys::golden::FILE)?;
     for (index, part) in set.parts.iter().enumerate() {
         if let Some(other) = set.parts[..index]
@@ -187,8 +174,8 @@ fn load_reference_parts(path: &Path) -> Result<ReferenceSet, ConfigError> {
 
 /// Loads the scene. The guard checks it: unknown keys, bodies without size, actuators whose stroke is blocked in an empty
 /// rig.
-pub(super) fn load_scene(path: &Path) -> Result<GuardSettings, ConfigError> {
-    let file = File::read(path.to_owned(), "the bodies around the nest")?;
+pub(super) fn load_scene(folder: &Folder) -> Result<GuardSettings, ConfigError> {
+    let file = folder.file("scene.toml", "the bodies around the nest")?;
     let settings: GuardSettings =
         toml::from_str(&file.text).map_err(|error| file.type_mismatch(&error))?;
     Guard::build(&settings).map_err(|error| file.broken_rule(&error))?;

@@ -2,6 +2,7 @@
 
 use super::check::File;
 use super::error::ConfigError;
+use super::folder::Folder;
 use super::keys;
 use super::tree::{Node, Value};
 use data_encoding::HEXLOWER;
@@ -9,42 +10,37 @@ use machine::dut::{Kind, Recipe};
 use machine::form::one_of;
 use machine::rig::fault::Fault;
 use sha2::{Digest, Sha256};
-use std::path::{Path, PathBuf};
 
-/// Reads and checks the recipe `name` of the configuration in `dir`.
+/// Reads and checks the recipe `name` of a configuration.
 ///
 /// # Errors
 /// Fails when no recipe has this name, or as [`super::Plant::load`] does.
-pub fn load_recipe(dir: &Path, name: &str) -> Result<Recipe, ConfigError> {
-    let file = File::read(recipe_path(dir, name)?, "a recipe")?;
-    parse_recipe(file, name)
+pub fn load_recipe(folder: &Folder, name: &str) -> Result<Recipe, ConfigError> {
+    parse_recipe(read_recipe(folder, name)?, name)
 }
 
-/// Returns the path of an existing recipe. Only the name of a recipe becomes a path, so `../rig` is refused.
-pub(super) fn recipe_path(dir: &Path, name: &str) -> Result<PathBuf, ConfigError> {
-    let folder = dir.join("recipes");
-    let known = recipe_names(dir);
+/// Reads the file of a recipe. Only the name of an existing recipe becomes a path, so `../rig` is refused.
+pub(super) fn read_recipe(folder: &Folder, name: &str) -> Result<File, ConfigError> {
+    folder.check_exists()?;
+    let known = recipe_names(folder);
     if !known.iter().any(|known| known == name) {
         return Err(ConfigError::UnknownRecipe {
-            dir: folder,
+            dir: folder.path("recipes"),
             name: name.to_owned(),
             known,
         });
     }
-    Ok(folder.join(format!("{name}.toml")))
+    folder.file(&recipe_file(name), "a recipe")
+}
+
+/// Returns the file of a recipe within its configuration.
+pub(super) fn recipe_file(name: &str) -> String {
+    format!("recipes/{name}.toml")
 }
 
 /// Returns the names of all recipes, sorted; none when the folder cannot be read.
-pub fn recipe_names(dir: &Path) -> Vec<String> {
-    let Ok(entries) = std::fs::read_dir(dir.join("recipes")) else {
-        return Vec::new();
-    };
-    let mut names: Vec<String> = entries
-        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-        .filter_map(|file| file.strip_suffix(".toml").map(str::to_owned))
-        .collect();
-    names.sort();
-    names
+pub fn recipe_names(folder: &Folder) -> Vec<String> {
+    folder.stems("recipes")
 }
 
 pub(super) fn parse_recipe(file: File, name: &str) -> Result<Recipe, ConfigError> {

@@ -14,14 +14,12 @@
 use super::check::File;
 use super::edit::edited;
 use super::error::ConfigError;
+use super::folder::Folder;
 use super::plant::Plant;
-use super::recipes::{parse_recipe, recipe_path, sha256_hex};
+use super::recipes::{parse_recipe, read_recipe, recipe_file, sha256_hex};
 use super::sheet::{Field, fields};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::time::UNIX_EPOCH;
 
 /// A revision as the page shows it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -34,8 +32,10 @@ pub struct Revision {
     pub newest: u32,
     /// SHA-256 of the text; runs store the same hash.
     pub hash: String,
-    /// Time at which the file was written, microseconds since 1970 UTC; `None` when the file system does not keep it.
+    /// Time at which the file was written, microseconds since 1970 UTC; `None` when it is not known.
     pub saved_at_us: Option<i64>,
+    /// False when revisions last only until the program ends.
+    pub kept: bool,
     /// All keys with their values.
     pub fields: Vec<Field>,
 }
@@ -56,15 +56,19 @@ pub struct Change {
 ///
 /// # Errors
 /// Fails when the recipe has no revision with this number, or as [`super::load_recipe`] does.
-pub fn revision(dir: &Path, name: &str, number: Option<u32>) -> Result<Revision, ConfigError> {
-    let file = File::read(recipe_path(dir, name)?, "a recipe")?;
-    let kept = earlier_revisions(dir, name);
-    let newest = number_of(dir, name, &kept, &file.text);
+pub fn revision(folder: &Folder, name: &str, number: Option<u32>) -> Result<Revision, ConfigError> {
+    let file = read_recipe(folder, name)?;
+    let kept = earlier_revisions(folder, name);
+    let newest = number_of(folder, name, &kept, &file.text);
     let number = number.unwrap_or(newest);
-    let file = if number == newest {
-        file
+    let (file, saved_at_us) = if number == newest {
+        (file, folder.saved_at_us(&recipe_file(name)))
     } else if kept.contains(&number) {
-        File::read(revision_path(dir, name, number), "a recipe")?
+        let earlier = revision_file(name, number);
+        (
+            folder.file(&earlier, "a recipe")?,
+            folder.saved_at_us(&earlier),
+        )
     } else {
         return Err(ConfigError::UnknownRevision {
             name: name.to_owned(),
@@ -76,7 +80,8 @@ pub fn revision(dir: &Path, name: &str, number: Option<u32>) -> Result<Revision,
         name: name.to_owned(),
         number,
         newest,
-        saved_at_us: saved_at_us(&file.path),
+        saved_at_us,
+        kept: matches!(folder, Folder::Directory(_)),
         fields: fields(&file)?,
         hash: parse_recipe(file, name)?.hash,
     })
@@ -87,23 +92,30 @@ pub fn revision(dir: &Path, name: &str, number: Option<u32>) -> Result<Revision,
 /// # Errors
 /// Fails when a value is refused, when `change` is not based on the newest revision, or when a file cannot be written.
 pub fn revise(plant: &Plant, change: &Change) -> Result<Revision, ConfigError> {
-    let (dir, name) = (&plant.dir, &change.name);
-    let path = recipe_path(dir, name)?;
-    let unwritten = |source| ConfigError::Unwritten {
-        file: path.clone(),
-        source,
-    };
-    let folder = std::fs::File::open(dir.join("recipes")).map_err(unwritten)?;
-    folder.lock().map_err(unwritten)?;
-    let old = File::read(path.clone(), "a recipe")?;
-    let kept = earlier_revisions(dir, name);
-    let number = number_of(dir, name, &kept, &old.text);
+    let alone = plant.folder.alone(|| write_next(plant, change));
+    alone.map_err(|source| unwritten(plant, change, source))?
+}
+
+/// Does the work of [`revise`] while no other change runs.
+fn write_next(plant: &Plant, change: &Change) -> Result<Revision, ConfigError> {
+    let (folder, name) = (&plant.folder, &change.name);
+    let unwritten = |source| unwritten(plant, change, source);
+    let old = read_recipe(folder, name)?;
+    let kept = earlier_revisions(folder, name);
+    let number = number_of(folder, name, &kept, &old.text);
     let text = next_text(plant, change, &old, number)?;
     if kept.last() != Some(&number) {
-        replace_file(&revision_path(dir, name, number), &old.text).map_err(unwritten)?;
+        let earlier = revision_file(name, number);
+        folder.replace(&earlier, &old.text).map_err(unwritten)?;
     }
-    replace_file(&path, &text).map_err(unwritten)?;
-    revision(dir, name, None)
+    let newest = recipe_file(name);
+    folder.replace(&newest, &text).map_err(unwritten)?;
+    revision(folder, name, None)
+}
+
+fn unwritten(plant: &Plant, change: &Change, source: std::io::Error) -> ConfigError {
+    let file = plant.folder.path(&recipe_file(&change.name));
+    ConfigError::Unwritten { file, source }
 }
 
 /// Applies `change` to `old`, the newest text, and checks the result.
@@ -131,51 +143,26 @@ fn next_text(
 }
 
 /// Returns the numbers of the earlier revisions in ascending order.
-fn earlier_revisions(dir: &Path, name: &str) -> Vec<u32> {
-    let files = std::fs::read_dir(revision_folder(dir, name));
-    let number = |file: std::fs::DirEntry| {
-        let file = file.file_name();
-        file.to_str()?.strip_suffix(".toml")?.parse().ok()
-    };
-    let files = files.into_iter().flatten().flatten();
-    let mut numbers: Vec<u32> = files.filter_map(number).collect();
+fn earlier_revisions(folder: &Folder, name: &str) -> Vec<u32> {
+    let stems = folder.stems(&format!("recipes/revisions/{name}"));
+    let numbers = stems.iter().filter_map(|stem| stem.parse().ok());
+    let mut numbers: Vec<u32> = numbers.collect();
     numbers.sort_unstable();
     numbers
 }
 
 /// Returns the number of the newest revision, whose text is `text`; `kept` are the numbers of the earlier ones.
-fn number_of(dir: &Path, name: &str, kept: &[u32], text: &str) -> u32 {
+fn number_of(folder: &Folder, name: &str, kept: &[u32], text: &str) -> u32 {
     let Some(last) = kept.last() else {
         return 1;
     };
-    match std::fs::read_to_string(revision_path(dir, name, *last)) {
+    match folder.read(&revision_file(name, *last)) {
         Ok(kept) if kept == text => *last,
         Ok(_) | Err(_) => last + 1,
     }
 }
 
-fn revision_folder(dir: &Path, name: &str) -> PathBuf {
-    dir.join("recipes").join("revisions").join(name)
-}
-
-fn revision_path(dir: &Path, name: &str, number: u32) -> PathBuf {
-    revision_folder(dir, name).join(format!("{number}.toml"))
-}
-
-/// Replaces a file atomically: after a crash the file holds either `text` or its old content.
-fn replace_file(path: &Path, text: &str) -> std::io::Result<()> {
-    let folder = path.parent().unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder)?;
-    let beside = path.with_extension("toml.new");
-    let mut file = std::fs::File::create(&beside)?;
-    file.write_all(text.as_bytes())?;
-    file.sync_all()?;
-    std::fs::rename(&beside, path)?;
-    std::fs::File::open(folder)?.sync_all()
-}
-
-fn saved_at_us(path: &Path) -> Option<i64> {
-    let written = std::fs::metadata(path).and_then(|it| it.modified()).ok()?;
-    let since = written.duration_since(UNIX_EPOCH).ok()?;
-    i64::try_from(since.as_micros()).ok()
+/// Returns the file of an earlier revision within its configuration.
+fn revision_file(name: &str, number: u32) -> String {
+    format!("recipes/revisions/{name}/{number}.toml")
 }

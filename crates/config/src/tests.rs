@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod fixture;
+mod folder;
 mod plant;
 mod revision;
 mod wrong_recipes;

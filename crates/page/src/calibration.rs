@@ -10,9 +10,9 @@ use history::inquiry::instruments::{Instruments, instruments};
 /// `GET /api/calibration`.
 pub(super) async fn calibration(State(app): App) -> JsonResult<Instruments> {
     let simulated = app.shared.view.borrow().simulated;
-    let dir = app.shared.config.clone();
+    let folder = app.shared.config.clone();
     let read = move |archive: &history::Archive| {
-        let plant = Plant::load(&dir)?;
+        let plant = Plant::load(&folder)?;
         Ok(instruments(
             archive,
             simulated,

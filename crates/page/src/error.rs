@@ -206,9 +206,9 @@ fn of_config(found: &ConfigError, wrong: StatusCode) -> StatusCode {
             StatusCode::NOT_FOUND
         }
         ConfigError::NotNewest { .. } => StatusCode::CONFLICT,
-        ConfigError::Unreadable { .. } | ConfigError::Unwritten { .. } => {
-            StatusCode::INTERNAL_SERVER_ERROR
-        }
+        ConfigError::NoFolder { .. }
+        | ConfigError::Unreadable { .. }
+        | ConfigError::Unwritten { .. } => StatusCode::INTERNAL_SERVER_ERROR,
         ConfigError::Syntax { .. }
         | ConfigError::Value { .. }
         | ConfigError::Rule { .. }

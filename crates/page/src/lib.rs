@@ -44,6 +44,7 @@ mod router;
 mod sessions;
 mod trace;
 
+use config::Folder;
 use machine::view::{Mimic, OrderRequest};
 pub use orders::WAITING;
 pub use sessions::Sessions;
@@ -66,8 +67,8 @@ pub struct Shared {
     pub view: watch::Receiver<machine::view::View>,
     /// The history file, which may not exist yet.
     pub db: PathBuf,
-    /// Folder of the configuration with the recipes.
-    pub config: PathBuf,
+    /// Files of the configuration with the recipes.
+    pub config: Folder,
     /// Shapes of the machine, from which `GET /mimic.svg` draws it to scale.
     pub mimic: Arc<Mimic>,
     /// Sessions and people.

@@ -20,14 +20,13 @@ use axum::Json;
 use axum::extract::rejection::JsonRejection;
 use axum::extract::{Query, State};
 use axum::http::HeaderMap;
-use config::{Change, Plant, Revision};
+use config::{Change, Folder, Plant, Revision};
 use history::inquiry::paper::paper;
 use history::report::Lang;
 use history::report::card;
 use history::{OrderRecord, Row, Store};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use std::path::Path;
 
 /// A recipe in the list.
 #[derive(Debug, Serialize)]
@@ -44,16 +43,16 @@ pub(super) struct ListedRecipe {
 
 /// `GET /api/recipes`.
 pub(super) async fn list(State(app): App) -> JsonResult<Vec<ListedRecipe>> {
-    let dir = app.shared.config.clone();
+    let folder = app.shared.config.clone();
     blocking(move || {
-        let names = config::recipe_names(&dir).into_iter();
-        Ok::<_, ApiError>(Json(names.map(|name| listed(&dir, name)).collect()))
+        let names = config::recipe_names(&folder).into_iter();
+        Ok::<_, ApiError>(Json(names.map(|name| listed(&folder, name)).collect()))
     })
     .await
 }
 
-fn listed(dir: &Path, name: String) -> ListedRecipe {
-    let found = config::revision(dir, &name, None);
+fn listed(folder: &Folder, name: String) -> ListedRecipe {
+    let found = config::revision(folder, &name, None);
     let good = found.as_ref().ok();
     let title = |path: &str| {
         let title = good?.fields.iter().find(|it| it.path == path)?;
@@ -80,8 +79,8 @@ pub(super) struct RevisionQuery {
 /// `GET /api/recipes/show`.
 pub(super) async fn show(State(app): App, which: Members<RevisionQuery>) -> JsonResult<Revision> {
     let Query(RevisionQuery { name, revision }) = which?;
-    let dir = app.shared.config.clone();
-    let read = move || config::revision(&dir, &name, revision);
+    let folder = app.shared.config.clone();
+    let read = move || config::revision(&folder, &name, revision);
     blocking(read).await.map(Json)
 }
 
@@ -95,11 +94,11 @@ pub(super) struct CardQuery {
 /// `GET /api/recipes/card`.
 pub(super) async fn card(State(app): App, printed: Members<CardQuery>) -> Result<Page, ApiError> {
     let Query(CardQuery { name, lang }) = printed?;
-    let dir = app.shared.config.clone();
+    let folder = app.shared.config.clone();
     let made = move || {
-        let recipe = config::load_recipe(&dir, &name)?;
+        let recipe = config::load_recipe(&folder, &name)?;
         let paper = paper(language(lang));
-        let plant = config::load_card(&dir)?;
+        let plant = config::load_card(&folder)?;
         let card = card::card(&paper, &recipe, &plant);
         Ok::<_, ApiError>(with_policy(card))
     };
@@ -116,10 +115,10 @@ pub(super) async fn revise(
     let person = app.shared.sessions.author(&headers).await?;
     let Json(change) = body?;
     let origin = origin::address(from);
-    let (dir, db) = (app.shared.config.clone(), app.shared.db.clone());
+    let (folder, db) = (app.shared.config.clone(), app.shared.db.clone());
     blocking(move || {
         let mut audit = Store::open(&db)?;
-        let done = revised(&dir, &person, &change);
+        let done = revised(&folder, &person, &change);
         let noted = audit.record(&[Row::Order(OrderRecord {
             lot: None,
             at_us: jiff::Timestamp::now().as_microsecond(),
@@ -137,9 +136,9 @@ pub(super) async fn revise(
     .await
 }
 
-fn revised(dir: &Path, person: &Person, change: &Change) -> Result<Revision, ApiError> {
+fn revised(folder: &Folder, person: &Person, change: &Change) -> Result<Revision, ApiError> {
     sessions::require_role(person, Role::Engineer)?;
-    let plant = Plant::load(dir)?;
+    let plant = Plant::load(folder)?;
     config::revise(&plant, change).map_err(|refused| ApiError::Revision { refused })
 }
 

@@ -20,6 +20,7 @@ use super::{Sessions, Shared, Traffic, WAITING, router};
 use axum::Router;
 use axum::body::{Body, to_bytes};
 use axum::http::{Request, StatusCode};
+use config::Folder;
 use machine::view::{LastPart, LineTraffic, Message, Mimic, MimicBody, OrderRequest, View};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -51,15 +52,15 @@ struct Fixture {
 
 impl Fixture {
     fn new() -> Self {
-        static NEXT: AtomicU32 = AtomicU32::new(0);
-        let number = NEXT.fetch_add(1, Ordering::Relaxed);
-        let name = format!("relayrig-hmi-{}-{number}", std::process::id());
-        let folder = std::env::temp_dir().join(name);
-        std::fs::create_dir_all(&folder).unwrap();
-        Self::over(folder.join("history.db"))
+        Self::over(new_folder().join("history.db"))
     }
 
     fn over(db: PathBuf) -> Self {
+        let config = some_config(&db);
+        Self::with(db, config)
+    }
+
+    fn with(db: PathBuf, config: Folder) -> Self {
         let (view, looking) = watch::channel(some_view());
         let (ended, over) = watch::channel(false);
         let stop = Arc::new(AtomicBool::new(false));
@@ -80,7 +81,7 @@ impl Fixture {
             view: looking,
             traffic: some_traffic(),
             db: db.clone(),
-            config: some_config(&db),
+            config,
             orders: orders.clone(),
         };
         let router = router::router(shared, over);
@@ -195,8 +196,18 @@ impl Answer {
     }
 }
 
+/// Creates a folder that stays after the test.
+fn new_folder() -> PathBuf {
+    static NEXT: AtomicU32 = AtomicU32::new(0);
+    let number = NEXT.fetch_add(1, Ordering::Relaxed);
+    let name = format!("relayrig-hmi-{}-{number}", std::process::id());
+    let folder = std::env::temp_dir().join(name);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
 /// Copies the configuration beside the history.
-fn some_config(db: &Path) -> PathBuf {
+fn some_config(db: &Path) -> Folder {
     let original = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
     let copy = db.with_file_name("config");
     std::fs::create_dir_all(copy.join("recipes")).unwrap();
@@ -210,7 +221,7 @@ fn some_config(db: &Path) -> PathBuf {
     ] {
         std::fs::copy(original.join(file), copy.join(file)).unwrap();
     }
-    copy
+    Folder::Directory(copy)
 }
 
 fn some_mimic() -> Mimic {

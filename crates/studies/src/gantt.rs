@@ -56,7 +56,7 @@ type Interval = (f64, f64);
 /// # Errors
 /// Fails when a lot cannot be run, or when no part of it goes through all stations.
 pub fn svg(order: &Order) -> anyhow::Result<String> {
-    let plant = Plant::load(&order.config)?;
+    let plant = Plant::load(&order.folder())?;
     let folder = TempDir::new()?;
     let played = journal::play(order, folder.path(), SCRIPT, 1)?;
     let rows = ROWS.map(|(_, outputs)| intervals(&played.entries, &plant.wiring, outputs));

@@ -45,7 +45,9 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
         until: None,
     };
     let bar = progress(Some(order.parts), PIECES);
-    let made = generate(&order.config, &db, &wanted, |parts| bar.set_position(parts))?;
+    let made = generate(&order.folder(), &db, &wanted, |parts| {
+        bar.set_position(parts)
+    })?;
     bar.finish_and_clear();
     let n = made.parts;
     let rate = n as f64 / made.writing.as_secs_f64();

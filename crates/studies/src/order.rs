@@ -3,6 +3,7 @@
 use super::lot::{Admitted, Lot};
 use super::pool::{self, LOTS_AT_ONCE};
 use anyhow::{Context, ensure};
+use config::Folder;
 use machine::dut::Recipe;
 use machine::dut::em_relay::Parameter;
 use std::path::{Path, PathBuf};
@@ -43,6 +44,11 @@ pub struct Order {
 }
 
 impl Order {
+    /// Returns the files of the configuration.
+    pub fn folder(&self) -> Folder {
+        Folder::Directory(self.config.clone())
+    }
+
     /// Returns the nominal coil voltage of the recipe, V; NaN for a kind without one.
     pub fn nominal_v(&self) -> f64 {
         self.recipe.device.part().nominal_v.unwrap_or(f64::NAN)

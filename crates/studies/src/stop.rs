@@ -74,7 +74,7 @@ impl SweepResult {
 /// # Errors
 /// Fails when the configuration does not load, or when a story does not run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
-    let plant = Plant::load(&order.config)?;
+    let plant = Plant::load(&order.folder())?;
     let bound_ms = plant.wiring.longest_reaction().as_seconds() * 1e3;
     let folder = TempDir::new()?;
     let of = |sweep| [false, true].map(|slow| SweepResult::empty(sweep, slow));

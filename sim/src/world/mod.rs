@@ -36,7 +36,7 @@ pub mod wiring;
 
 use std::path::PathBuf;
 
-use crate::config::{ConfigError, RigFile, SupplyRange, read_rig, read_world};
+use crate::config::{ConfigError, Files, RigFile, SupplyRange, read_rig, read_world};
 use crate::terminal::Plant;
 use axis::Axis;
 use board::Board;
@@ -56,8 +56,8 @@ use wiring::{Wire, Wiring};
 /// Configuration of a world.
 #[derive(Debug, Clone, Default)]
 pub struct WorldOptions {
-    /// Folder with `rig.toml`, `sim.toml`, `golden.toml` and `recipes/`.
-    pub config_dir: PathBuf,
+    /// Files `rig.toml`, `scene.toml`, `sim.toml`, `golden.toml` and `recipes/`.
+    pub files: Files,
     /// World file that overrides keys of `sim.toml`.
     pub world_file: Option<PathBuf>,
     /// Seed of the rig's errors and of the lot.
@@ -95,9 +95,9 @@ impl World {
     /// # Errors
     /// Fails when a configuration file is missing or wrong, or a fault is unknown.
     pub fn build(options: &WorldOptions) -> Result<Self, ConfigError> {
-        let rig = read_rig(&options.config_dir)?;
-        let table = read_world(&options.config_dir, options.world_file.as_deref())?;
-        let path = options.config_dir.join("sim.toml");
+        let rig = read_rig(&options.files)?;
+        let table = read_world(&options.files, options.world_file.as_deref())?;
+        let path = options.files.path("sim.toml");
         let faults = WorldFaults::resolve(&options.faults, &table.fault, &path)?;
         let mut draw = Draw::new(options.seed, Subject::Rig, 0);
         let environment = Environment::new(&table.environment, &mut draw);
@@ -114,7 +114,7 @@ impl World {
             rig.reference.counter_clock_hz * (1.0 + draw.half(table.devices.clock_ppm * 1e-6));
         let strokes = Draw::new(options.seed, Subject::Mechanism, 0);
         let axis = sort_axis(&rig, &table);
-        let bodies = Bodies::read(&options.config_dir, &options.recipe)?;
+        let bodies = Bodies::read(&options.files, &options.recipe)?;
         let mechanism = Mechanism::new(
             &table.mechanism,
             axis,

@@ -1,10 +1,9 @@
 //! Replaces the bodies in a program without the feature `bodies`: detects no crash.
 
 use std::collections::BTreeSet;
-use std::path::Path;
 
 use super::posture::Posture;
-use crate::config::ConfigError;
+use crate::config::{ConfigError, Files};
 
 /// False: this program does not detect crashes.
 pub const WATCHED: bool = false;
@@ -18,7 +17,7 @@ impl Bodies {
     ///
     /// # Errors
     /// Never fails.
-    pub fn read(_dir: &Path, _recipe: &str) -> Result<Self, ConfigError> {
+    pub fn read(_files: &Files, _recipe: &str) -> Result<Self, ConfigError> {
         Ok(Self)
     }
 

@@ -61,7 +61,7 @@ impl WorldRecord for World {
     }
 
     fn refill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
-        let table = read_world(&options.config_dir, options.world_file.as_deref())?;
+        let table = read_world(&options.files, options.world_file.as_deref())?;
         let (track, ambient) = (self.environment.track_c, self.environment.ambient_c);
         self.mechanism
             .refill(|faults| Magazine::load(options, &table, faults, track, ambient))?;

@@ -13,7 +13,7 @@ use super::probes::{Change, Contact, Pins, Supply};
 use super::relay::{self, Relay};
 use super::resistor::{self, Resistor};
 use super::table::WorldTable;
-use crate::config::{ConfigError, content, read_text};
+use crate::config::ConfigError;
 use crate::truth::PartTruth;
 
 /// Reference temperature of true values, degrees Celsius.
@@ -171,11 +171,6 @@ struct RecipeFile {
 }
 
 fn read_kind(options: &WorldOptions) -> Result<LotKind, ConfigError> {
-    let path = options
-        .config_dir
-        .join("recipes")
-        .join(format!("{}.toml", options.recipe));
-    let text = read_text(&path)?;
-    let file: RecipeFile = toml::from_str(&text).map_err(|e| content(&path, &text, &e))?;
+    let file: RecipeFile = options.files.recipe(&options.recipe)?;
     Ok(file.kind)
 }

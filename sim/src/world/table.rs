@@ -10,7 +10,8 @@ use serde::Deserialize;
 
 use super::relay::table::{DefectTable, LotTable, RelayTable};
 use super::resistor::ResistorTable;
-use crate::config::{ConfigError, content, read_text};
+use crate::config::{ConfigError, Files};
+use crate::files::TextFile;
 
 macro_rules! table {
     ($(#[$doc:meta])* $name:ident { $($field:ident : $ty:ty),* $(,)? }) => {
@@ -73,49 +74,41 @@ table!(
     }
 );
 
-/// Reads `sim.toml` of the configuration folder, with a second world file on top.
+/// Reads `sim.toml`, with a second world file on top.
 ///
 /// # Errors
 /// Fails when a file cannot be read, is not TOML, has an unknown key or a value of the wrong type, or describes
 /// an impossible relay.
-pub fn read_world(dir: &Path, other: Option<&Path>) -> Result<WorldTable, ConfigError> {
-    let world = parsed(dir, other)?;
+pub fn read_world(files: &Files, other: Option<&Path>) -> Result<WorldTable, ConfigError> {
+    let read = match other {
+        Some(path) => TextFile::read(path)?,
+        None => files.read("sim.toml")?,
+    };
+    let world = match toml::from_str::<WorldTable>(&read.text) {
+        Ok(world) => world,
+        Err(e) if other.is_some() && e.message().starts_with("missing field") => {
+            overlay(&files.read("sim.toml")?, &read)?
+        }
+        Err(e) => return Err(read.refuse(&e)),
+    };
     let Some((name, expected)) = world.relay.lumped.fault() else {
         return Ok(world);
     };
-    let path = other.map_or_else(|| dir.join("sim.toml"), Path::to_path_buf);
     let found = world.relay.lumped.get(name).unwrap_or(f64::NAN);
     Err(ConfigError::Content {
-        line: line_of_key(&read_text(&path)?, &format!("`{name} =`")),
-        path,
+        line: line_of_key(&read.text, &format!("`{name} =`")),
+        path: read.path,
         message: format!("relay.lumped.{name}: found {found}, expected {expected}"),
     })
 }
 
-fn parsed(dir: &Path, other: Option<&Path>) -> Result<WorldTable, ConfigError> {
-    let base_path = dir.join("sim.toml");
-    let Some(path) = other else {
-        let text = read_text(&base_path)?;
-        return toml::from_str(&text).map_err(|e| content(&base_path, &text, &e));
-    };
-    let text = read_text(path)?;
-    match toml::from_str::<WorldTable>(&text) {
-        Ok(world) => Ok(world),
-        Err(e) if e.message().starts_with("missing field") => overlay(&base_path, path, &text),
-        Err(e) => Err(content(path, &text, &e)),
-    }
-}
-
 /// Merges a partial world into the default one.
-fn overlay(base_path: &Path, path: &Path, text: &str) -> Result<WorldTable, ConfigError> {
-    let base_text = read_text(base_path)?;
-    let mut base: toml::Table =
-        toml::from_str(&base_text).map_err(|e| content(base_path, &base_text, &e))?;
-    let over: toml::Table = toml::from_str(text).map_err(|e| content(path, text, &e))?;
-    merge(&mut base, over);
-    toml::from_str(&base.to_string()).map_err(|e| ConfigError::Content {
-        path: path.to_path_buf(),
-        line: line_of_key(text, e.message()),
+fn overlay(base: &TextFile, over: &TextFile) -> Result<WorldTable, ConfigError> {
+    let mut merged: toml::Table = base.parse()?;
+    merge(&mut merged, over.parse()?);
+    toml::from_str(&merged.to_string()).map_err(|e| ConfigError::Content {
+        path: over.path.clone(),
+        line: line_of_key(&over.text, e.message()),
         message: e.message().to_owned(),
     })
 }

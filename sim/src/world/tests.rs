@@ -16,3 +16,7 @@ use crate::truth::WorldRecord;
 pub(super) fn config_dir() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../config"))
 }
+
+pub(super) fn files() -> Files {
+    Files::Directory(config_dir())
+}

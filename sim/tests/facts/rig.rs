@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use rigsim::{Options, SharedRig, SimError, wire};
+use rigsim::{Files, Options, SharedRig, SimError, wire};
 use tokio::io::{AsyncReadExt, AsyncWriteExt, DuplexStream};
 use tokio::time::timeout;
 
@@ -12,7 +12,10 @@ const MOTION: usize = 1;
 
 fn options(seed: u64) -> Options {
     Options {
-        config_dir: PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../config")),
+        files: Files::Directory(PathBuf::from(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../config"
+        ))),
         world: None,
         seed,
         recipe: "jzc-22f-012".into(),

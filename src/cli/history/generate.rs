@@ -4,6 +4,7 @@ use app::exit::Exit;
 use app::generate::{BATCH, GenerateOptions, generate};
 use app::progress::{PIECES, progress};
 use clap::Args;
+use config::Folder;
 use history::Moment;
 use std::path::Path;
 
@@ -25,7 +26,7 @@ pub(super) struct GenerateArgs {
     until: Option<Moment>,
 }
 
-pub(super) fn run(config: &Path, db: &Path, args: &GenerateArgs) -> anyhow::Result<Exit> {
+pub(super) fn run(config: &Folder, db: &Path, args: &GenerateArgs) -> anyhow::Result<Exit> {
     let wanted = GenerateOptions {
         parts: args.parts,
         seed: args.seed,

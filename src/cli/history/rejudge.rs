@@ -2,11 +2,10 @@
 
 use crate::cli::output::{Output, Table};
 use clap::Args;
-use config::load_recipe;
+use config::{Folder, load_recipe};
 use history::Archive;
 use history::inquiry::rejudge::{RejudgedPart, Rejudging};
 use std::io::Write;
-use std::path::Path;
 
 #[derive(Debug, Args)]
 pub(super) struct RejudgeArgs {
@@ -24,7 +23,7 @@ pub(super) struct RejudgeArgs {
     json: bool,
 }
 
-pub(super) fn run(config: &Path, archive: &Archive, args: &RejudgeArgs) -> anyhow::Result<()> {
+pub(super) fn run(config: &Folder, archive: &Archive, args: &RejudgeArgs) -> anyhow::Result<()> {
     let recipe = load_recipe(config, &args.recipe)?;
     let question = Rejudging::of(archive, args.lot.clone(), args.run, recipe)?;
     let mut out = Output::stdout();

@@ -14,7 +14,7 @@ use super::order::{Files, LotOrder};
 use super::source::RigSource;
 use anyhow::{Context, bail};
 pub use compare::{FactorComparison, K, K_JOINT};
-use config::{Plant, load_recipe};
+use config::{Folder, Plant, load_recipe};
 use history::{CalibrationRecord, Store, snapshot_hash};
 use machine::dut::Calibration;
 use std::path::Path;
@@ -92,7 +92,7 @@ pub fn calibrate(
 }
 
 /// Returns the nominal coil voltage of the recipe; fails without a reference part of that voltage.
-fn reference_voltage(config: &Path, recipe: &str) -> anyhow::Result<f64> {
+fn reference_voltage(config: &Folder, recipe: &str) -> anyhow::Result<f64> {
     let plant = Plant::load(config)?;
     let Some(nominal_v) = load_recipe(config, recipe)?.device.part().nominal_v else {
         bail!("--recipe {recipe}: found a kind that needs no calibration, expected a relay");
@@ -100,7 +100,7 @@ fn reference_voltage(config: &Path, recipe: &str) -> anyhow::Result<f64> {
     if plant.reference_parts.of_nominal(nominal_v).next().is_none() {
         bail!(
             "{}: found no reference part of {nominal_v} V, expected at least 3",
-            config.join("golden.toml").display()
+            config.path("golden.toml").display()
         );
     }
     Ok(nominal_v)

@@ -8,7 +8,7 @@
 
 mod parts;
 
-use config::load_recipe;
+use config::{Folder, load_recipe};
 use history::{LotRecord, Moment, Row, Store};
 use parts::PartGenerator;
 use std::path::Path;
@@ -50,7 +50,7 @@ pub struct Generated {
 /// # Errors
 /// Fails on an invalid recipe, or when the history cannot be written.
 pub fn generate(
-    config: &Path,
+    config: &Folder,
     db: &Path,
     wanted: &GenerateOptions,
     mut done_so_far: impl FnMut(u64),

@@ -5,7 +5,7 @@
 use super::*;
 use crate::order::LotOrder;
 use crate::source::Simulated;
-use config::{Plant, load_recipe};
+use config::{Folder, Plant, load_recipe};
 use machine::view::{By, Order, OrderRequest, View};
 use rusqlite::Connection;
 use std::path::PathBuf;
@@ -28,7 +28,7 @@ impl Bench {
     fn new(attended: bool) -> Self {
         let folder = tempfile::tempdir().unwrap();
         Self {
-            plant: Plant::load(Path::new("../../config")).unwrap(),
+            plant: Plant::load(&Folder::built_in()).unwrap(),
             order: LotOrder {
                 lot: "A".into(),
                 recipe: "jzc-22f-012".into(),
@@ -47,7 +47,7 @@ impl Bench {
         &self,
         person: impl FnOnce(mpsc::Sender<OrderRequest>, watch::Receiver<View>) -> F,
     ) -> Exit {
-        let recipe = load_recipe(&self.plant.dir, &self.order.recipe).unwrap();
+        let recipe = load_recipe(&self.plant.folder, &self.order.recipe).unwrap();
         let recipe = Arc::new(recipe);
         let runner = LotRunner {
             db: &self.db,

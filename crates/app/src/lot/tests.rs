@@ -6,16 +6,16 @@ use super::*;
 use crate::order::LotOrder;
 use crate::runtime;
 use crate::source::{RigSource, Simulated};
-use config::{Plant, load_recipe};
+use config::{Folder, Plant, load_recipe};
 use history::{Archive, Filter, LotState};
 use machine::view::{By, Order, OrderRequest};
 
 #[test]
 fn a_failed_assertion_ends_the_run_in_the_history() {
     let folder = tempfile::tempdir().unwrap();
-    let (config, db) = (Path::new("../../config"), folder.path().join("history.db"));
-    let plant = Plant::load(config).unwrap();
-    let recipe = Arc::new(load_recipe(config, "jzc-22f-012").unwrap());
+    let (config, db) = (Folder::built_in(), folder.path().join("history.db"));
+    let plant = Plant::load(&config).unwrap();
+    let recipe = Arc::new(load_recipe(&config, "jzc-22f-012").unwrap());
     let order = LotOrder {
         lot: "A".into(),
         recipe: recipe.name.clone(),

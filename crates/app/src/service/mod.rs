@@ -35,7 +35,7 @@ use super::{links, lot_decision};
 #[cfg(feature = "sim")]
 use super::{simulated, simulated::LiveRig};
 use anyhow::{Context, bail};
-use config::{Plant, load_recipe, recipe_names};
+use config::{Folder, Plant, load_recipe, recipe_names};
 use history::{Decision, HistoryError, Store};
 use machine::dut::Recipe;
 use machine::station::packml::State;
@@ -44,7 +44,6 @@ pub use page::FirstLogin;
 use page::Page;
 use router::{AfterRun, OrderRouter};
 use std::net::{SocketAddr, TcpListener};
-use std::path::Path;
 use std::sync::Arc;
 use tokio::sync::mpsc;
 
@@ -253,11 +252,11 @@ fn with_live_rig(source: RigSource, plant: &Plant, order: &LotOrder) -> anyhow::
 }
 
 /// Returns the order of the run between lots; its recipe, the first one, gives the size of a part found inside.
-fn between(config: &Path) -> anyhow::Result<LotOrder> {
+fn between(config: &Folder) -> anyhow::Result<LotOrder> {
     let Some(recipe) = recipe_names(config).into_iter().next() else {
         bail!(
             "{}: found no recipe, expected at least one",
-            config.join("recipes").display()
+            config.path("recipes").display()
         );
     };
     Ok(LotOrder {

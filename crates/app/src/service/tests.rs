@@ -29,11 +29,11 @@ async fn reset(orders: &mpsc::Sender<OrderRequest>) {
 fn a_part_found_between_lots_gets_its_own_lot() {
     let mut ignored = ();
     let folder = tempfile::tempdir().unwrap();
-    let (config, db) = (Path::new("../../config"), folder.path().join("history.db"));
-    let plant = Plant::load(config).unwrap();
+    let (config, db) = (Folder::built_in(), folder.path().join("history.db"));
+    let plant = Plant::load(&config).unwrap();
     let drawn = Simulated::with_seed(1);
-    let idle = between(config).unwrap();
-    let recipe = Arc::new(load_recipe(config, "jzc-22f-012").unwrap());
+    let idle = between(&config).unwrap();
+    let recipe = Arc::new(load_recipe(&config, "jzc-22f-012").unwrap());
     let lot = LotOrder {
         lot: "A".into(),
         recipe: recipe.name.clone(),

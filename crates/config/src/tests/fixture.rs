@@ -2,7 +2,7 @@
 //! name.
 
 use super::RIG;
-use crate::{Plant, load_recipe, recipe_names};
+use crate::{Folder, Plant, load_recipe, recipe_names};
 use machine::dut::FIXTURES;
 use machine::dut::Kind;
 use machine::rig::point::{DigitalIn, DigitalOut};
@@ -56,7 +56,7 @@ fn folder(rig: &Table) -> tempfile::TempDir {
     let copy = tempfile::tempdir().unwrap();
     let to = |name: &str| copy.path().join(name);
     std::fs::create_dir(to("recipes")).unwrap();
-    let recipes = recipe_names(&original).into_iter();
+    let recipes = recipe_names(&Folder::Directory(original.clone())).into_iter();
     let recipes = recipes.map(|name| format!("recipes/{name}.toml"));
     for name in ["scene.toml", "golden.toml"]
         .map(String::from)
@@ -72,11 +72,11 @@ fn folder(rig: &Table) -> tempfile::TempDir {
 /// Returns, for the recipe of each relay, why this rig refuses it.
 fn refused(rig: &Table) -> Vec<String> {
     let copy = folder(rig);
-    let plant = Plant::load(copy.path()).unwrap();
-    let recipes = recipe_names(copy.path());
+    let plant = Plant::load(&copy.path().into()).unwrap();
+    let recipes = recipe_names(&copy.path().into());
     let recipes = recipes
         .iter()
-        .map(|name| load_recipe(copy.path(), name).unwrap());
+        .map(|name| load_recipe(&copy.path().into(), name).unwrap());
     let relays = recipes.filter(|recipe| recipe.device.kind() == Kind::EmRelay);
     relays
         .map(|recipe| plant.admit(&recipe).unwrap_err().to_string())
@@ -120,16 +120,19 @@ fn a_rig_without_references_refuses_relays_and_takes_resistors() {
             assert!(message.ends_with(&why), "{message}");
         }
         let copy = folder(&rig);
-        let recipe = load_recipe(copy.path(), "resistor-390").unwrap();
-        Plant::load(copy.path()).unwrap().admit(&recipe).unwrap();
+        let recipe = load_recipe(&copy.path().into(), "resistor-390").unwrap();
+        Plant::load(&copy.path().into())
+            .unwrap()
+            .admit(&recipe)
+            .unwrap();
     }
 }
 
 #[test]
 fn the_first_missing_point_refuses_a_resistor() {
     let copy = folder(&without_the_coil_board());
-    let plant = Plant::load(copy.path()).unwrap();
-    let recipe = load_recipe(copy.path(), "resistor-390").unwrap();
+    let plant = Plant::load(&copy.path().into()).unwrap();
+    let recipe = load_recipe(&copy.path().into(), "resistor-390").unwrap();
     let why = plant.admit(&recipe).unwrap_err().to_string();
     assert!(
         why.contains("no [digital_out].coil_drive in rig.toml"),
@@ -140,7 +143,7 @@ fn the_first_missing_point_refuses_a_resistor() {
 #[test]
 fn the_machine_resolves_without_the_coil_board() {
     let copy = folder(&without_the_coil_board());
-    let wiring = Plant::load(copy.path()).unwrap().wiring;
+    let wiring = Plant::load(&copy.path().into()).unwrap().wiring;
     assert_eq!((wiring.lines.len(), wiring.modules.len()), (1, 4));
     assert_eq!(wiring.measuring_lines(), []);
     for point in DigitalIn::ALL {
@@ -192,10 +195,10 @@ fn a_recipe_needs_only_the_points_it_reads() {
         "nest_temperature",
     ];
     let copy = folder(&without(|name, _| spare.contains(&name)));
-    let plant = Plant::load(copy.path()).unwrap();
-    for name in recipe_names(copy.path()) {
+    let plant = Plant::load(&copy.path().into()).unwrap();
+    for name in recipe_names(&copy.path().into()) {
         plant
-            .admit(&load_recipe(copy.path(), &name).unwrap())
+            .admit(&load_recipe(&copy.path().into(), &name).unwrap())
             .unwrap();
     }
 }

@@ -27,7 +27,7 @@ impl Copy {
 
     /// Returns the message with which loading fails, without the path of the folder.
     fn refused(&self) -> String {
-        Plant::load(self.0.path())
+        Plant::load(&self.0.path().into())
             .unwrap_err()
             .to_string()
             .replace(&format!("{}/", self.0.path().display()), "")
@@ -37,12 +37,12 @@ impl Copy {
 #[test]
 fn the_whole_plant_is_loaded_from_its_folder() {
     let copy = Copy::with("", str::to_owned);
-    let plant = Plant::load(copy.0.path()).unwrap();
+    let plant = Plant::load(&copy.0.path().into()).unwrap();
     assert_eq!(plant.reference_parts.of_nominal(12.0).count(), 5);
     assert_eq!(plant.reference.unwrap().coil_ohm, 400.0);
     assert_eq!(plant.accuracy.conversions_per_s, 75.0);
     assert_eq!(
-        load_recipe(copy.0.path(), "jzc-22f-012")
+        load_recipe(&copy.0.path().into(), "jzc-22f-012")
             .unwrap()
             .device
             .part()
@@ -56,8 +56,8 @@ fn a_recipe_is_refused_without_its_bins() {
     let copy = Copy::with("rig.toml", |text| {
         text.replace("\ncoil    =", "\ngrade_2 =")
     });
-    let plant = Plant::load(copy.0.path()).unwrap();
-    let recipe = load_recipe(copy.0.path(), "jzc-22f-012").unwrap();
+    let plant = Plant::load(&copy.0.path().into()).unwrap();
+    let recipe = load_recipe(&copy.0.path().into(), "jzc-22f-012").unwrap();
     let message = plant.admit(&recipe).unwrap_err().to_string();
     assert!(
         message.ends_with(
@@ -70,9 +70,11 @@ fn a_recipe_is_refused_without_its_bins() {
 #[test]
 fn an_unknown_recipe_is_refused_with_the_known_ones() {
     let copy = Copy::with("", str::to_owned);
-    assert_eq!(recipe_names(copy.0.path()), ["jzc-22f-012"]);
+    assert_eq!(recipe_names(&copy.0.path().into()), ["jzc-22f-012"]);
     for name in ["jzc-22f-013", "../rig", ""] {
-        let message = load_recipe(copy.0.path(), name).unwrap_err().to_string();
+        let message = load_recipe(&copy.0.path().into(), name)
+            .unwrap_err()
+            .to_string();
         assert!(
             message.ends_with(&format!(
                 "found no recipe \"{name}\", expected one of jzc-22f-012"

@@ -10,7 +10,7 @@ const NAME: &str = "jzc-22f-012";
 
 fn bench() -> (Copy, Plant) {
     let copy = Copy::with("", str::to_owned);
-    let plant = Plant::load(copy.0.path()).unwrap();
+    let plant = Plant::load(&copy.0.path().into()).unwrap();
     (copy, plant)
 }
 
@@ -18,13 +18,13 @@ fn bench() -> (Copy, Plant) {
 fn change(plant: &Plant, path: &str, value: serde_json::Value) -> Change {
     Change {
         name: NAME.into(),
-        from: revision(&plant.dir, NAME, None).unwrap().hash,
+        from: revision(&plant.folder, NAME, None).unwrap().hash,
         values: [(path.to_owned(), value)].into(),
     }
 }
 
 /// Returns every file below the folder, with its text.
-fn files(folder: &Path) -> BTreeMap<String, String> {
+pub(super) fn files(folder: &Path) -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -41,11 +41,11 @@ fn files(folder: &Path) -> BTreeMap<String, String> {
 #[test]
 fn a_revision_loads_next_and_keeps_the_old_text() {
     let (copy, plant) = bench();
-    let old = load_recipe(copy.0.path(), NAME).unwrap();
+    let old = load_recipe(&copy.0.path().into(), NAME).unwrap();
     let path = "limits.operate_voltage_v.high";
     let saved = revise(&plant, &change(&plant, path, json!(8.7))).unwrap();
     assert_eq!((saved.number, saved.newest), (2, 2));
-    let new = load_recipe(copy.0.path(), NAME).unwrap();
+    let new = load_recipe(&copy.0.path().into(), NAME).unwrap();
     assert_eq!(new.hash, saved.hash);
     assert!(
         new.source_text
@@ -54,7 +54,7 @@ fn a_revision_loads_next_and_keeps_the_old_text() {
     let kept = copy.0.path().join("recipes/revisions/jzc-22f-012/1.toml");
     assert_eq!(std::fs::read_to_string(kept).unwrap(), old.source_text);
     assert_eq!(
-        revision(copy.0.path(), NAME, Some(1)).unwrap().hash,
+        revision(&copy.0.path().into(), NAME, Some(1)).unwrap().hash,
         old.hash
     );
     let third = revise(&plant, &change(&plant, path, json!(9.0))).unwrap();
@@ -63,7 +63,7 @@ fn a_revision_loads_next_and_keeps_the_old_text() {
         (3, &old.hash),
         "back again is a revision too"
     );
-    assert_eq!(crate::recipe_names(copy.0.path()), [NAME]);
+    assert_eq!(crate::recipe_names(&copy.0.path().into()), [NAME]);
     let files = files(&copy.0.path().join("recipes"));
     assert_eq!(files.len(), 3, "{:?}", files.keys());
 }
@@ -145,7 +145,7 @@ fn a_name_that_climbs_is_no_recipe() {
             matches!(refused, ConfigError::UnknownRecipe { .. }),
             "{refused}"
         );
-        assert!(revision(copy.0.path(), name, Some(1)).is_err());
+        assert!(revision(&copy.0.path().into(), name, Some(1)).is_err());
     }
     assert_eq!(files(copy.0.path()), before);
 }
@@ -161,11 +161,14 @@ fn an_interrupted_revision_repeats_under_its_number() {
     )
     .unwrap();
     std::fs::write(folder.join("1.toml.new"), "half a te").unwrap();
-    assert_eq!(revision(copy.0.path(), NAME, None).unwrap().number, 1);
+    assert_eq!(
+        revision(&copy.0.path().into(), NAME, None).unwrap().number,
+        1
+    );
     let wanted = change(&plant, "decision.slow_repeats", json!(4));
     assert_eq!(revise(&plant, &wanted).unwrap().number, 2);
     assert_eq!(
-        revision(copy.0.path(), NAME, Some(1)).unwrap().hash,
+        revision(&copy.0.path().into(), NAME, Some(1)).unwrap().hash,
         wanted.from
     );
 }
@@ -174,7 +177,7 @@ fn an_interrupted_revision_repeats_under_its_number() {
 fn an_unknown_revision_is_refused_with_the_newest() {
     let (copy, _) = bench();
     for number in [0, 2, u32::MAX] {
-        let refused = revision(copy.0.path(), NAME, Some(number)).unwrap_err();
+        let refused = revision(&copy.0.path().into(), NAME, Some(number)).unwrap_err();
         assert!(
             refused.to_string().ends_with("expected 1 to 1"),
             "{refused}"

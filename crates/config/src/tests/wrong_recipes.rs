@@ -3,8 +3,7 @@
 //! `wrong_recipes.txt` has one block per recipe: first the changes to a recipe of `config/`, with `-` for a key that is
 //! left out; then all faults, indented, in the order of the message.
 
-use super::plant::Copy;
-use crate::{check_all, recipe_names};
+use crate::{check_all, init};
 use std::path::Path;
 use toml_edit::DocumentMut;
 
@@ -35,7 +34,7 @@ fn faults(dir: &Path, changed: &str) -> String {
         change(&mut recipe, path, value);
     }
     std::fs::write(&path, recipe.to_string()).unwrap();
-    let checked = check_all(dir);
+    let checked = check_all(&dir.into());
     std::fs::write(&path, text).unwrap();
     let faults = checked.map_or_else(|faults| faults.to_string(), |_| "accepted".to_owned());
     let folder = format!("{}/recipes/", dir.display());
@@ -47,20 +46,15 @@ fn faults(dir: &Path, changed: &str) -> String {
 
 #[test]
 fn every_wrong_recipe_is_refused_with_key_and_reason() {
-    let copy = Copy::with("", str::to_owned);
-    let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
-    let recipes = recipe_names(&config).into_iter();
-    let recipes = recipes.map(|name| format!("recipes/{name}.toml"));
-    for file in recipes.chain(["card.toml".to_owned()]) {
-        std::fs::copy(config.join(&file), copy.0.path().join(&file)).unwrap();
-    }
+    let copy = tempfile::tempdir().unwrap();
+    init(copy.path()).unwrap();
     let table: String = TABLE
         .lines()
         .filter(|line| !line.starts_with('#') && !line.is_empty())
         .fold(String::new(), |table, line| format!("{table}{line}\n"));
     let wrong = table.lines().filter(|line| !line.starts_with(' '));
     let found = wrong.clone().fold(String::new(), |found, changed| {
-        format!("{found}{changed}\n{}", faults(copy.0.path(), changed))
+        format!("{found}{changed}\n{}", faults(copy.path(), changed))
     });
     assert!(wrong.count() >= 60);
     assert!(!found.contains("    accepted\n"), "{found}");

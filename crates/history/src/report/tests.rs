@@ -7,13 +7,12 @@ use super::lot::{LotReport, ParameterValues};
 use super::spc::{NamedChart, spc};
 use super::*;
 use crate::{Alarm, AlarmState, LotSummary, Measurement, Part, Passed, Reopening, Shelf, Yield};
-use config::load_recipe;
+use config::{Folder, load_recipe};
 use machine::dut::card::{CardSettings, Quota, STEPS};
 use machine::dut::{Reason, Recipe};
 use quality::Limits;
 use quality::chart::{individuals, shares};
 use quality::rules::Rules;
-use std::path::Path;
 
 const LANGUAGES: [Lang; 2] = [Lang::En, Lang::Zh];
 /// Text that an operator might type to inject a script.
@@ -261,8 +260,7 @@ fn a_lot_report_has_both_yields_and_alarm_times() {
 }
 
 fn recipe() -> Recipe {
-    let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
-    load_recipe(&config, "jzc-22f-012").unwrap()
+    load_recipe(&Folder::built_in(), "jzc-22f-012").unwrap()
 }
 
 fn process_card(language: Lang) -> String {

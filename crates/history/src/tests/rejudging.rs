@@ -1,18 +1,16 @@
 //! Tests: stored values judged by another recipe.
 
 use super::super::*;
-use config::load_recipe;
+use config::{Folder, load_recipe};
 use machine::dut::em_relay::bins;
 use machine::dut::em_relay::recipe::RelayRecipe;
 use machine::dut::recipe::DeviceRecipe;
 use machine::dut::rejudge::Basis;
 use machine::dut::{Reason, Recipe, Verdict};
 use machine::instrument::curve::Curve;
-use std::path::Path;
 
 fn recipe() -> Recipe {
-    let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
-    load_recipe(&config, "jzc-22f-012").unwrap()
+    load_recipe(&Folder::built_in(), "jzc-22f-012").unwrap()
 }
 
 /// Returns a part whose values lie in the middle of all limits, except for its operate voltage.
@@ -120,7 +118,7 @@ fn generous() -> Recipe {
     );
     std::fs::create_dir(folder.path().join("recipes")).unwrap();
     std::fs::write(folder.path().join("recipes/jzc-22f-012.toml"), text).unwrap();
-    load_recipe(folder.path(), "jzc-22f-012").unwrap()
+    load_recipe(&folder.path().into(), "jzc-22f-012").unwrap()
 }
 
 /// Returns curves of a coil driven from 5 V up to 11 V whose contact never made.

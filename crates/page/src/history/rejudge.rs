@@ -38,9 +38,9 @@ pub(crate) async fn rejudge(
         changed,
     }) = asked?;
     let (archive, place) = app.readers.open().await?;
-    let dir = app.shared.config.clone();
+    let folder = app.shared.config.clone();
     let prepared = blocking(move || -> Result<(Archive, Rejudging), ApiError> {
-        let recipe = load_recipe(&dir, &recipe)?;
+        let recipe = load_recipe(&folder, &recipe)?;
         let question = Rejudging::of(&archive, lot, run, recipe)?;
         Ok((archive, question))
     });

@@ -149,7 +149,7 @@ fn every_listed_bin_verdict_and_mode_has_a_name() {
 #[test]
 fn every_key_and_choice_of_a_recipe_has_a_text() {
     let table = table();
-    let recipe = config::revision("../../config".as_ref(), "jzc-22f-012", None).unwrap();
+    let recipe = config::revision(&config::Folder::built_in(), "jzc-22f-012", None).unwrap();
     for field in serde_json::to_value(recipe).unwrap()["fields"]
         .as_array()
         .unwrap()

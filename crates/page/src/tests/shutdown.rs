@@ -16,7 +16,7 @@ async fn open_streams_and_half_requests_do_not_delay_the_end() {
         view: fixture.view.subscribe(),
         traffic: some_traffic(),
         db: fixture.db.clone(),
-        config: PathBuf::from("config"),
+        config: Folder::built_in(),
         orders: fixture.orders.clone(),
     };
     let served = tokio::spawn(serve(listener, shared, fixture.ended.subscribe()));

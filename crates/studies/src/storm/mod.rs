@@ -27,7 +27,7 @@ use judge::Case;
 use life::{End, Runner};
 use machine::dut::Calibration;
 use report::{Counts, Outcome, report};
-use rigsim::{Options, SharedRig};
+use rigsim::{Files, Options, SharedRig};
 use scenario::{CEASES_US, Life, RIGS, Scenario};
 use std::path::Path;
 use std::sync::OnceLock;
@@ -71,7 +71,7 @@ impl<'a> Storm<'a> {
         std::fs::write(folder.path().join("world.toml"), scenario::WORLD)?;
         Ok(Self {
             order,
-            plant: Plant::load(&order.config)?,
+            plant: Plant::load(&order.folder())?,
             folder,
             calibrations: Default::default(),
         })
@@ -185,7 +185,7 @@ impl<'a> Storm<'a> {
     ) -> anyhow::Result<SharedRig> {
         let storms = self.folder.path().join("world.toml");
         Ok(rigsim::build(&Options {
-            config_dir: self.order.config.clone(),
+            files: Files::Directory(self.order.config.clone()),
             world: Some(self.order.world.clone().unwrap_or(storms)),
             seed,
             recipe: self.order.recipe.name.clone(),

@@ -14,12 +14,11 @@ mod scene;
 mod shape;
 
 use std::collections::BTreeSet;
-use std::path::Path;
 
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 
 use super::posture::{ACTUATORS, Posture};
-use crate::config::ConfigError;
+use crate::config::{ConfigError, Files};
 use body::{Body, PARTS, depth_mm, element, parts};
 use pair_limits::{PairLimits, pair_limits};
 use scene::{Scene, Size};
@@ -41,12 +40,12 @@ pub struct Bodies {
 }
 
 impl Bodies {
-    /// Reads the bodies of a configuration folder, with parts of the size of a recipe.
+    /// Reads the bodies of a configuration, with parts of the size of a recipe.
     ///
     /// # Errors
     /// Fails when `scene.toml` or the recipe cannot be read, or refers to an unknown name.
-    pub fn read(dir: &Path, recipe: &str) -> Result<Self, ConfigError> {
-        let (scene, size) = scene::read(dir, recipe)?;
+    pub fn read(files: &Files, recipe: &str) -> Result<Self, ConfigError> {
+        let (scene, size) = scene::read(files, recipe)?;
         Ok(Self::new(&scene, &size))
     }
 

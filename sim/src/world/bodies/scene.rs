@@ -1,10 +1,8 @@
 //! Bodies, actuators and contact rules of the rig, read from `scene.toml` for the simulated rig alone.
 
-use std::path::Path;
-
 use serde::Deserialize;
 
-use crate::config::{ConfigError, content, read_text};
+use crate::config::{ConfigError, Files};
 
 /// A body that is fixed or moves with an actuator.
 #[derive(Debug, Clone, Deserialize)]
@@ -168,12 +166,8 @@ struct RecipeFile {
 ///
 /// # Errors
 /// Fails when a file cannot be read or lacks a required key.
-pub fn read(dir: &Path, recipe: &str) -> Result<(Scene, Size), ConfigError> {
-    let path = dir.join("scene.toml");
-    let text = read_text(&path)?;
-    let scene: Scene = toml::from_str(&text).map_err(|e| content(&path, &text, &e))?;
-    let path = dir.join("recipes").join(format!("{recipe}.toml"));
-    let text = read_text(&path)?;
-    let file: RecipeFile = toml::from_str(&text).map_err(|e| content(&path, &text, &e))?;
+pub fn read(files: &Files, recipe: &str) -> Result<(Scene, Size), ConfigError> {
+    let scene: Scene = files.read("scene.toml")?.parse()?;
+    let file: RecipeFile = files.recipe(recipe)?;
     Ok((scene, file.part))
 }

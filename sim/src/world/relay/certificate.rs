@@ -1,11 +1,9 @@
 //! Reads the certificates of reference parts, and the nominal values of a recipe.
 
-use std::path::Path;
-
 use serde::Deserialize;
 
 use super::values::Scale;
-use crate::config::{ConfigError, content, read_text};
+use crate::config::{ConfigError, Files};
 
 /// A certified value with its standard uncertainty, in the unit of the value.
 #[derive(Debug, Clone, Copy, Deserialize)]
@@ -49,10 +47,8 @@ struct RecipePart {
 ///
 /// # Errors
 /// Fails when the file cannot be read or is not a list of certificates.
-pub fn read_certificates(dir: &Path, nominal_v: f64) -> Result<Vec<Certificate>, ConfigError> {
-    let path = dir.join("golden.toml");
-    let text = read_text(&path)?;
-    let file: GoldenFile = toml::from_str(&text).map_err(|e| content(&path, &text, &e))?;
+pub fn read_certificates(files: &Files, nominal_v: f64) -> Result<Vec<Certificate>, ConfigError> {
+    let file: GoldenFile = files.read("golden.toml")?.parse()?;
     Ok(file
         .golden
         .into_iter()
@@ -64,10 +60,8 @@ pub fn read_certificates(dir: &Path, nominal_v: f64) -> Result<Vec<Certificate>,
 ///
 /// # Errors
 /// Fails when the recipe does not exist or lacks the nominal values.
-pub fn read_scale(dir: &Path, recipe: &str) -> Result<Scale, ConfigError> {
-    let path = dir.join("recipes").join(format!("{recipe}.toml"));
-    let text = read_text(&path)?;
-    let file: RecipeFile = toml::from_str(&text).map_err(|e| content(&path, &text, &e))?;
+pub fn read_scale(files: &Files, recipe: &str) -> Result<Scale, ConfigError> {
+    let file: RecipeFile = files.recipe(recipe)?;
     let RecipePart {
         nominal_v,
         nominal_coil_ohm,

@@ -22,10 +22,10 @@ impl Lot {
     /// # Errors
     /// Fails when the recipe or the certificates cannot be read.
     pub fn read(options: &WorldOptions, world: &WorldTable) -> Result<Self, ConfigError> {
-        let dir = &options.config_dir;
-        let scale = read_scale(dir, &options.recipe)?;
+        let files = &options.files;
+        let scale = read_scale(files, &options.recipe)?;
         let certificates = match options.reference_parts {
-            true => read_certificates(dir, scale.nominal_v)?,
+            true => read_certificates(files, scale.nominal_v)?,
             false => Vec::new(),
         };
         Ok(Self {

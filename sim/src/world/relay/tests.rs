@@ -11,11 +11,11 @@ use super::values::{ContactFilm, Scale};
 use super::*;
 use crate::config::read_world;
 use crate::world::draw::Subject;
-use crate::world::tests::config_dir;
+use crate::world::tests::files;
 
 /// Returns the default world without scatter.
 fn still_world() -> WorldTable {
-    let mut world = read_world(&config_dir(), None).unwrap();
+    let mut world = read_world(&files(), None).unwrap();
     world.lot.threshold_scatter_sd_mv = 0.0;
     world.lot.bounce_ln_sd = 0.0;
     world

@@ -6,7 +6,7 @@ use crate::config::read_world;
 use crate::world::draw::{Draw, Subject};
 use crate::world::probes::Contact;
 use crate::world::specimen::Arrival;
-use crate::world::tests::config_dir;
+use crate::world::tests::files;
 
 /// Returns the arrival from a magazine at this temperature.
 fn arrival(track_c: f64) -> Arrival {
@@ -21,7 +21,7 @@ fn arrival(track_c: f64) -> Arrival {
 }
 
 fn lot() -> Lot {
-    Lot::new(&read_world(&config_dir(), None).unwrap())
+    Lot::new(&read_world(&files(), None).unwrap())
 }
 
 /// Returns the first part with this defect, or the first without one.

@@ -16,7 +16,7 @@ pub(super) struct Hand {
 impl Hand {
     /// Builds a rig; one with ranges of the supply is in the range of factor 1.
     pub(super) fn new(options: WorldOptions) -> Self {
-        let rig = read_rig(&options.config_dir).unwrap();
+        let rig = read_rig(&options.files).unwrap();
         let ranged = !rig.supply_ranges.is_empty();
         let world = World::build(&options).unwrap();
         let mut hand = Self {
@@ -138,7 +138,7 @@ impl Hand {
 
 pub(super) fn options(reference_parts: bool) -> WorldOptions {
     WorldOptions {
-        config_dir: config_dir(),
+        files: files(),
         seed: 3,
         recipe: "jzc-22f-012".into(),
         parts: Some(3),

@@ -189,11 +189,9 @@ fn an_unknown_world_key_names_file_and_line() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("world.toml");
     std::fs::write(&path, "[lot]\noperate_v_mean = 7.7\noperate_v_men = 7.8\n").unwrap();
-    let error = read_world(&config_dir(), Some(&path))
-        .unwrap_err()
-        .to_string();
+    let error = read_world(&files(), Some(&path)).unwrap_err().to_string();
     std::fs::write(&path, "[lot]\noperate_v_mean = 7.7\n").unwrap();
-    let world = read_world(&config_dir(), Some(&path)).unwrap();
+    let world = read_world(&files(), Some(&path)).unwrap();
     assert!(
         error.contains(".toml:3: unknown field `operate_v_men`"),
         "{error}"

@@ -7,14 +7,14 @@ use crate::world::magazine::Magazine;
 
 fn loaded(parts: u64) -> Magazine {
     let options = WorldOptions {
-        config_dir: config_dir(),
+        files: files(),
         seed: 1,
         recipe: "jzc-22f-012".into(),
         parts: Some(parts),
         reference_parts: true,
         ..WorldOptions::default()
     };
-    let world = read_world(&config_dir(), None).unwrap();
+    let world = read_world(&files(), None).unwrap();
     Magazine::load(&options, &world, &WorldFaults::default(), 23.0, 23.0).unwrap()
 }
 
@@ -52,7 +52,7 @@ fn another_day_changes_only_temperatures_of_reference_parts() {
             .map(|it| ("noise_seed".into(), it))
             .into_iter()
             .collect();
-        let world = read_world(&config_dir(), None).unwrap();
+        let world = read_world(&files(), None).unwrap();
         let mut faults = WorldFaults::resolve(&asked, &world.fault, &config_dir()).unwrap();
         let part = loaded(0).take(0, &mut faults).unwrap();
         let Specimen::Relay(relay) = part.specimen else {

@@ -21,7 +21,7 @@ pub(super) fn folder(kind: &str) -> tempfile::TempDir {
 /// Returns options for three dummies and for reference parts, which this kind does not have.
 pub(super) fn dummies(folder: &tempfile::TempDir) -> WorldOptions {
     WorldOptions {
-        config_dir: folder.path().to_path_buf(),
+        files: folder.path().into(),
         recipe: "dummy".into(),
         ..options(true)
     }
@@ -86,7 +86,7 @@ fn a_refill_may_change_the_kind_of_part() {
     let relays = folder.path().join("recipes/jzc-22f-012.toml");
     std::fs::copy(config_dir().join("recipes/jzc-22f-012.toml"), relays).unwrap();
     let mut hand = Hand::new(WorldOptions {
-        config_dir: folder.path().to_path_buf(),
+        files: folder.path().into(),
         ..options(false)
     });
     hand.feed();

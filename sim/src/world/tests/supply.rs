@@ -331,7 +331,7 @@ fn an_overdriven_coil_is_in_the_journal() {
 fn an_unknown_range_cannot_be_stuck() {
     let stuck_in = |code, folder: &std::path::Path| {
         let options = WorldOptions {
-            config_dir: folder.into(),
+            files: folder.into(),
             faults: vec![("supply_range_stuck".into(), code)],
             recipe: "dummy".into(),
             ..options(false)

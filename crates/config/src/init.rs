@@ -1,0 +1,90 @@
+//! Writes the configuration that is compiled into the program as a directory of its own.
+//!
+//! The files are written to a hidden directory and moved from there when all are on the disk, so that no half-written
+//! configuration is left: beside a directory that does not exist yet, inside an empty one, which may be the working
+//! directory or the root of a file system.
+
+use super::built_in::BUILT_IN;
+use std::collections::BTreeSet;
+use std::fs::{self, File, Permissions};
+use std::io::{self, ErrorKind, Write};
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+use thiserror::Error;
+
+/// Error: no configuration was written.
+#[derive(Debug, Error)]
+pub enum InitError {
+    /// The directory has entries; it stays as it is.
+    #[error("{}: found a folder that is not empty, expected a new or an empty one; nothing was written", dir.display())]
+    NotEmpty {
+        /// Path of the directory.
+        dir: PathBuf,
+    },
+    /// The directory or a file could not be written.
+    #[error("{}: the configuration could not be written", dir.display())]
+    Unwritten {
+        /// Path of the directory.
+        dir: PathBuf,
+        /// Error of the operating system.
+        source: io::Error,
+    },
+}
+
+/// Writes the files of `config/` to `dir`, which must be new or empty. Missing parents are created.
+///
+/// # Errors
+/// Fails when `dir` has entries, or when it cannot be written.
+pub fn init(dir: &Path) -> Result<(), InitError> {
+    let written = match fs::read_dir(dir).map(|mut entries| entries.next()) {
+        Ok(Some(_)) => {
+            let dir = dir.to_owned();
+            return Err(InitError::NotEmpty { dir });
+        }
+        Ok(None) => fill(dir),
+        Err(error) if error.kind() == ErrorKind::NotFound => create(dir),
+        Err(error) => Err(error),
+    };
+    written.map_err(|source| InitError::Unwritten {
+        dir: dir.to_owned(),
+        source,
+    })
+}
+
+fn create(dir: &Path) -> io::Result<()> {
+    let parent = match dir.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        Some(_) | None => Path::new("."),
+    };
+    fs::create_dir_all(parent)?;
+    let staged = stage(parent)?;
+    fs::rename(staged.path(), dir)?;
+    File::open(parent)?.sync_all()
+}
+
+fn fill(dir: &Path) -> io::Result<()> {
+    let staged = stage(dir)?;
+    let first = |(name, _): &(&'static str, _)| name.split('/').next();
+    let entries: BTreeSet<&str> = BUILT_IN.iter().filter_map(first).collect();
+    for entry in entries {
+        fs::rename(staged.path().join(entry), dir.join(entry))?;
+    }
+    File::open(dir)?.sync_all()
+}
+
+/// Writes every file to a hidden directory in `place`, which disappears when the returned value is dropped.
+fn stage(place: &Path) -> io::Result<TempDir> {
+    let mut hidden = tempfile::Builder::new();
+    // The permissions of any new directory; without this line only the owner could read it.
+    hidden.permissions(Permissions::from_mode(0o777));
+    let staged = hidden.prefix(".relayrig-init-").tempdir_in(place)?;
+    for (name, text) in BUILT_IN {
+        let path = staged.path().join(name);
+        fs::create_dir_all(path.parent().unwrap_or(place))?;
+        let mut file = File::create(path)?;
+        file.write_all(text.as_bytes())?;
+        file.sync_all()?;
+    }
+    Ok(staged)
+}

@@ -1,0 +1,127 @@
+//! Tests of the configuration that is compiled in, and of the directories that it is written to.
+
+use super::revision::files;
+use crate::{Change, Folder, InitError, Plant, check_all, init, load_recipe, revise, revision};
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+
+const NAME: &str = "jzc-22f-012";
+
+fn config() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config")
+}
+
+/// Returns every file below the folder by its path within it.
+fn texts(folder: &Path) -> BTreeMap<String, String> {
+    let within = |path: String| {
+        let within = Path::new(&path).strip_prefix(folder).unwrap();
+        within.display().to_string()
+    };
+    let all = files(folder).into_iter();
+    all.map(|(path, text)| (within(path), text)).collect()
+}
+
+#[test]
+fn every_file_of_the_configuration_is_compiled_in() {
+    let Folder::Memory(memory) = Folder::built_in() else {
+        unreachable!("files in memory")
+    };
+    let mut repository = texts(&config());
+    repository.retain(|name, _| !name.starts_with("recipes/revisions/"));
+    let names: Vec<&String> = repository.keys().collect();
+    assert_eq!(
+        memory.texts().keys().collect::<Vec<_>>(),
+        names,
+        "list the files in crates/config/src/built_in.rs"
+    );
+    assert_eq!(memory.texts(), repository);
+}
+
+#[test]
+fn the_compiled_in_configuration_loads_as_its_directory() {
+    let (built_in, directory) = (Folder::built_in(), Folder::Directory(config()));
+    check_all(&built_in).unwrap();
+    let recipe = |folder| load_recipe(folder, NAME).unwrap();
+    assert_eq!(recipe(&built_in).hash, recipe(&directory).hash);
+    assert_eq!(
+        crate::recipe_names(&built_in),
+        crate::recipe_names(&directory)
+    );
+}
+
+#[test]
+fn revisions_in_memory_last_as_long_as_the_folder() {
+    let plant = Plant::load(&Folder::built_in()).unwrap();
+    let first = revision(&plant.folder, NAME, None).unwrap();
+    assert_eq!(
+        (first.number, first.kept, first.saved_at_us),
+        (1, false, None)
+    );
+    for (number, volts) in [(2, 8.7), (3, 8.8)] {
+        let change = Change {
+            name: NAME.into(),
+            from: revision(&plant.folder, NAME, None).unwrap().hash,
+            values: [("limits.operate_voltage_v.high".to_owned(), json!(volts))].into(),
+        };
+        let saved = revise(&plant, &change).unwrap();
+        assert_eq!((saved.number, saved.newest), (number, number));
+        assert!(saved.saved_at_us.is_some());
+        let loaded = load_recipe(&plant.folder.clone(), NAME).unwrap();
+        assert_eq!(loaded.hash, saved.hash);
+    }
+    let kept = revision(&plant.folder, NAME, Some(1)).unwrap();
+    assert_eq!((kept.hash, kept.newest), (first.hash.clone(), 3));
+    let again = revision(&Folder::built_in(), NAME, None).unwrap();
+    assert_eq!((again.number, again.hash), (1, first.hash));
+}
+
+#[test]
+fn init_writes_every_file_to_new_and_empty_directories() {
+    let folder = tempfile::tempdir().unwrap();
+    let (new, empty) = (folder.path().join("plant/rig1"), folder.path().join("rig2"));
+    fs::create_dir(&empty).unwrap();
+    for dir in [&new, &empty] {
+        init(dir).unwrap();
+        let mut repository = texts(&config());
+        repository.retain(|name, _| !name.starts_with("recipes/revisions/"));
+        assert_eq!(texts(dir), repository);
+        check_all(&Folder::Directory(dir.clone())).unwrap();
+    }
+    let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
+    assert_eq!(mode(&new), mode(&folder.path().join("plant")));
+    let entries = |dir: &Path| fs::read_dir(dir).unwrap().count();
+    assert_eq!((entries(new.parent().unwrap()), entries(&empty)), (1, 8));
+}
+
+#[test]
+fn init_leaves_a_directory_with_entries_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("rig.toml"), "mine").unwrap();
+    let refused = init(folder.path()).unwrap_err();
+    assert!(matches!(refused, InitError::NotEmpty { .. }), "{refused}");
+    let file = folder.path().join("rig.toml");
+    let refused = init(&file).unwrap_err();
+    assert!(matches!(refused, InitError::Unwritten { .. }), "{refused}");
+    let below = init(&file.join("rig1")).unwrap_err();
+    assert!(matches!(below, InitError::Unwritten { .. }), "{below}");
+    assert_eq!(
+        texts(folder.path()),
+        [("rig.toml".into(), "mine".into())].into()
+    );
+}
+
+#[test]
+fn a_missing_directory_names_the_command_that_writes_one() {
+    let missing = Folder::Directory("nowhere".into());
+    let expected = "nowhere: found no such folder, expected a configuration (`relayrig init nowhere` writes one, \
+                    --config names another one)";
+    assert_eq!(Plant::load(&missing).unwrap_err().to_string(), expected);
+    assert_eq!(
+        load_recipe(&missing, NAME).unwrap_err().to_string(),
+        expected
+    );
+    assert_eq!(check_all(&missing).unwrap_err().to_string(), expected);
+}
