@@ -618,6 +618,7 @@ r-save = save as new revision
 r-discard = discard changes
 r-saved_at = Written
 r-read_only = Engineers change the newest revision here.
+r-not_kept = Changes last until this demo ends; relayrig init DIR writes recipes of your own.
 r-nothing = Nothing was changed.
 r-saved = Saved as revision
 r-applies = It applies to the next run; a lot under way keeps its own.

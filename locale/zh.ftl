@@ -603,6 +603,7 @@ r-save = 保存为新版本
 r-discard = 放弃修改
 r-saved_at = 写入时间
 r-read_only = 工程师登录后可在此修改最新版本。
+r-not_kept = 修改只保留到本演示结束；relayrig init DIR 可写出您自己的配方。
 r-nothing = 没有任何修改。
 r-saved = 已保存为版本
 r-applies = 下次运行起生效；进行中的批次仍用原版本。

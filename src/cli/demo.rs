@@ -1,10 +1,11 @@
-//! `relayrig demo`: [`serve`] over the simulated rig with a first lot that starts at once; it needs no preparation and has a
-//! history of its own.
+//! `relayrig demo`: [`serve`] over the simulated rig with a first lot that starts at once. It needs no preparation, brings
+//! its configuration and has a history of its own.
 
 use super::rig::{self, PaceArg, RigArgs};
 use super::serve::{self, ServeArgs};
 use app::exit::Exit;
 use app::order::{Files, LotOrder};
+use config::Folder;
 
 /// Simulated rig with its page and a running lot, without preparation.
 #[derive(Debug, clap::Args)]
@@ -12,7 +13,11 @@ use app::order::{Files, LotOrder};
   relayrig demo
   relayrig demo --listen 127.0.0.1:9000 --fault fall
   relayrig demo --speed 5
-  relayrig demo --pace real")]
+  relayrig demo --pace real
+  relayrig demo --config rig1
+
+The configuration is inside the program; a directory `config` is used only with --config config. The history
+relayrig-demo.db and the logins relayrig-demo-access.db appear in the current directory; --db names another place.")]
 pub struct DemoArgs {
     /// Address of the page
     #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:8080")]
@@ -63,6 +68,11 @@ pub fn run(files: &Files, args: &DemoArgs) -> anyhow::Result<Exit> {
         count: args.count,
         retest: None,
     };
+    if let Folder::Memory(_) = &files.config {
+        eprintln!(
+            "relayrig: demo with the configuration inside this program; `relayrig init DIR` writes it for you to edit"
+        );
+    }
     let listen = args.listen;
     serve::run(files, &ServeArgs { listen, rig }, Some(first))
 }

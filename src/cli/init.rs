@@ -29,9 +29,9 @@ pub fn run(args: &InitArgs) -> anyhow::Result<Exit> {
     let dir = args.dir.display();
     let next = format!(
         "{dir}: written. Begin with {dir}/README.md, edit the files, then
-  relayrig config check --config {dir}     says what is wrong
-  relayrig demo --config {dir}             tries them on the simulated rig
-  relayrig serve --config {dir}            runs the rig
+  relayrig config check --config {dir}    says what is wrong
+  relayrig demo --config {dir}            tries them on the simulated rig
+  relayrig serve --config {dir}           runs the rig
 "
     );
     let written = std::io::stdout().write_all(next.as_bytes());

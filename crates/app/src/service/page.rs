@@ -43,7 +43,8 @@ impl Page {
             .context("the page's socket")?;
         let address = listener.local_addr().context("the page's socket")?;
         let people = access::access_path(&files.db);
-        let (sessions, first) = ::page::Sessions::open(&people)?;
+        let opened = ::page::Sessions::open(&people);
+        let (sessions, first) = opened.context("the logins are kept beside the history (--db)")?;
         let first_login = first.map(|(name, password)| FirstLogin {
             name,
             password,

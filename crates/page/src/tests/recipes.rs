@@ -97,6 +97,26 @@ async fn a_revision_has_form_unit_range_and_value_of_keys() {
 }
 
 #[tokio::test]
+async fn a_revision_of_files_in_memory_is_not_kept() {
+    let folder = new_folder();
+    let fixture = Fixture::with(folder.join("history.db"), Folder::built_in());
+    let engineer = fixture.session(Role::Engineer);
+    let first = fixture.newest().await;
+    assert_eq!(
+        (&first["kept"], &first["saved_at_us"]),
+        (&json!(false), &json!(null))
+    );
+    let change = fixture
+        .change(json!({"limits.operate_voltage_v.high": 8.75}))
+        .await;
+    let saved = fixture.revise(Some(&engineer), change).await;
+    assert_eq!(saved.status, 200, "{}", saved.text());
+    assert_eq!(fixture.newest().await, saved.json());
+    assert_eq!(fixture.audit().len(), 1);
+    assert!(!folder.join("config").exists());
+}
+
+#[tokio::test]
 async fn an_engineer_revises_and_earlier_revisions_remain() {
     let fixture = Fixture::new();
     let engineer = fixture.session(Role::Engineer);

@@ -8,10 +8,11 @@ function drawRecipe() {
   }));
   at("r_save").hidden = at("r_discard").hidden = !mayRevise();
   at("r_note").hidden = mayRevise();
+  at("r_kept").hidden = !recipe || recipe.kept;
   const numbers = recipe ? Array.from({length: recipe.newest}, (_, place) => String(recipe.newest - place)) : [];
   fillSelect(at("r_revision"), numbers.map((it, place) => [it, place === 0 ? it + " (" + word("r-newest") + ")" : it]));
   if (recipe) at("r_revision").value = String(recipe.number);
-  at("r_saved").textContent = recipe ? word("r-saved_at") + " " + clock(recipe.saved_at_us) : "";
+  at("r_saved").textContent = recipe && recipe.saved_at_us ? word("r-saved_at") + " " + clock(recipe.saved_at_us) : "";
   at("r_card").href = "/api/recipes/card" + query({name: at("r_name").value, lang: language});
   const [text, bad] = recipeMessage();
   at("r_answer").textContent = text;
