@@ -159,7 +159,7 @@ mod tests {
         assert_eq!(
             new_lines(value),
             [
-                "slow_repeats = 5               # readings of the slow strategy for a result inside the guard band"
+                "slow_repeats = 5               # confirmation measurements of a result inside the guard band"
             ]
         );
         let value = json!({"limits.operate_voltage_v.high": 9});
@@ -168,7 +168,7 @@ mod tests {
         assert_eq!(
             new_lines(value),
             [
-                "body_mm = [22.5, 16.5, 17.0]",
+                "body_mm = [22.5, 16.5, 17.0]   # along x, y, z as it lies in the nest",
                 "operate_voltage_v = { high = 8.0 }"
             ]
         );
