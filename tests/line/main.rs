@@ -4,6 +4,7 @@
 //! - `bus`: the bus tools on the modules of a bench file, and traces of alarms.
 //! - `calibrate`: storing and verifying factors, and refusing lots without them.
 //! - [`commands`]: wrong files and simple orders.
+//! - [`first_steps`]: a demo in an empty directory, and `init`.
 //! - `full_disk`: a history file that reaches its size limit.
 //! - `gates`: reference checks, suspect parts, reject-rate limit, first articles, retests, wear.
 //! - `history_taken`: histories of other or newer programs, and one that another process locks.
@@ -29,6 +30,7 @@ mod bus;
 mod calibrate;
 mod check;
 mod commands;
+mod first_steps;
 #[cfg(all(feature = "sim", unix))]
 mod full_disk;
 #[cfg(feature = "sim")]

@@ -1,4 +1,4 @@
-//! The built program in a folder with its own copy of the configuration.
+//! The built program in a folder of its own.
 
 #![cfg_attr(
     not(feature = "sim"),
@@ -12,7 +12,7 @@ use std::process::Command;
 #[cfg(all(feature = "sim", unix))]
 use std::process::{Child, Stdio};
 
-/// A fresh folder with `config/` and the files of commands; it stays after the test.
+/// A fresh folder for the files of commands; it stays after the test.
 pub struct Workshop {
     /// Working directory of the program.
     pub folder: PathBuf,
@@ -32,16 +32,23 @@ pub struct Said {
 impl Workshop {
     /// Makes a folder with the configuration; each test has its own `name`.
     pub fn new(name: &str) -> Self {
+        let workshop = Self::empty(name);
+        copy(
+            &Path::new(env!("CARGO_MANIFEST_DIR")).join("config"),
+            &workshop.folder.join("config"),
+        );
+        workshop
+    }
+
+    /// Makes an empty folder; each test has its own `name`.
+    pub fn empty(name: &str) -> Self {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
             .join("line")
             .join(name);
         if folder.exists() {
             fs::remove_dir_all(&folder).unwrap();
         }
-        copy(
-            &Path::new(env!("CARGO_MANIFEST_DIR")).join("config"),
-            &folder.join("config"),
-        );
+        fs::create_dir_all(&folder).unwrap();
         Self { folder }
     }
 

@@ -77,13 +77,13 @@ impl Served {
         (status, serde_json::from_str(body).unwrap())
     }
 
-    fn get(&self, path: &str) -> Value {
+    pub fn get(&self, path: &str) -> Value {
         let (status, body) = self.ask(&format!("GET {path}"), "");
         assert_eq!(status, 200, "{body}");
         body
     }
 
-    fn post(&self, path: &str, body: &Value) -> (u16, Value) {
+    pub fn post(&self, path: &str, body: &Value) -> (u16, Value) {
         self.ask(&format!("POST {path}"), &body.to_string())
     }
 
