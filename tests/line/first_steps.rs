@@ -38,10 +38,7 @@ fn a_demo_in_an_empty_directory_tests_by_revised_recipes() {
     let (status, saved) = demo.post("/api/recipes/revise", &change);
     assert_eq!((status, &saved["kept"]), (200, &json!(false)), "{saved}");
     demo.start_lot("revised", 1);
-    demo.until("judged", |view| {
-        view["lot"] == "revised" && view["judged"] == 1
-    });
-    demo.until_state("Complete");
+    demo.until_complete("revised", 1);
     drop(demo);
     let part = workshop.run("--db relayrig-demo.db history show revised 1");
     assert!(part.with_status(0).stdout.contains("8.875"));
