@@ -2,16 +2,18 @@
 //
 // - Time from the turn of the cycle that publishes a view to the frame that shows it, in one browser.
 // - Share of the cycle's wall time in the phase `publish`, with one open stream and with 50 more.
+// - Time from the start of a demo in an empty folder to its first page.
 // - First answer: compressed bytes, and time until it is drawn, each time in a fresh browser context.
 
 import { request } from "node:http";
 import { open, visit } from "./browser.mjs";
-import { start } from "./rig.mjs";
+import { start, startAlone } from "./rig.mjs";
 
 const VIEWS_S = 20;
 const SCREENS = 50;
 const COST_S = 15;
 const VISITS = 20;
+const STARTS = 10;
 
 const at = (sorted, share) => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
 let missed = false;
@@ -44,6 +46,16 @@ function listen(rig) {
     asked.end();
   });
 }
+
+const starts = [];
+for (let start = 0; start < STARTS; start += 1) {
+  const began = performance.now();
+  const alone = await startAlone();
+  await (await fetch(alone.url + "/")).text();
+  starts.push(performance.now() - began);
+  await alone.kill();
+}
+told("demo in an empty folder: first page, longest", Math.max(...starts) / 1000, "s", 3);
 
 const [rig, browser] = await Promise.all([start("bench", "--speed", "1"), open()]);
 await rig.until("the lot runs", (view) => view.judged > 0, 120);

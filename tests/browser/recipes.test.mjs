@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { SIZES, leave, looks, open, shown, visit } from "./browser.mjs";
-import { WORDS, start } from "./rig.mjs";
+import { WORDS, start, startAlone } from "./rig.mjs";
 
 let rig, browser;
 before(async () => {
@@ -32,6 +32,18 @@ for (const size of SIZES) {
     }
   });
 }
+
+test("only the recipes of a demo alone last until it ends", async () => {
+  const alone = await startAlone();
+  for (const [served, noted] of [[alone, true], [rig, false]]) {
+    const page = await visit(browser, served, { path: "/#recipes" });
+    await page.waitForSelector("#r_fields td");
+    assert.equal(await page.isVisible("#r_kept"), noted);
+    if (noted) await looks(page, "recipes-alone-1280");
+    await leave(page);
+  }
+  await alone.kill();
+});
 
 test("without the role engineer recipes are read-only texts", async () => {
   for (const role of [undefined, "operator"]) {

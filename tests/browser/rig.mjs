@@ -1,10 +1,12 @@
 // Runs the program under test, `relayrig demo` or `serve --sim`, on a free port with a history and people of its own.
 //
 // Virtual time follows the wall clock at a given speed: a busy machine makes the rig slow, never wrong.
-// Environment: RELAYRIG, the program. The working folder holds `config/`.
+// Environment: RELAYRIG, the absolute path of the program. The working folder holds `config/`.
 
 import { spawn, spawnSync } from "node:child_process";
-import { readFileSync, rmSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 
 export const PASSWORD = "open sesame";
 const PEOPLE = { operator: "li", maintainer: "wang", engineer: "zhao" };
@@ -15,6 +17,13 @@ export const start = (name, ...words) => begin(name, ["demo", ...words]);
 
 /** Does the same with `relayrig serve --sim`, which starts no lot. */
 export const serve = (name, ...words) => begin(name, ["serve", "--sim", ...words]);
+
+/** Starts `relayrig demo` with nothing but the program: in an empty folder, which goes when the program is killed. */
+export async function startAlone() {
+  const rig = new Rig(["--log", "warn", "demo", "--listen", "127.0.0.1:0"], mkdtempSync(join(tmpdir(), "relayrig-")));
+  await rig.listening;
+  return rig;
+}
 
 async function begin(name, words) {
   const db = name + ".db";
@@ -29,14 +38,15 @@ async function begin(name, words) {
 }
 
 class Rig {
-  constructor(words) {
+  constructor(words, folder) {
     this.words = words;
+    this.folder = folder;
     this.run();
   }
 
   run() {
     this.told = "";
-    this.process = spawn(PROGRAM, this.words, { stdio: ["ignore", "ignore", "pipe"] });
+    this.process = spawn(PROGRAM, this.words, { cwd: this.folder, stdio: ["ignore", "ignore", "pipe"] });
     this.ended = new Promise((resolve) => this.process.on("exit", resolve));
     this.listening = new Promise((resolve, reject) => {
       this.process.stderr.on("data", (text) => {
@@ -74,6 +84,7 @@ class Rig {
   async kill() {
     this.process.kill("SIGKILL");
     await this.ended;
+    if (this.folder) rmSync(this.folder, { recursive: true });
   }
 
   /** Starts the program again at the same address. */
