@@ -1,10 +1,10 @@
 //! A run at the terminal: progress bar and alarms on stderr; rows, table or summary on stdout.
 
 use super::table::Table;
-use app::cycle::Event;
 use app::exit::Exit;
 use app::lot::{LotEvent, LotProgress, Subscriber, part_json};
 use app::progress::progress;
+use cycle::Event;
 use indicatif::ProgressBar;
 use machine::handling::ledger::Kind;
 use machine::handling::output::Judged;

@@ -9,7 +9,6 @@
 //! | [`admission`] | checks before a lot may run |
 //! | [`lot`] | a run: one stream of events and its subscribers |
 //! | [`exit`] | reasons why a run ends |
-//! | [`cycle`] | one turn of the rig: scan, step, clear, apply, record, publish |
 //! | [`service`] | one lot after another, ordered at a page |
 //! | [`calibration`], [`gauge_study`] | runs that measure the rig itself |
 //! | `story` | scripted faults and operator orders on the simulated rig |
@@ -20,7 +19,6 @@ pub mod calibration;
 pub mod collision;
 pub mod controls;
 pub mod copies;
-pub mod cycle;
 pub mod exit;
 pub mod follower;
 pub mod gauge_study;

@@ -4,10 +4,10 @@ use super::lot::LotContext;
 use super::source::{LinePort, RigSource};
 #[cfg(feature = "sim")]
 use super::{simulated, source::Simulated, truth_file::TruthFile};
-use crate::cycle::LineEnds;
 use anyhow::anyhow;
 use bus::{LineLog, LineSettings, OpenPort, Pace};
 use config::Plant;
+use cycle::LineEnds;
 use machine::rig::wiring::LineId;
 #[cfg(feature = "sim")]
 use rigsim::{SharedRig, pty, wire};

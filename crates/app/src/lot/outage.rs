@@ -1,8 +1,8 @@
 //! Time during which the history cannot be written: when to try again, and when to give up.
 
 use crate::controls::Controls;
-use crate::cycle::alarm_line;
 use bus::Pace;
+use cycle::alarm_line;
 use history::HistoryError;
 use machine::station::annunciator::Annunciator;
 use machine::station::trouble::Alarm;

@@ -9,9 +9,9 @@ use super::journal::Journal;
 use super::prior_state::PriorState;
 use super::progress::{LotProgress, PartUnderWay};
 use super::{LotContext, Purpose, rows};
-use crate::cycle::Event;
 use crate::exit::Exit;
 use anyhow::Context;
+use cycle::Event;
 use history::{
     CalibratedRecord, CalibrationRecord, InterruptedRecord, LandingRecord, LotRecord, Row, Store,
     snapshot_hash,

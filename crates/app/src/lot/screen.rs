@@ -4,8 +4,8 @@
 use super::event::{LotEvent, Subscriber};
 use super::progress::LotProgress;
 use super::{LotContext, rows};
-use crate::cycle::Event;
 use crate::traces::Traces;
+use cycle::Event;
 use machine::handling::ledger::Kind;
 use machine::handling::output::Judged;
 use machine::view::{LastPart, RecentPart, RunEnd, View};

@@ -2,9 +2,9 @@
 
 use super::counts::Counts;
 use super::rows::rounded;
-use crate::cycle::Profile;
 use crate::exit::Cause;
 use bus::LineLog;
+use cycle::Profile;
 use machine::dut::promise::Broken;
 use machine::station::turn::Ending;
 use serde::Serialize;

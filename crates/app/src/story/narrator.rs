@@ -5,7 +5,7 @@
 
 use super::play::Refusal;
 use super::script::{Awaited, Script, Step};
-use crate::cycle::{Event, PANEL};
+use cycle::{Event, PANEL};
 use machine::handling::ledger::{Kind, Part};
 use machine::handling::output::Landed;
 use machine::rig::bin::Bin;

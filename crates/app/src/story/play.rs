@@ -2,8 +2,8 @@
 
 use super::narrator::Narrator;
 use super::script::{Action, Awaited, Script};
-use crate::cycle::Event;
 use bus::Pace;
+use cycle::Event;
 use machine::handling::ledger::Kind;
 use machine::station::packml::State;
 use machine::view::{By, Order, OrderRequest};

@@ -43,7 +43,7 @@ use machine::view::{self, OrderRequest, View};
 pub use orders::PANEL;
 pub use profile::Profile;
 use profile::lap;
-pub(crate) use publish::line as alarm_line;
+pub use publish::line as alarm_line;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;

@@ -230,7 +230,7 @@ fn lines(station: &Station, epoch_us: i64) -> Vec<AlarmLine> {
 }
 
 /// Returns an alarm as pages show it.
-pub(crate) fn line(one: &ListedAlarm, epoch_us: i64) -> AlarmLine {
+pub fn line(one: &ListedAlarm, epoch_us: i64) -> AlarmLine {
     let alarm = &one.alarm;
     let help = |lang| alarm.code.help(lang).map(str::to_owned);
     let stops = match alarm.code.entry().reaction {
