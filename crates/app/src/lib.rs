@@ -8,6 +8,7 @@
 //! | [`order`], [`source`] | the lot ordered, and its rig |
 //! | [`admission`] | checks before a lot may run |
 //! | [`lot`] | a run: one stream of events and its subscribers |
+//! | [`real_time`] | the thread of the lines and the cycle |
 //! | [`exit`] | reasons why a run ends |
 //! | [`service`] | one lot after another, ordered at a page |
 //! | [`calibration`], [`gauge_study`] | runs that measure the rig itself |
@@ -30,6 +31,7 @@ pub mod lot_decision;
 pub mod order;
 pub mod order_queue;
 pub mod progress;
+pub mod real_time;
 pub mod service;
 #[cfg(feature = "sim")]
 pub mod simulated;

@@ -10,19 +10,23 @@
 mod commission;
 mod event;
 mod jog_preview;
+mod lateness;
 mod open_job;
 mod orders;
 mod profile;
 mod publish;
 mod record;
 mod scan_schedule;
+mod snapshot;
 mod standstill;
 mod timeouts;
 mod traffic;
 
+pub use lateness::Lateness;
+pub use snapshot::{Snapshot, snapshots};
 pub use traffic::LineEnds;
 
-use bus::{Answer, LineError, Pace};
+use bus::{Answer, LineError, Pace, Timer};
 use dcon::Command;
 pub use event::Event;
 use machine::guard::Guard;
@@ -39,7 +43,7 @@ use machine::station::Station;
 use machine::station::packml;
 use machine::station::trouble::Alarm;
 use machine::station::turn::{Ending, HistoryState, Inputs, TurnOutput};
-use machine::view::{self, OrderRequest, View};
+use machine::view::{self, OrderRequest};
 pub use orders::PANEL;
 pub use profile::Profile;
 use profile::lap;
@@ -54,6 +58,9 @@ use units::{RigTime, Span};
 
 /// Longest pause between two turns when the station asks for no earlier instant.
 const IDLE: Span = Span::ms(50);
+
+/// Share of the allowance for a late reply from which on the lateness of this computer explains a missing one.
+const EXPLAINS: f64 = 0.5;
 
 /// Channels and flags between the cycle and the rest of the program.
 #[derive(Debug)]
@@ -72,8 +79,30 @@ pub struct CycleLinks {
     pub epoch_us: i64,
     /// State of the history; the recorder sets it.
     pub history: watch::Receiver<HistoryState>,
-    /// Sends the view to the screens.
-    pub view: watch::Sender<View>,
+    /// Carries snapshots to the screens; none on a rig without a screen.
+    pub snapshots: Option<mpsc::Sender<Snapshot>>,
+}
+
+/// How a run of the cycle ended.
+#[derive(Debug)]
+pub struct Ended {
+    /// Way in which it ended.
+    pub ending: Ending,
+    /// Wall time of the phases of its turns.
+    pub profile: Profile,
+    /// How late this computer woke it.
+    pub lateness: Lateness,
+}
+
+impl Ended {
+    /// Returns the end of a cycle whose assertion failed.
+    pub fn by_assertion() -> Self {
+        Self {
+            ending: Ending::Alarm,
+            profile: Profile::default(),
+            lateness: Lateness::default(),
+        }
+    }
 }
 
 /// The control cycle of one rig: its image, outputs, guard, station and lines.
@@ -109,6 +138,8 @@ pub struct Cycle {
     worst_age: Span,
     /// Motion that the guard refused last; cleared when another motion begins.
     refused: Option<view::MotionView>,
+    lateness: Lateness,
+    timer: Timer,
 }
 
 impl Cycle {
@@ -128,6 +159,7 @@ impl Cycle {
             traffic: Traffic::new(&wiring, lines),
             timeouts: Timeouts::new(&wiring),
             wiring,
+            timer: Timer::new(pace),
             pace,
             inside: station.ledger().parts_to_find(),
             station,
@@ -147,18 +179,19 @@ impl Cycle {
             worst_age: Span(0),
             refused: None,
             lost_status: None,
+            lateness: Lateness::default(),
         }
     }
 
     /// Verifies the modules, then takes one turn after another until the station has ended and the outputs are safe.
-    pub async fn run(mut self) -> (Ending, Profile) {
+    pub async fn run(mut self) -> Ended {
         self.verify().await;
         if let Some(alarm) = self
             .bus_alarm
             .take_if(|_| !self.verified && !self.station.is_attended())
         {
             self.send(Event::Alarm(alarm, self.pace.now()));
-            return (Ending::Alarm, self.profile);
+            return self.ended(Ending::Alarm);
         }
         self.verified = false;
         loop {
@@ -185,11 +218,19 @@ impl Cycle {
             if let Some(ending) = output.record.ending.take() {
                 assert!(output.rig.safe, "the run ends with outputs on");
                 self.make_safe().await;
-                return (ending, self.profile);
+                return self.ended(ending);
             }
             if self.job_done.is_none() && output.rig.wake_at.is_none_or(|at| at > now) {
                 self.wait(now, output.rig.wake_at).await;
             }
+        }
+    }
+
+    fn ended(self, ending: Ending) -> Ended {
+        Ended {
+            ending,
+            profile: self.profile,
+            lateness: self.lateness,
         }
     }
 
@@ -261,7 +302,7 @@ impl Cycle {
                     }
                 } else {
                     self.finish_job(job, answer.answered_at, Some(trouble.clone()));
-                    self.note_bus_trouble(&trouble);
+                    self.note_line_trouble(&answer, &trouble);
                 }
             }
             (Purpose::Job, trouble) => {
@@ -270,7 +311,7 @@ impl Cycle {
                     false => trouble,
                 };
                 if let Some(trouble) = trouble.as_ref().filter(|_| !refused && !is_status) {
-                    self.note_bus_trouble(trouble);
+                    self.note_line_trouble(&answer, trouble);
                 }
                 self.finish_job(true, answer.answered_at, trouble);
             }
@@ -279,12 +320,12 @@ impl Cycle {
                     self.lost_status = Some(trouble.clone());
                 }
                 if let Some(times) = self.timeouts.scan_failed(line, &answer.command) {
-                    self.note_bus_trouble(&format!("{trouble}, {times} times in a row"));
+                    self.note_line_trouble(&answer, &format!("{trouble}, {times} times in a row"));
                 }
             }
             (Purpose::Scan, None) => self.timeouts.scan_answered(line, &answer.command),
             (Purpose::Check, Some(trouble)) => {
-                self.note_bus_trouble(&trouble);
+                self.note_line_trouble(&answer, &trouble);
             }
             (Purpose::Check | Purpose::Heartbeat, _) => {}
         }
@@ -318,6 +359,7 @@ impl Cycle {
             recorded: self.links.recorded.load(Ordering::Acquire),
             history: self.links.history.borrow().clone(),
             bus: self.bus_alarm.take(),
+            host_late: self.host_late(),
             stop: self.links.stop.load(Ordering::Acquire),
         };
         self.station.step(now, inputs)
@@ -406,6 +448,26 @@ impl Cycle {
         self.bus_alarm.get_or_insert_with(|| Alarm::bus(detail));
     }
 
+    /// Keeps trouble with an answer as [`Cycle::note_bus_trouble`] does, or as lateness of this computer when that
+    /// explains a missing reply.
+    fn note_line_trouble(&mut self, answer: &Answer, detail: &str) {
+        let is_missing = matches!(answer.outcome, Err(LineError::TimeOut { .. }));
+        match self.host_late().filter(|_| is_missing) {
+            Some(late) => {
+                let alarm = || Alarm::host_late(detail, late);
+                self.bus_alarm.get_or_insert_with(alarm);
+            }
+            None => self.note_bus_trouble(detail),
+        }
+    }
+
+    /// Returns the lateness of this computer in the last seconds when it takes half of what a reply may be late, or more.
+    fn host_late(&self) -> Option<Span> {
+        let allowed_ms = self.wiring.bus.digital_allowance_ms;
+        let recent = self.lateness.recent();
+        (recent.as_seconds() * 1e3 >= EXPLAINS * allowed_ms).then_some(recent)
+    }
+
     fn is_measuring(&self, line: LineId) -> bool {
         self.traffic.measuring_lines().contains(&line)
     }
@@ -457,7 +519,8 @@ impl Cycle {
                 self.orders_closed = asked.is_none();
                 self.pending_orders.extend(asked);
             }
-            () = self.pace.sleep_until(until) => {}
+            () = self.timer.until(until) => {}
         }
+        self.lateness.count(until, self.pace.now());
     }
 }

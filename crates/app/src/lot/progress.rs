@@ -8,7 +8,7 @@ use super::summary::{BrokenPromise, Summary, WallProfile};
 use crate::exit::{Cause, Exit};
 use crate::links::EepromCount;
 use bus::LineLog;
-use cycle::{Event, Profile};
+use cycle::{Ended, Event};
 use machine::dut::{Bin, Reason, Verdict};
 use machine::handling::ledger::Kind;
 use machine::handling::output::{Interrupted, Judged, Landed};
@@ -186,9 +186,8 @@ impl<'a> LotProgress<'a> {
     /// Returns the summary of the run; `writing` is the wall time that the history took.
     pub fn summary(
         &self,
-        ending: &Ending,
+        ended: &Ended,
         cause: Option<&Cause>,
-        profile: &Profile,
         writing: Duration,
         logs: &[(String, LineLog)],
     ) -> Summary {
@@ -196,11 +195,13 @@ impl<'a> LotProgress<'a> {
         let began = self.lot_began;
         let elapsed_s = began.map_or(0.0, |began| self.end().since(began).as_seconds());
         let eeprom = self.eeprom_at_start.zip((self.eeprom)());
-        let mut summary = Summary::new(&self.counts, (ending, cause), elapsed_s, wall, logs);
+        let mut summary = Summary::new(&self.counts, (&ended.ending, cause), elapsed_s, wall, logs);
         summary.eeprom_writes = eeprom.map(|(before, after)| after - before);
         summary.broken_promises = self.broken.clone();
         summary.bodies_watched = self.context.source.bodies_watched();
-        summary.wall_profile = WallProfile::new(profile, writing, wall);
+        summary.wall_profile = WallProfile::new(&ended.profile, writing, wall);
+        let is_real = !self.context.source.is_virtual();
+        summary.lateness = is_real.then(|| ended.lateness.view());
         summary
     }
 }
