@@ -144,11 +144,15 @@ fn check_lot_state(db: &Path, recipe: &Recipe, order: &LotOrder) -> Result<(), A
     };
     match standing.state {
         LotState::Held => Err(AdmissionError::Held { lot, standing }),
-        _ if standing.recipe_hash != recipe.hash => Err(AdmissionError::OtherRecipe {
-            lot,
-            found: format!("{} {}", recipe.name, &recipe.hash[..12]),
-            standing,
-        }),
+        LotState::Open | LotState::Running | LotState::Complete
+            if standing.recipe_hash != recipe.hash =>
+        {
+            Err(AdmissionError::OtherRecipe {
+                lot,
+                found: format!("{} {}", recipe.name, &recipe.hash[..12]),
+                standing,
+            })
+        }
         LotState::Complete if order.retest.is_none() => {
             Err(AdmissionError::Complete { lot, standing })
         }
