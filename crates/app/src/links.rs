@@ -15,7 +15,8 @@ use tokio::runtime::Handle;
 use tokio::sync::mpsc;
 
 /// How long a measuring line waits for a late reply, ms. The line requests the name of a silent module three times;
-/// with this wait that takes 0.65 s, so the host watchdogs of the line's other modules still receive their heartbeat in time.
+/// with this wait that takes 0.65 s, so the host watchdogs of the line's other modules still receive their heartbeat in
+/// time.
 const LATE_REPLY_MS: u64 = 180;
 
 /// Returns how many EEPROM writes all modules have made so far; `None` on a real rig, whose modules do not count them.

@@ -87,6 +87,13 @@ impl Select {
             .query_row(params_from_iter(&self.values), read)
     }
 
+    /// Returns true when the statement gives a row.
+    pub fn exists(&self, connection: &Connection) -> rusqlite::Result<bool> {
+        connection
+            .prepare(&self.sql)?
+            .exists(params_from_iter(&self.values))
+    }
+
     fn add(&mut self, sql: &str, value: impl Into<Value>) {
         self.sql.push_str(sql);
         self.values.push(value.into());

@@ -43,7 +43,7 @@ use bus::{LineLog, Pace};
 use cycle::{CycleLinks, Ended, Event};
 use history::HistoryError;
 use machine::station::turn::HistoryState;
-pub(crate) use outage::Patience;
+pub(crate) use outage::HistoryRetry;
 use outage::{Outage, history_lost};
 use recorder::Recorder;
 use screen::Screen;
@@ -95,7 +95,7 @@ impl LotRunner<'_> {
             traces,
             outer,
             history,
-            patience: Patience {
+            retry: HistoryRetry {
                 db: self.db,
                 controls,
                 pace,
@@ -174,7 +174,7 @@ struct Stream<'a, 'b> {
     outer: &'b mut dyn Subscriber,
     /// Tells the cycle whether rows are written.
     history: watch::Sender<HistoryState>,
-    patience: Patience<'a>,
+    retry: HistoryRetry<'a>,
 }
 
 impl Stream<'_, '_> {
@@ -184,8 +184,8 @@ impl Stream<'_, '_> {
         self.recorder.receive(event, &self.lot)
     }
 
-    /// Receives the events of the cycle until it ends; sets `recorded` to the last durable part. Rows that an outage leaves
-    /// pending are for [`Stream::close`].
+    /// Receives the events of the cycle until it ends; sets `recorded` to the last durable part. [`Stream::close`]
+    /// writes the rows that an outage leaves pending.
     ///
     /// # Errors
     /// Fails when an event has no rows.
@@ -194,7 +194,7 @@ impl Stream<'_, '_> {
         mut events: mpsc::UnboundedReceiver<Event>,
         recorded: &AtomicU64,
     ) -> anyhow::Result<()> {
-        let pace = self.patience.pace;
+        let pace = self.retry.pace;
         let mut batch = Vec::new();
         let mut outage: Option<Outage> = None;
         loop {
@@ -231,26 +231,25 @@ impl Stream<'_, '_> {
 
     /// Tells the cycle that rows are pending.
     fn unwritten(&mut self, outage: &mut Option<Outage>, error: &anyhow::Error) {
-        let (now, give_up_s) = (self.patience.pace.now(), self.patience.give_up_s);
+        let (now, give_up_s) = (self.retry.pace.now(), self.retry.give_up_s);
         if outage.is_none() {
             tracing::error!("history: {error:#}; trying again for {give_up_s} s");
         }
-        let outage = outage.get_or_insert_with(|| Outage::begin(now));
-        outage.failed(now);
+        let outage = Outage::note(outage, now);
         if outage.is_too_long(now, give_up_s) || !error.is::<HistoryError>() {
             return self.give_up(error);
         }
         self.history
-            .send_replace(match self.patience.controls.attended {
-                true => HistoryState::Lost(history_lost(self.patience.db, error)),
+            .send_replace(match self.retry.controls.attended {
+                true => HistoryState::Lost(history_lost(self.retry.db, error)),
                 false => HistoryState::Waiting,
             });
     }
 
     /// Ends the run because rows cannot be written.
     fn give_up(&mut self, error: &anyhow::Error) {
-        self.patience.give_up_s = 0.0;
-        let alarm = history_lost(self.patience.db, error);
+        self.retry.give_up_s = 0.0;
+        let alarm = history_lost(self.retry.db, error);
         self.history.send_replace(HistoryState::GivenUp(alarm));
     }
 
@@ -289,11 +288,6 @@ impl Stream<'_, '_> {
         self.tell(&LotEvent::Ended(Box::new(summary)))?;
         self.recorder.end(&ended.ending, exit, &self.lot);
         let (recorder, lot) = (&mut self.recorder, &self.lot);
-        self.patience
-            .until_written(async || recorder.close(lot))
-            .await
+        self.retry.until_written(async || recorder.close(lot)).await
     }
 }
-
-#[cfg(all(test, feature = "sim"))]
-mod outage_tests;
