@@ -109,11 +109,7 @@ impl Device {
 
     /// Observes the promises that a good part of the lot shows.
     fn watch_good(&mut self, record: &TestRecord) {
-        let (observed, scale) = (observed(record), self.context.scale());
-        let (operate, release) = &self.of_lot;
-        self.promises.watch_closures(observed);
-        self.promises
-            .watch_overshoots(observed, [operate, release], scale);
+        self.promises.watch_closures(observed(record));
         self.promises.apply(&mut self.context);
     }
 

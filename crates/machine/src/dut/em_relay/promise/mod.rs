@@ -3,7 +3,7 @@
 //! | promise | residuals |
 //! |---|---|
 //! | noise of the analog inputs | repeated conversions of constant references during the calibration ([`super::reference::noise`]) |
-//! | scatter of operations | repeated fine ramps of one part, and what the overshoot model leaves unexplained ([`operation`]) |
+//! | scatter of operations | repeated fine ramps of one part: each reference part of a calibration, and parts near a limit ([`operation`]) |
 //! | scatter of closures | closures of one part's NC contact ([`closure`]) |
 //!
 //! From the alarm on, budgets use the larger value; parts judged before keep theirs.
