@@ -147,7 +147,8 @@ pub trait DeviceUnderTest {
         panic!("{NO_REFERENCE_PARTS}: {serial}")
     }
 
-    /// Returns the promises of `rig.toml` and the recipe found broken since the last call.
+    /// Returns the accuracies promised by `rig.toml` and the recipe that measurements have disproved since the last
+    /// call.
     fn broken_promises(&mut self) -> Vec<Broken> {
         Vec::new()
     }

@@ -28,7 +28,7 @@ pub(super) struct Space {
 }
 
 impl Space {
-    /// Makes a space with the fixed elements only; the first situation adds the rest.
+    /// Makes a space with the fixed elements only; the first situation adds tooling and parts.
     pub fn of(scene: &Scene) -> Result<Space, Flaw> {
         let mut space = Space {
             model: Model::new(),
@@ -65,7 +65,7 @@ impl Space {
             .map(|(number, _)| number)
     }
 
-    /// Moves tooling and parts to the positions of `situation` and `present`.
+    /// Moves tooling and the parts that are `present` to their positions in `situation`.
     pub fn follow(
         &mut self,
         scene: &Scene,

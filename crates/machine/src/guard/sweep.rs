@@ -39,7 +39,7 @@ struct Travel<'a> {
     /// The shape decomposed in advance, if its offset from the other actuators is known.
     ready: Option<&'a Mover>,
     pose: Pose,
-    /// Offsets that the resting actuators allow.
+    /// Offsets of the body that the uncertain positions of other actuators allow.
     unsure: Offsets,
     from: [f64; 3],
     to: [f64; 3],

@@ -58,7 +58,7 @@ pub struct Nest {
 /// Conditions of a test.
 #[derive(Debug, Clone, Copy)]
 pub struct TestTerms<'a> {
-    /// PartRole under test: recipe, calibration and the values learned from parts.
+    /// Device under test: recipe, calibration and the values learned from parts.
     pub device: &'a Device,
     /// True when every result gets confirmation measurements.
     pub thorough: bool,

@@ -74,7 +74,7 @@ pub enum Act {
     Mask(Vec<AnalogInput>),
     /// Stores the current time for [`Act::WaitSinceMark`].
     Mark,
-    /// Waits until this time has passed since the mark.
+    /// Waits until this time has passed since the last [`Act::Mark`].
     WaitSinceMark(Span),
     /// Waits as [`Act::WaitSinceMark`] does, for a ramp started after the mark; longer if the ramp started late.
     RampSinceMark(Span),

@@ -168,7 +168,7 @@ impl Annunciator {
         assert!(!active, "an alarm without cause is active");
     }
 
-    /// Acknowledges the alarm with this code, or all alarms without a code; returns false when there is none.
+    /// Acknowledges the alarm with this code, or every alarm when `code` is `None`; returns false when there is none.
     pub fn acknowledge(&mut self, code: Option<&str>) -> bool {
         let mut found = false;
         for one in &mut self.listed {

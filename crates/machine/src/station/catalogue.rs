@@ -8,7 +8,7 @@ use crate::rig::stroke::ActuatorKey;
 use std::fmt;
 use texts::{Args, Lang, Message};
 
-/// Reaction of the machine to an alarm; each line says what the machine does.
+/// Reaction of the machine to an alarm; each variant says what the machine does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reaction {
     /// Makes the outputs safe at once.
@@ -168,7 +168,7 @@ codes! {
     ProbeContact = "probe_contact", Nothing, Operator;
     /// The use count of the probes or the jaws has reached its limit.
     Worn of Wearing = "worn", Nothing, Operator;
-    /// A promise of the rig's file does not hold.
+    /// The rig scatters more than `rig.toml` or the recipe promises.
     PromiseBroken of Promise = "promise_broken", Nothing, Operator;
     /// The stored calibration is not valid for a lot.
     CalibrationInvalid = "calibration_invalid", Abort, Operator;

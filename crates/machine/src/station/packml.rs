@@ -9,7 +9,7 @@
 //! - Files hold the names, never numbers.
 
 named! {
-    /// State of the rig; each line says what the rig does, or in which condition it is.
+    /// State of the rig; each variant says what the rig does, or in which condition it is.
     State {
         /// Powered, outputs safe, every position unknown.
         Stopped = "Stopped",
@@ -49,7 +49,7 @@ named! {
 }
 
 named! {
-    /// Commands that a person or another machine may give; each line says what the rig then does.
+    /// Commands that a person or another machine may give; each variant says what the rig then does.
     Command {
         /// Homes and empties the machine.
         Reset = "reset",
@@ -75,7 +75,7 @@ named! {
 }
 
 named! {
-    /// Mode of the rig; each line says what an operator may have it do.
+    /// Mode of the rig; each variant says what an operator may have it do.
     Mode {
         /// Runs lots.
         Production = "production",
@@ -95,7 +95,7 @@ pub enum On {
     Done,
 }
 
-/// One row of the table.
+/// One row of [`TRANSITIONS`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Transition {
     /// State that the machine leaves.

@@ -56,7 +56,7 @@ impl Default for Panel {
 }
 
 impl Panel {
-    /// Returns the orders of a machine in `state`, and the stuck buttons.
+    /// Returns the orders of the pressed buttons, for a machine in `state`, and the stuck buttons.
     pub(super) fn look(
         &mut self,
         now: RigTime,

@@ -193,7 +193,8 @@ impl OvershootModel {
         (0..TERMS).map(of_term).sum()
     }
 
-    /// Returns the squared distance from the parts learned, relative to the limit for similar parts; `None` at first.
+    /// Returns the squared distance from the parts learned, relative to the limit for similar parts; `None` after too
+    /// few parts.
     fn beyond(&self, spread: f64) -> Option<f64> {
         let parts = f64::from(self.parts);
         let more = parts - RESULTS as f64;

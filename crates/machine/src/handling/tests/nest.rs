@@ -73,7 +73,7 @@ impl Nest {
         self.step(state, None)
     }
 
-    /// Fails a job 40 ms after the start of the test.
+    /// Fails the first job of the test 40 ms after its start, so that the part is judged void.
     fn judged(&mut self) -> NestState {
         let state = self.testing();
         self.fails(state)

@@ -16,7 +16,7 @@ use units::{Second, Span, Volt};
 const ATTEMPTS: u8 = 5;
 
 enum Outcome {
-    /// Indicated voltage at the contact event, and length of the gate.
+    /// Indicated voltage at the contact event, and the time for which gate 0 was open.
     Found(Volt, Second),
     /// Event missed; the plan holds the interval for the next ramp.
     Repeat,

@@ -51,7 +51,7 @@ impl Promises {
                 promise,
                 promised,
                 evidence: Evidence::default(),
-                // The file may promise less by now.
+                // Not broken when `rig.toml` by now promises as large a value itself.
                 broken: stored.find(|it| it.used > promised).copied(),
             }
         });
@@ -138,7 +138,7 @@ impl Watched {
     }
 }
 
-/// Returns the value in force in `context`, in the unit of its key.
+/// Returns the promised value that the budgets of `context` use, in the unit of its key.
 fn promised(context: &Context, promise: Promise) -> f64 {
     match promise {
         Promise::AiNoise => context.accuracy.ai_noise_lsb,

@@ -10,10 +10,11 @@ use units::Volt;
 
 /// Parts that teach the overshoot model before its residuals count.
 const TAUGHT: u32 = 8;
-/// Standard deviation that a taught overshoot model leaves without any scatter of operations, of a 12 V coil.
+/// Standard deviation that the residuals of a taught overshoot model would have if operations did not scatter, for a 12
+/// V coil.
 pub const REST: Volt = Volt(0.003);
 /// Greatest ratio of the factors of range and coil at which [`REST`] holds. For 3, 5, 9 and 18 V coils the ramp is 1.2
-/// to 2 times as steep, and the model leaves half as much again.
+/// to 2 times as steep, and the residuals are half as large again.
 pub const STEEPEST: f64 = 1.1;
 /// Largest residual that counts, in promised standard deviations: a rare part far off the model does not show how
 /// operations scatter.

@@ -37,7 +37,7 @@ fn states(mock: &MockRig, ago: Span) -> Vec<Feed> {
     states
 }
 
-/// Returns the ledger content that a state requires: a part in the pocket while the feed has one.
+/// Returns true for a state that requires a part in the pocket.
 fn holds(feed: Feed) -> bool {
     matches!(feed, Feed::Holding | Feed::Ready | Feed::Pushing)
 }

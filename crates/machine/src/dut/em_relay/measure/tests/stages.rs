@@ -201,7 +201,7 @@ fn a_low_coarse_release_counts_until_the_last_refresh() {
     assert!((coarse.0 - 0.11).abs() < 1e-9);
 }
 
-/// A timed stage: gate 0 and 1 in counts of 20 us, drops of both polarities.
+/// Readings of a timed stage: gates 0 and 1 in counts of 20 us, drops of both polarities.
 fn timed(seen: bool, counts: [u32; 2]) -> Readings {
     Readings {
         seen: vec![seen],
