@@ -27,8 +27,8 @@ pub struct Definition {
     pub bin: Bin,
 }
 
-/// A characteristic of one kind of device. The default methods suit one that does not depend on temperature and that
-/// stored curves do not bound.
+/// A characteristic of one kind of device. The default methods suit a characteristic that does not depend on
+/// temperature and has no bound from stored curves.
 pub trait KindCharacteristic {
     /// Returns the constant data of the characteristic.
     fn definition(&self) -> &'static Definition;

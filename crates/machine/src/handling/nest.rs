@@ -77,7 +77,7 @@ impl TestTerms<'_> {
     }
 }
 
-/// Inputs of a nest besides the turn.
+/// Inputs of a nest's step in addition to [`Turn`].
 pub struct NestContext<'a> {
     /// Completion of the nest's job, once.
     pub done: Option<JobDone>,

@@ -173,8 +173,8 @@ impl SensedParts {
     }
 }
 
-/// Moves to the nest, in the ledger, the part that the pusher delivered before the cut-off: the part in the nest is
-/// this one, not one that slid from the fingers.
+/// Moves the part that the pusher delivered before the cut-off to the nest in the ledger: the nest sensor then shows
+/// this part, not one that slid from the fingers.
 fn pushed(turn: &mut Turn, seen: &SensedParts) {
     let gone = turn.ledger.holds(Place::Pocket) && !seen.pocket;
     if gone && !turn.ledger.holds(Place::NEST) && seen.nest {

@@ -10,9 +10,9 @@ use crate::rig::point::{AnalogInput, AnalogOutput, DigitalInput, DigitalOutput, 
 use std::sync::Arc;
 use units::{RigTime, Span, Volt};
 
-/// Longest normal time from the last poll without an awaited event to the end of the write after it: a poll, a
-/// reading, the write. When a retry or a slow line delays the ramp, the ramp ends later by that delay; a ramp that
-/// reverses has run on meanwhile, and needs as long again to return.
+/// Longest normal time from the last poll before an awaited event to the end of the write that answers the event: a
+/// poll, a reading, the write. When a retry or a slow line delays the ramp, the ramp ends later by that delay; a ramp
+/// that reverses has run on meanwhile, and needs as long again to return.
 const PROMPT: Span = Span::ms(13);
 
 /// Digital inputs read together and kept as one signal: bit n is input n.

@@ -104,7 +104,7 @@ pub fn code_of(states: [bool; 2]) -> u8 {
 }
 
 impl SupplyRange {
-    /// Returns true for a range of the file, which two outputs select.
+    /// Returns true for a range of `rig.toml`, which two outputs select; false on a rig without ranges.
     pub fn is_selected(&self) -> bool {
         self.max_current.is_some()
     }
@@ -192,7 +192,7 @@ impl Wiring {
     }
 }
 
-/// Resolves the ranges of the file, smallest first; without any, the range of the strongest source at factor 1.
+/// Resolves the ranges of `rig.toml`, smallest first; without any, the range of the strongest source at factor 1.
 pub(super) fn resolve_ranges(
     settings: &RigSettings,
     modules: &[Module],

@@ -21,7 +21,7 @@ pub enum Reaction {
     Nothing,
 }
 
-/// What ends the cause of an alarm.
+/// What clears an alarm, that is, ends its cause.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ClearedBy {
     /// The sensor that has shown the cause, or the history once it is written again.
@@ -37,7 +37,7 @@ pub enum ClearedBy {
 pub struct Entry {
     /// Reaction of the machine.
     pub reaction: Reaction,
-    /// What ends the cause.
+    /// What clears the alarm.
     pub cleared_by: ClearedBy,
 }
 

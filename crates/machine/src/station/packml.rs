@@ -6,7 +6,7 @@
 //! - *Held*: the cause is inside the machine, and a person ends it. *Suspended*: the cause is outside (no parts, a
 //!   full bin), and the machine resumes by itself.
 //! - A reset starts and acknowledges nothing; an acknowledgement resets nothing.
-//! - Files hold the names, never numbers.
+//! - Files hold the names of states, never numbers.
 
 named! {
     /// State of the rig; each variant says what the rig does, or in which condition it is.
@@ -35,7 +35,7 @@ named! {
         Suspending = "Suspending",
         /// At rest; the cause is outside the machine.
         Suspended = "Suspended",
-        /// Resumes after the cause outside has gone.
+        /// Resumes after the cause outside the machine has gone.
         Unsuspending = "Unsuspending",
         /// Finishes the parts inside, then makes the outputs safe.
         Stopping = "Stopping",
@@ -61,9 +61,9 @@ named! {
         Hold = "hold",
         /// Resumes after a hold.
         Unhold = "unhold",
-        /// Brings the line to rest for a cause outside.
+        /// Brings the line to rest for a cause outside the machine.
         Suspend = "suspend",
-        /// Resumes after the cause outside has gone.
+        /// Resumes after the cause outside the machine has gone.
         Unsuspend = "unsuspend",
         /// Makes the outputs safe at once.
         Abort = "abort",

@@ -4,7 +4,7 @@
 //! | button | order |
 //! |---|---|
 //! | start | `unhold` in Held, `unsuspend` in Suspended, else `start` |
-//! | stop | `stop`; an unattended run ends after the parts inside |
+//! | stop | `stop`; an unattended run ends once the parts inside are finished |
 //! | reset | `clear` after an abort, else `reset` |
 //!
 //! A button gives one order when it has been down for [`SETTLED`] after being up for as long: a bounce or a held

@@ -14,7 +14,7 @@ pub enum Read {
     Coil,
     /// One channel of the coil converter, in about half the time of a scan.
     Current(AnalogIn),
-    /// The contact drop.
+    /// The drop across the contact under test.
     Drop,
     /// Both gate counters.
     Gates,

@@ -1,6 +1,6 @@
 //! State of interface board, coil supply and armature between two stages of a test.
 //!
-//! Each stage builds its acts on the state that the stage before left, and returns the state that they leave. Its
+//! Each stage builds its acts on the state that the stage before left, and returns the state that these acts leave. Its
 //! conclusion corrects that state when the part has not moved as planned. "The mark" is the last instant marked by any
 //! stage.
 

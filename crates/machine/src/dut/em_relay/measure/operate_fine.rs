@@ -1,7 +1,7 @@
 //! Operate voltage on the fine ramp, around the estimate of the coarse ramp.
 //!
-//! The relay releases between the two. The approach has two steps (0.93 of the start, then the start): after a single
-//! step from zero the armature swings over some 30 mV below the quasi-static threshold.
+//! The relay releases between the two ramps. The approach has two steps (0.93 of the start, then the start): after a
+//! single step from zero the armature swings and operates some 30 mV below the quasi-static threshold.
 
 use super::board::{Armature, BoardState, SentRamp, drive_off};
 use super::operate::LATE;

@@ -43,7 +43,8 @@ fn states(mock: &MockRig) -> [(Sort, AxisStation); 9] {
     ]
 }
 
-/// A part is in the gripper from `Loaded` to `LettingGo`; a released one may be falling, for a short or a long time.
+/// Makes the ledger of a state: a part is in the gripper from `Loaded` to `LettingGo`, and a released one may be
+/// falling since `since`.
 fn ledger(sort: Sort, falling: bool, since: RigTime) -> Ledger {
     let mut ledger = Ledger::default();
     let mut lift = || {
