@@ -55,7 +55,7 @@ pub struct TestOrder<'a> {
 /// Why the rig cannot be calibrated, or disagrees with a certificate.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CalibrationFault {
-    /// A reference on the interface board does not read as it must.
+    /// A reference on the interface board has a wrong reading.
     #[error(transparent)]
     Reference(#[from] em_relay::reference::ReferenceFault),
     /// A reference part cannot be used, or disagrees with its certificate or with the other parts.
@@ -102,7 +102,7 @@ pub trait DeviceUnderTest {
     /// Computes the factors from the readings of [`Self::reference_acts`].
     ///
     /// # Errors
-    /// Fails with the channel or the reference that does not read as it must.
+    /// Fails with the channel or the reference whose reading is wrong.
     fn conclude_references(
         &mut self,
         _readings: &Readings,

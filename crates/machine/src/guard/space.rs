@@ -58,7 +58,7 @@ impl Space {
         numbered.filter_map(|(number, occupant)| occupant.as_ref().map(|o| (number, o.key)))
     }
 
-    /// Returns the body of a key; `None` when the core names no element.
+    /// Returns the number of the body with this key; `None` when the core names no element.
     pub fn number_of(&self, key: ElementKey) -> Option<usize> {
         self.occupants()
             .find(|(_, known)| *known == key)

@@ -151,7 +151,8 @@ impl Nest {
     }
 }
 
-/// Starts the test. An interrupted part goes to retest without one; a row records it, unless it has a row already.
+/// Starts the test of a clamped part. An interrupted part goes to retest without one; a row records it, unless it has a
+/// row already.
 fn clamped(id: NestId, turn: &mut Turn) -> NestState {
     let part = turn.ledger.part_mut(Place::Nest(id));
     let interrupted = part.as_ref().and_then(|part| part.interrupted.clone());

@@ -22,7 +22,7 @@ pub const SWITCHING_TIMEOUT: Span = Span::ms(500);
 /// One range of the supply.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SupplyRange {
-    /// Name in the file; on a rig without ranges the name of the module of its strongest source.
+    /// Name in `rig.toml`; on a rig without ranges the name of the module of its strongest source.
     pub name: String,
     /// Bits that select the range and read it back.
     pub code: u8,
@@ -30,7 +30,7 @@ pub struct SupplyRange {
     pub factor: f64,
     /// Highest voltage of the supply.
     pub max: Volt,
-    /// Largest current of the supply; `None` on a rig without ranges, whose file states none.
+    /// Largest current of the supply; `None` on a rig without ranges, whose `rig.toml` states none.
     pub max_current: Option<Ampere>,
 }
 
@@ -47,7 +47,7 @@ pub struct SupplyDemand {
     pub current_key: &'static str,
 }
 
-/// A supply in another range than the one selected, by their names.
+/// A supply in another range than the one selected, with the names of both ranges.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RangeMismatch {
     /// The range that the outputs select.
@@ -277,7 +277,7 @@ fn check_codes(ranges: &[SupplyRange]) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Checks that the points which select a range and read it back are wired exactly where the file has ranges.
+/// Checks that the points which select a range and read it back are wired exactly where `rig.toml` has ranges.
 fn check_points(settings: &RigSettings) -> Result<(), Fault> {
     let has_ranges = !settings.supply_range.is_empty();
     let out = |name: &&str| settings.digital_out.contains_key(*name);

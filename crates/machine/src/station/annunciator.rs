@@ -134,7 +134,7 @@ impl Annunciator {
         again || PER_PART.contains(&known.alarm.code)
     }
 
-    /// Clears the alarms that a sensor clears, except those whose code is in `there`.
+    /// Clears the alarms that a sensor clears, except those whose code `there` contains: their cause remains.
     pub fn sensed(&mut self, there: &[Alarm]) {
         self.gone(|one| {
             let by_sensor = one.entry().cleared_by == ClearedBy::Sensor;

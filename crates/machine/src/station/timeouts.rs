@@ -51,7 +51,7 @@ impl Timeouts {
         self.since.clear();
     }
 
-    /// Returns the alarm of a step that has exceeded its timeout; of several, that of the last one.
+    /// Returns the alarm of a step that has exceeded its timeout; of several steps, that of the last one.
     pub fn look(
         &mut self,
         now: RigTime,

@@ -211,7 +211,7 @@ fn pulses(acts: &mut Vec<Act>) {
 /// Computes the factors from the readings of [`acts`]. `made_at_us`: microseconds since 1970 UTC.
 ///
 /// # Errors
-/// Fails with the range, the channel or the reference that does not read as it must.
+/// Fails with the range, the channel or the reference whose reading is wrong.
 pub fn conclude(
     context: &Context,
     readings: &ByPoint,

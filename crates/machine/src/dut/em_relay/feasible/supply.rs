@@ -16,8 +16,8 @@ const LEAST_CURRENT_V: f64 = 0.3;
 /// Share by which a good coil may differ from its nominal resistance where the recipe sets no limit.
 const USUAL_SPREAD: f64 = 0.1;
 
-/// Returns the demand of a test on the supply: the nominal voltage or the top of the coarse ramp, with the tolerance of
-/// the sources, and the current of the lowest accepted coil at nominal voltage.
+/// Returns the demand of a test on the supply: the greater of the nominal voltage and the top of the coarse ramp, with
+/// the tolerance of the sources, and the current of the lowest accepted coil at nominal voltage.
 pub fn demand(recipe: &RelayRecipe, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand {
     let (part, test) = (&recipe.part, &recipe.test);
     let tolerance = 1.0 + accuracy.ao_gain_pct / 100.0;

@@ -103,7 +103,7 @@ pub(super) fn acts_off(
     acts.extend(select_diode(context, false));
     if board.armature != Armature::Rested {
         acts.extend((!board.armature.is_released()).then_some(Act::Mark));
-        // The line skips unchanged values; this change of level reveals a module that ignores writes.
+        // An unchanged value is not written; this change of level reveals a module that ignores writes.
         acts.extend(stopped.then(|| board.supply.step_to(Volt(0.0))));
         acts.extend(rest(context, &mut board.supply));
     }

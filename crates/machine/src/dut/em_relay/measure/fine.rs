@@ -53,7 +53,7 @@ pub(super) fn conclude(
     None
 }
 
-/// Compares a fine ramp with the contact event; returns `None` when that ends the test.
+/// Evaluates a fine ramp: the event found, or a repeat; `None` when the test ends.
 fn evaluate(
     context: &Context,
     readings: &Readings,

@@ -1,4 +1,4 @@
-//! Promises that this kind observes: residuals of its measurements against `[accuracy]` of the rig and the recipe.
+//! Tests the promises of `rig.toml` (`[accuracy]`) and of the recipe on residuals of this kind's measurements.
 //!
 //! | promise | residuals |
 //! |---|---|
@@ -41,7 +41,7 @@ struct Watched {
 }
 
 impl Promises {
-    /// Starts from the promises of rig and recipe, and what a stored calibration has disproved of them.
+    /// Makes the promises of rig and recipe; those that a stored calibration has disproved are broken.
     pub fn new(context: &Context) -> Self {
         let stored = &context.calibration.broken;
         let watched = Promise::ALL.iter().map(|&promise| {
