@@ -27,7 +27,7 @@ pub struct Made {
     pub simulated: bool,
 }
 
-/// What a kind may need to know of the rig.
+/// Data of the rig that a kind of device may use.
 #[derive(Debug, Clone, Copy)]
 pub struct Rig<'a> {
     /// Points, modules and lines.

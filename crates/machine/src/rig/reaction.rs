@@ -80,8 +80,8 @@ impl Wiring {
         read + read + read
     }
 
-    /// Returns the time of a transaction with a digital module, including writes and requests for its name: no reply is
-    /// longer than a count.
+    /// Returns the time of a transaction with a digital module, including writes and requests for its name: no reply of
+    /// such a module is longer than a count.
     fn short_exchange(&self, line: LineId) -> Span {
         self.answered(line, LONGEST_DIGITAL_REPLY, self.digital_allowance())
     }

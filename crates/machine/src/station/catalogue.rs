@@ -194,7 +194,7 @@ impl AlarmCode {
         subject.map_or(id.to_owned(), |subject| format!("{subject}_{id}"))
     }
 
-    /// Returns the text with these arguments.
+    /// Returns the message of this code with these arguments.
     pub fn message(self, args: Args) -> Message {
         Message::of("alarm", self.text_id(), args)
     }

@@ -1,4 +1,4 @@
-//! State machine of the whole rig, around those of feed, nest and sorter: names of ISA-TR88.00.02 (PackML).
+//! State machine of the whole rig, around those of feed, nest and sorter, with names of ISA-TR88.00.02 (PackML).
 //!
 //! [`TRANSITIONS`] alone defines the order of states: station, screen buttons and `golden/packml.dot` derive from it.
 //! `Execute` feeds, clamps, measures and sorts parts; `Completing`, `Stopping` and `Holding` finish them.

@@ -119,7 +119,7 @@ impl Expected {
     }
 
     /// Returns the next interval, three times as wide: beyond the far end when the contact has not changed. When it
-    /// changed too early the far end stays: the event lies before the near end, or the approach came too near.
+    /// changed too early the far end stays: the event lies before the near end, or the approach came too near to it.
     pub fn next(&self, direction: Direction, changed_early: bool) -> Self {
         let further = if changed_early {
             1.0 - WIDER

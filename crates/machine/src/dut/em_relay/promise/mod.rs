@@ -6,7 +6,7 @@
 //! | scatter of operations | repeated fine ramps of one part, and what the overshoot model leaves unexplained ([`operation`]) |
 //! | scatter of closures | closures of one part's NC contact ([`closure`]) |
 //!
-//! From the alarm on, budgets use the larger value; parts judged before keep theirs.
+//! From the alarm on, budgets use the observed value; parts judged before keep the promised one.
 
 mod closure;
 mod operation;
