@@ -66,7 +66,8 @@ impl Default for Recovery {
 }
 
 impl Recovery {
-    /// Steps once; returns true when everything is home. `releasing`: the escapement may have let a part through.
+    /// Steps homing once; returns true when everything is home. `releasing`: the escapement may have let a part
+    /// through.
     pub fn step(&mut self, turn: &mut Turn, releasing: bool) -> bool {
         match self.stage {
             HomingStep::Looking => {

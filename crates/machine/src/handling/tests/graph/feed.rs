@@ -92,7 +92,7 @@ fn the_feed_is_the_drawing() {
     graph.assert_tests(FACTS, include_str!("../feed.rs"));
 }
 
-/// From, to, and the test of this edge.
+/// Each edge of the graph: from, to, and the test that covers it.
 const FACTS: &[(&str, &str, &str)] = &[
     ("Empty", "Releasing1", "a_part_gets_its_number_in_the_nest"),
     (

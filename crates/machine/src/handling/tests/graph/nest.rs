@@ -153,7 +153,7 @@ fn the_nest_is_the_drawing() {
     graph.assert_tests(FACTS, include_str!("../nest.rs"));
 }
 
-/// From, to, and the test of this edge.
+/// Each edge of the graph: from, to, and the test that covers it.
 const FACTS: &[(&str, &str, &str)] = &[
     (
         "Empty",

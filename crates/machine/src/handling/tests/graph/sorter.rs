@@ -121,7 +121,7 @@ fn the_sorter_is_the_drawing() {
     graph.assert_tests(FACTS, include_str!("../sort.rs"));
 }
 
-/// From, to, and the test of this edge.
+/// Each edge of the graph: from, to, and the test that covers it.
 const FACTS: &[(&str, &str, &str)] = &[
     ("Returning", "OverNest", "z_comes_down_only_during_a_test"),
     ("OverNest", "Lowering", "z_comes_down_only_during_a_test"),
