@@ -38,9 +38,8 @@ pub trait KindCharacteristic {
         1.0
     }
 
-    /// Returns the lower bound, in the unit of the key, that stored curves prove for a part without a measured value. A
-    /// margin for effects that the curves are not corrected for is subtracted. `_rated_v`: nominal voltage of the part,
-    /// V.
+    /// Returns the lower bound, in the unit of the key, that stored curves prove for a part without a measured value,
+    /// less a margin for effects that the curves are not corrected for. `_rated_v`: nominal voltage of the part, V.
     fn lower_bound(&self, _curves: &[Curve], _rated_v: Option<f64>) -> Option<f64> {
         None
     }

@@ -79,7 +79,7 @@ impl Panel {
 }
 
 impl Button {
-    /// Returns true once per press.
+    /// Returns true when the button gives its order: once per press.
     fn orders(&mut self, now: RigTime, image: &Image) -> bool {
         let sample = image.input(self.point, now, SENSOR_AGE);
         let (Some(down), Some(at)) = (sample, image.input_at(self.point)) else {

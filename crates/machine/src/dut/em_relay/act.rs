@@ -10,7 +10,7 @@ use units::{Span, Volt};
 pub enum Read {
     /// All inputs of the interface board.
     Board,
-    /// The enabled channels of the coil converter, one scan.
+    /// One scan of the enabled channels of the coil converter.
     Coil,
     /// One channel of the coil converter, in about half the time of a scan.
     Current(AnalogIn),

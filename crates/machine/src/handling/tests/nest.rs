@@ -85,7 +85,7 @@ impl Nest {
             at: self.mock.now,
             trouble: Some("measure 05: silent".into()),
         };
-        // The first failure ends the stage, the second the switching off after it.
+        // The first failure ends the stage, the second ends the switching off after it.
         let state = self.step(state, Some(failed.clone()));
         assert!(matches!(state, NestState::Testing(_)));
         self.step(state, Some(failed))

@@ -2,8 +2,8 @@
 //!
 //! A relay that is late on a step (mass, drag, slow pull) also swings longer after an approach and leaves its rest
 //! position later. Every wait for a free armature is therefore a multiple of the operate time at nominal voltage that
-//! the test measures before any ramp. Of two thousand simulated relays (five states, after [`super::OFF`] without
-//! drive) none operates early when the approach ends 45 mV before the threshold, and seven heavy ones do at 30 mV.
+//! the test measures before any ramp. Of two thousand simulated relays, after [`super::OFF`] without drive, none
+//! operates early when the approach ends 45 mV before the threshold, and seven heavy ones do at 30 mV.
 
 use super::TestRecord;
 use crate::dut::em_relay::Parameter;

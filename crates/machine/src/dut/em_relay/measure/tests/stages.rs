@@ -307,7 +307,7 @@ fn on_the_ramp() -> Context {
     context
 }
 
-/// Concludes a coarse ramp on a part whose operate time is `counts` long.
+/// Concludes a coarse ramp on a part whose operate time is this number of counts.
 fn coarse_after(context: &Context, counts: u32) -> (TestState, Option<Stage>) {
     let mut state = ramp_from(5.0, 6.0);
     state.plan.drop_zero = Some(Volt(0.0));
