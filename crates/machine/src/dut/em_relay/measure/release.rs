@@ -21,7 +21,8 @@ use units::{Span, Volt};
 
 /// Fraction of nominal at which the armature is sealed.
 pub const SEAL: f64 = 0.95;
-/// Last part of the ramp, in refreshes, in which the output may have stopped already: an event there gives no estimate.
+/// Last part of a ramp, in refresh intervals, in which the output may have stopped already: an event there gives no
+/// estimate.
 const LAST_REFRESHES: f64 = 1.5;
 /// Time for operation, bounce and flux to settle.
 const SEAL_TIME: Span = Span::ms(25);
