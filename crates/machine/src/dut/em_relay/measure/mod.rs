@@ -287,7 +287,7 @@ impl TestProcedure for Test {
         std::mem::take(&mut self.state.record).of_any_kind(Own::EmRelay)
     }
 
-    /// Returns the longest time of the stages that measure and of the conditioning.
+    /// Returns the longest time that the measuring stages and the conditioning take together.
     fn longest(&self) -> Span {
         MEASURING + conditioning::longest(self.context.relay.test.conditioning_operations)
     }

@@ -1,4 +1,4 @@
-//! Observes the promises on tested parts.
+//! Compares the promises with the results of tested parts.
 
 use super::{Promises, closure, operation};
 use crate::dut::em_relay::measure::Observed;
