@@ -74,7 +74,7 @@ pub(crate) struct JournaledWorld {
 pub struct LateReplies {
     /// Number of them.
     pub count: u64,
-    /// Lateness of the latest, microseconds.
+    /// Lateness of the most delayed reply, microseconds.
     pub worst_us: u64,
 }
 

@@ -16,9 +16,9 @@ pub struct Pace {
     is_virtual: bool,
 }
 
-/// How much earlier a wait at real pace wakes, to sleep the rest on the thread: tokio's timer may be this late.
+/// How much too early [`Pace::rest_until`] sets tokio's timer, which may be this late; then the thread itself sleeps.
 const FINE: Span = Span(2_000);
-/// Rig time from one pause to the next when virtual time is slowed to the wall clock: half the time of a screen frame.
+/// Rig time between two pauses by which [`Pace::limit_speed`] slows virtual time: half the time of a screen frame.
 const HOLD: Span = Span(10_000);
 
 impl Pace {

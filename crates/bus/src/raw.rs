@@ -1,4 +1,4 @@
-//! Sends one raw frame, for tools. The command is not known here, so nothing is repeated or checked.
+//! Sends one raw frame, for tools. It may hold any command, so nothing is repeated or checked.
 
 use super::exchange::{Exchange, Frame, FrameEnd};
 use super::{LineSettings, Pace, Port};

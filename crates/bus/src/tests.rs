@@ -19,7 +19,7 @@ mod steps;
 /// One piece of a module's reply: its delay after the request, microseconds, and its bytes.
 type Say = (u64, &'static [u8]);
 
-/// The reply `>0000001E` with its checksum: the count 30. Below: another count.
+/// The reply `>0000001E` (count 30) with its checksum, and `NINE` likewise: count 9.
 const THIRTY: &[u8] = b">0000001ED4\r";
 const NINE: &[u8] = b">00000009C7\r";
 
@@ -45,8 +45,8 @@ fn in_virtual_time<F: Future>(test: F) -> F::Output {
         .block_on(test)
 }
 
-/// Answers the n-th request with the n-th entry of `script`; leaves later requests unanswered. A request for its name
-/// it answers after all other bytes; neither `script` nor the returned requests contain those.
+/// Answers the n-th request with the n-th entry of `script`; leaves later requests unanswered. Requests for the name
+/// count neither there nor among the returned requests: they get their reply after all bytes due before.
 async fn modules(mut stream: DuplexStream, pace: Pace, script: Vec<Vec<Say>>) -> Vec<String> {
     let mut sent = Vec::new();
     let mut script = script.into_iter();

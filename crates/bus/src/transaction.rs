@@ -1,4 +1,4 @@
-//! One transaction on an open port, with the rest, the confirmation and the resynchronisation that belong to it.
+//! One transaction on an open port, with its turnaround, its confirmation and the resynchronisation after trouble.
 //!
 //! A late reply (one to an earlier request, which timed out) is dropped in three places:
 //!

@@ -57,7 +57,7 @@ pub(super) enum Shape {
     Alarm,
     /// `>` and one field
     Reading(InputForm),
-    /// `>` and all fields
+    /// `>` and one field per channel
     Readings(InputForm),
     /// `!AA(data)`
     Level(OutputForm),
@@ -67,7 +67,7 @@ pub(super) enum Shape {
     ChannelRange(Channel),
 }
 
-/// Recognises `?AA` and `!` alone, by which a module refuses. Any other lead is checked by the form.
+/// Fails when `text` is a refusal: `?AA`, or `!` alone. [`Shape::decode`] rejects any other wrong lead.
 pub(super) fn check_refusal(text: &[u8], to: Address, effect: Effect) -> Result<(), ReplyError> {
     let output = effect == Effect::Output;
     let mut fields = Fields::new(text);

@@ -64,7 +64,7 @@
 //!    stretch ends where this separation reaches the margin, and stretches follow each other without a gap.
 //! 4. When the broad phase drops a pair, the boxes of its pieces never overlap during the move. These boxes are rounded
 //!    outward by the same error bound and then to single precision. Everything that the broad phase computes along the
-//!    path carries `space::sweep::SLACK_MM`, and the steps of height are monotone.
+//!    path carries `space::sweep::SLACK_MM`, and rounding heights to layers keeps their order.
 //! 5. `solid` finds a body inside a closed mesh, and counts a doubtful body as inside; `closed` finds the closed
 //!    surfaces of a mesh, however untidy its file is.
 //! 6. A comparison with NaN is false, and every comparison is written so that false means blocked. Iteration limits,

@@ -111,7 +111,8 @@ impl<'a> Meeting<'a> {
         }
     }
 
-    /// Returns the same from `window` for footprints with common axes (a disc has any axes); `framed` gives the axes.
+    /// Returns the first fraction in `window` at which footprints with common axes, those of `framed`, are within the
+    /// margin.
     #[inline]
     fn rounded(&self, window: Window, framed: &Prism) -> Option<f64> {
         let radius = self.element.radius + self.mover.radius;
@@ -241,8 +242,8 @@ fn slab((low, high): Window, start: f64, (rate, pace): (f64, f64), half: f64) ->
     if low > high { None } else { Some((low, high)) }
 }
 
-/// Returns the first fraction in `window` at which `p + t v` is inside the rectangle of `half` with corners of
-/// `radius`; it is already within the bounding rectangle.
+/// Returns the first fraction in `window` at which the point `p + t v` is inside the rectangle of `half` with corners
+/// of `radius`; during all of `window` the point is within the rectangle that bounds this figure.
 #[inline]
 fn corner(
     (low, high): Window,

@@ -33,7 +33,7 @@ pub(crate) struct Group {
     /// Centre and half extents of the box around the group, mm; the fourth members are 0.
     centre: [f32; 4],
     half: [f32; 4],
-    /// Largest distance of a point from the origin of the body, rounded outward, mm.
+    /// Largest distance of a point of the group from the origin of the body, rounded outward, mm.
     ball: f64,
     /// By how much the boxes of the group are widened at any place, mm.
     wider: f64,
@@ -144,7 +144,7 @@ impl Group {
         group
     }
 
-    /// Returns a mask of the places in use (bit k: place k).
+    /// Returns a mask of the group's places that hold a piece (bit k: place k).
     #[inline]
     pub(crate) fn used(&self) -> u32 {
         (1 << self.count) - 1

@@ -188,7 +188,8 @@ impl Askew {
         }
     }
 
-    /// Returns the same values when a corner of the element touches a side of the mover.
+    /// Returns depth, normal and point as [`Self::on_a_side`] does, when a corner of the element touches a side of the
+    /// mover.
     #[inline(always)]
     fn on_a_corner(&self, element: &Prism) -> (f64, [f64; 2], [f64; 2]) {
         let [first, second] = self.over_mover;

@@ -109,7 +109,7 @@ fn without_minus_zero(value: f64, decimals: usize) -> f64 {
     if value.abs() < half_step { 0.0 } else { value }
 }
 
-/// Returns a range of the 7017 and 7018 families.
+/// Returns the range of a 7017 or 7018 with this type code; `None` for a code that they lack.
 pub fn voltage_range(type_code: u8) -> Option<Range> {
     let (full_scale, decimals, per_terminal) = match type_code {
         0x00 => (15.0, 3, 1e3),
@@ -174,7 +174,7 @@ fn thermocouple_range(type_code: u8) -> Option<Range> {
     })
 }
 
-/// Returns a range of the RTD module, degrees Celsius.
+/// Returns the range of the RTD module with this type code, degrees Celsius; `None` for a code that it lacks.
 pub fn rtd_range(type_code: u8) -> Option<Range> {
     let (full_scale, lowest) = match type_code {
         0x20 | 0x24 => (100.0, -100.0),

@@ -7,7 +7,7 @@ use super::four::Four;
 /// it is exact.
 pub(crate) const PITCH_MM: f64 = 64.0;
 
-/// Columns and rows farther out than this (100 km) count as this one: no grid reaches as far.
+/// The outermost column and row, 100 km out; farther ones are clamped to it, because no grid reaches as far.
 const FARTHEST: f32 = (1 << 21) as f32;
 
 /// First and last column and row of a range of squares, each stored twice, to compare four numbers at once.
@@ -30,7 +30,7 @@ impl Ends {
     };
 }
 
-/// Masks of those of two by two squares that differ, indexed by the number of rows and columns less one.
+/// Masks of the distinct squares among two by two ([`Area::different`]), indexed by rows less one and columns less one.
 const DIFFERENT: [[u32; 2]; 2] = [[0b0001, 0b0011], [0b0101, 0b1111]];
 
 /// Number of cells that the grid grows by around a piece outside it.
@@ -94,8 +94,8 @@ impl Area {
         (self.high[0] - self.low[0] <= 1) & (self.high[1] - self.low[1] <= 1)
     }
 
-    /// Returns the mask of those of two by two cells that differ: bit 0 the first, bit 1 the next column, bit 2 the
-    /// next row.
+    /// Returns the mask of the distinct cells among two by two, of which a smaller area repeats some: bit 0 the first,
+    /// bit 1 the next column, bit 2 the next row.
     #[inline(always)]
     pub(super) fn different(&self) -> u32 {
         let [wide, deep] = [0, 1].map(|axis: usize| (self.high[axis] - self.low[axis]) as usize);

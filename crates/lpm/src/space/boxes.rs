@@ -16,7 +16,7 @@ pub(crate) struct Boxes<const N: usize> {
     pub(crate) high: [[f32; N]; 3],
 }
 
-/// Which boxes a moving box meets (bit k: lane k), and up to which fraction of the path it does not.
+/// Which boxes a moving box meets (bit k: lane k), and the earliest fraction of the path at which it can meet each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Crossing<const N: usize> {
     pub(crate) lanes: u32,

@@ -120,7 +120,7 @@ fn a_repeated_surface_is_solid() {
     let other = Soup::cuboid([30.0; 3], [40.0; 3]);
     let both = cube.clone().with(cube.clone().turned_over()).with(other);
     assert!(is_inside(&both, MIDDLE) && is_inside(&both, [35.0; 3]));
-    // The same two, with a corner in common.
+    // The same two parts, with a corner in common.
     let mut hinged = both;
     let first = hinged.vertices[7];
     hinged.vertices[16..]
@@ -207,7 +207,7 @@ fn an_inner_surface_of_opposite_orientation_is_a_hole() {
     let island = hollow.with(Soup::cube(2.0));
     assert!(is_inside(&island, MIDDLE));
     assert!(!is_inside(&island, [3.5, 0.3, 0.2]));
-    // With the same orientation, it is another part in the same place.
+    // An inner cube of the same orientation is no hole, but another part in the same place.
     assert!(is_inside(&Soup::cube(10.0).with(Soup::cube(5.0)), MIDDLE));
 }
 

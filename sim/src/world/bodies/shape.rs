@@ -36,7 +36,7 @@ impl Solid {
         self.rest_box
     }
 
-    /// Returns the pose after a travel.
+    /// Returns the pose after the displacement `way`.
     pub fn placed(&self, way: Vector) -> Pose {
         Pose::from_parts(self.rest.translation + way, self.rest.rotation)
     }

@@ -36,7 +36,7 @@ impl Element {
     }
 }
 
-/// A flag for each kind.
+/// A flag for each element: engaged, or free.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Modes([bool; 5]);
 
