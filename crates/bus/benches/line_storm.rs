@@ -14,9 +14,9 @@ use std::process::ExitCode;
 
 /// Number of transactions, none of which may give a wrong reading.
 const TRANSACTIONS: u64 = 1_000_000;
-/// Number of times that two simultaneous replies are drawn, to find how often they pass for one reply.
+/// Number of clashes (pairs of simultaneous replies) that are drawn, to find how often two replies pass for one.
 const CLASHES: u32 = 4_000_000;
-/// Share of the transactions, 0 to 1, that read all inputs at once.
+/// Share of the transactions, 0 to 1, that read a list: all inputs at once.
 const LISTS: f64 = 1.0 / 20.0;
 const FORM: InputForm = InputForm::eight(DataFormat::Hex, TypeCode(0x08));
 /// Faults whose damage a host can detect.

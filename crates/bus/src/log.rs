@@ -46,7 +46,7 @@ impl LineLog {
         self.records().trace.fingerprint()
     }
 
-    /// Returns a copy of the counts of each module.
+    /// Returns a copy of the health of the modules: their counts and latencies.
     pub fn health(&self) -> Health {
         self.records().health.clone()
     }

@@ -16,7 +16,7 @@ pub struct Pace {
     is_virtual: bool,
 }
 
-/// How much too early [`Pace::rest_until`] sets tokio's timer, which may be this late; then the thread itself sleeps.
+/// Greatest lateness of tokio's timer; for this last part of a wait, [`Pace::rest_until`] blocks the thread instead.
 const FINE: Span = Span(2_000);
 /// Rig time between two pauses by which [`Pace::limit_speed`] slows virtual time: half the time of a screen frame.
 const HOLD: Span = Span(10_000);
@@ -70,8 +70,8 @@ impl Pace {
         }
     }
 
-    /// Waits as [`Pace::sleep_until`] does, but at real pace to about 0.1 ms, because the last two milliseconds block
-    /// the thread. Serves for turnarounds.
+    /// Waits as [`Pace::sleep_until`] does, but at real pace is late by only some 0.1 ms, because it blocks the thread
+    /// for the last two milliseconds. Serves for turnarounds.
     pub async fn rest_until(&self, until: RigTime) {
         if self.is_virtual {
             return self.sleep_until(until).await;

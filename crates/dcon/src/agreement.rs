@@ -15,7 +15,8 @@
 
 use super::{Command, Reading, Reply, TypeCode};
 
-/// How far an input, read with others at once, may lie outside its first and third reading; fraction of the range.
+/// How far noise may take an input, read with others at once, outside its first and third reading; fraction of the
+/// range.
 const NOISE_SHARE: f64 = 1.0 / 1024.0;
 /// Fastest rise of a count that is accepted, counts per millisecond.
 const COUNTS_PER_MS: u64 = 100;

@@ -147,7 +147,8 @@ impl Shape {
         }
     }
 
-    /// Returns true when a shorter reply may be complete too, so that only a CR or a checksum proves the end.
+    /// Returns true for a form with an open end: a shorter reply may be complete too, so only a CR or a checksum proves
+    /// it.
     pub(super) fn is_open(self) -> bool {
         self.shortest() < self.longest()
     }

@@ -144,8 +144,8 @@ struct Search<'a, 'b> {
 }
 
 impl Visit for Search<'_, '_> {
-    /// Returns true when the first contact is wanted: pieces then wait as candidates. For any contact they are checked
-    /// at once.
+    /// Returns true when pieces wait as candidates and are checked in order, because the first contact is wanted. For
+    /// any contact they are checked at once.
     #[inline]
     fn in_order(&self) -> bool {
         self.found.wanted == Wanted::First

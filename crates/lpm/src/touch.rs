@@ -133,7 +133,7 @@ struct Askew {
     /// Vector from the element to the mover, along the axes of the element and along those of the mover, mm.
     in_element: [f64; 2],
     in_mover: [f64; 2],
-    /// First axis of the mover, along the axes of the element.
+    /// First axis of the mover, along the axes of the element; `cos` and `sin` are its components.
     cos: f64,
     sin: f64,
     /// How far the mover lies beyond the sides of the element, and the element beyond the sides of the mover, mm.

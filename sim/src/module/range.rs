@@ -6,7 +6,7 @@
 
 use crate::dcon;
 
-/// One type code TT of an analog input.
+/// Range of an analog input, selected by a type code TT.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     /// Value at +FS, unit of the engineering format (V, mV, mA, C).

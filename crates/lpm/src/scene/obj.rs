@@ -9,7 +9,7 @@ use super::face;
 use super::mesh_file::{MeshFault, complaint, number, quoted, text};
 use crate::Mesh;
 
-/// Keywords of statements without a surface.
+/// Keywords of statements without a surface, which the reader skips.
 const PASSED_OVER: [&str; 19] = [
     "vt",
     "vn",

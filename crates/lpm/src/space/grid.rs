@@ -22,7 +22,7 @@ pub(crate) struct Grid {
     /// Limits of the area that the grid covers.
     pub(super) ends: Ends,
     pub(super) columns: usize,
-    /// Words of the cells, as in [`Cell`].
+    /// For each cell, the layers in which it has pieces (its word, see [`Cell`]).
     pub(super) layers: Vec<u64>,
     pub(super) heads: Vec<u32>,
     pub(super) open_layers: u64,

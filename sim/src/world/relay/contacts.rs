@@ -9,7 +9,7 @@ use super::{Relay, SETTLING_US};
 use crate::world::probes::{Change, Contact};
 
 impl Relay {
-    /// Handles a change of mode in the motion.
+    /// Handles a contact that the motion has touched or left.
     pub(super) fn touched(&mut self, event: &Event) -> Option<Change> {
         let contact = match event.kind {
             Element::No => Contact::No,
