@@ -60,10 +60,9 @@ fn print_counts(weather: &Weather) {
     );
 }
 
-/// Prints how many wrong readings among n transactions no host can detect. Computes them from shares, 0 to 1: c of the
-/// transactions have two replies at once; p of these pass for another value; d of the replies have damage that a host
-/// detects; q of overlapping replies to a read of all inputs differ by no more than noise from the reads before and
-/// after.
+/// Prints how many wrong readings among n transactions no host can detect. Shares, 0 to 1: c of the transactions with
+/// two replies at once; p of such pairs that pass for another value; q of such pairs, at a read of all inputs, that
+/// pass within the noise of the reads before and after; d of the replies with damage that a host detects.
 fn print_expected(n: f64, faults: &[&str]) {
     let channel = Channel::new(0).expect("0 is a channel");
     let (p, _) = passing(

@@ -71,7 +71,7 @@ impl Frame {
     }
 }
 
-/// What came back when the line asked a module for its name.
+/// Outcome of asking a module for its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Identification {
     /// True when the module answered.

@@ -5,7 +5,7 @@ use super::request::Request;
 use super::shape::Shape;
 use super::{Address, Channel, OutputWord, UpTo};
 
-/// Which of the two stored output patterns is meant.
+/// One of the two output patterns that a module stores.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stored {
     /// Pattern applied at power-on.

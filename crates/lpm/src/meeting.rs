@@ -142,7 +142,8 @@ impl<'a> Meeting<'a> {
             (u * u + v * v).sqrt(),
         );
         let closing = (w[0] * u + w[1] * v).abs();
-        // The slack, divided by the sine of the grazing angle, moves the contact; at rest nothing moves.
+        // The slack, divided by the sine of the grazing angle, moves the contact along the path; at rest there is no
+        // graze.
         let is_graze = closing * GRAZED_MM < self.slack * radius * speed;
         if !is_graze {
             return None;

@@ -61,8 +61,8 @@ pub(crate) enum Orientation<'a> {
     Turning,
 }
 
-/// Relative error bound of the boxes of a placed group: fewer than ten roundings to single precision, of magnitudes
-/// that together are at most those of group and path along the axis, plus the error of a [`RoughYaw`].
+/// Rounding of the boxes of a placed group, relative to the sizes of group and path along the axis: fewer than ten
+/// roundings to single precision, plus the error of a [`RoughYaw`].
 const SINGLE: f64 = 1e-6;
 
 impl Mover {

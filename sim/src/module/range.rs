@@ -62,7 +62,7 @@ impl Range {
         if !self.shows_over {
             return fraction.clamp(self.lowest / self.full_scale, 1.0);
         }
-        // One unit in the last place beyond the limit counts as the limit.
+        // Half a unit in the last place beyond the limit counts as the limit.
         let slack = 0.5 * 10f64.powi(-(self.decimals as i32));
         if value > self.full_scale + slack {
             f64::INFINITY

@@ -96,7 +96,7 @@ impl<'a, Q> Timed<'a, Q> {
         }
     }
 
-    /// Returns the distribution over the queries of the best time of each; for shuffled queries, of the median time.
+    /// Returns the distribution, over the queries, of the best time of each query, or of its median time when shuffled.
     pub fn spread(mut self) -> Spread {
         let which = if self.dice.is_some() {
             TURNS * PASSES / 2

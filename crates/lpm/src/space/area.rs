@@ -63,7 +63,7 @@ impl Area {
         let squares = corners.times(Four::all(1.0 / PITCH_MM as f32));
         // Selects the square with the nearest centre. A bound on a grid line may belong to either side, because covers
         // are rounded outward and the covered body itself does not lie on their bounds. The same holds for bounds up to
-        // 2e-6 mm below 0. Every step is monotone, so when one area contains another it still does afterwards.
+        // 2e-6 mm below 0. Every step keeps the order, so the area of a cover contains that of every cover inside it.
         let middles = squares.minus(Four::all(0.5));
         let within = middles.within(Four::of(&ends.low), Four::of(&ends.high));
         let [left, front, right, back] = within.nearest();

@@ -3,7 +3,8 @@
 use super::four::Four;
 use crate::vector::Vec3;
 
-/// Two units in the last place of an f32, relative: more than rounding to nearest and one step away from it can lose.
+/// Two units in the last place of an f32, relative: more than is lost by rounding to nearest and by one step from
+/// there.
 const ULP: f32 = 2.0 * f32::EPSILON;
 
 /// Relative rounding bound (four units in the last place), and the least normal number, mm, below which an f32

@@ -13,7 +13,7 @@ pub struct PairLimits {
     by: [bool; 8],
     /// Permitted depth for any actuator, mm.
     depth_mm: f64,
-    /// Permitted depth for these actuators, mm.
+    /// Depth permitted unless another actuator moves the pair, mm, and the actuators that may press it so deep.
     deeper: Option<(f64, [bool; 8])>,
 }
 

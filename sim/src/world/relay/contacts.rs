@@ -35,7 +35,7 @@ impl Relay {
         self.set(change.t_us, change.contact, change.closed)
     }
 
-    /// Matches the contact to the motion after its closure has settled.
+    /// Sets the contact as the motion has it, once its closure has settled.
     pub(super) fn synchronised(&mut self, t_us: f64) -> Option<Change> {
         if t_us < self.settled_us || !self.bounce.is_empty() {
             return None;
