@@ -17,7 +17,7 @@ pub struct RawReply {
     pub taken: Span,
 }
 
-/// Sends `request`, which must include its CR, and waits for a frame as long as the slowest module may take.
+/// Sends `request`, which must include its CR, and waits for one frame, for as long as the slowest module may take.
 ///
 /// # Errors
 /// Fails when the port does.

@@ -42,7 +42,7 @@ impl Candidates {
         self.count > MOST - LANES
     }
 
-    /// Adds the lanes of a bundle whose bits are set, as far as there is room. Mostly one or two are set.
+    /// Adds the lanes of a bundle that `lanes` marks, as far as there is room; mostly one or two are marked.
     #[inline]
     pub(crate) fn push(&mut self, bundle: u32, lanes: u32, entry: &[f32; LANES]) {
         let place = u64::from(bundle * LANES as u32);

@@ -30,7 +30,7 @@ impl Ends {
     };
 }
 
-/// Masks of the distinct squares among two by two ([`Area::different`]), indexed by rows less one and columns less one.
+/// Masks of those of two by two squares that an area has, indexed by its rows less one and its columns less one.
 const DIFFERENT: [[u32; 2]; 2] = [[0b0001, 0b0011], [0b0101, 0b1111]];
 
 /// Number of cells that the grid grows by around a piece outside it.
@@ -94,8 +94,8 @@ impl Area {
         (self.high[0] - self.low[0] <= 1) & (self.high[1] - self.low[1] <= 1)
     }
 
-    /// Returns the mask of the distinct cells among two by two, of which a smaller area repeats some: bit 0 the first,
-    /// bit 1 the next column, bit 2 the next row.
+    /// Returns a mask of those of two by two cells that the area has: bit 0 the first, bit 1 the next column, bit 2 the
+    /// next row.
     #[inline(always)]
     pub(super) fn different(&self) -> u32 {
         let [wide, deep] = [0, 1].map(|axis: usize| (self.high[axis] - self.low[axis]) as usize);
@@ -107,7 +107,7 @@ impl Area {
         (0..2).all(|axis| self.low[axis] <= other.low[axis] && other.high[axis] <= self.high[axis])
     }
 
-    /// Returns an area that contains both, with room to grow on the sides where `other` extends beyond this one.
+    /// Returns an area that contains this one and `other`, with room to grow on the sides where `other` extends beyond.
     pub(super) fn with(&self, other: &Area) -> Area {
         let span = (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]) / 4 + GROWTH;
         let below = |axis: usize| {

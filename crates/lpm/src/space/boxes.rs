@@ -165,7 +165,7 @@ mod tests {
                 (run[0], run[1]) = (0.0, 0.0);
             }
             let mut boxes = Boxes::<4>::NOWHERE;
-            // Slightly larger, as it is after rounding outward.
+            // The box of the element becomes slightly larger, because it is rounded outward.
             boxes.set(1, &Cover::of((three(element.low), three(element.high))));
             let crossing = boxes.crossing(&mover, &Pace::of(run), 1.0);
             let at = |t: f64| {

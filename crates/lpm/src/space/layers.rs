@@ -109,8 +109,8 @@ impl Layers {
         }
         layers.bottom = layers.h1.into_iter().fold(f32::INFINITY, smaller);
         layers.top = layers.h2.into_iter().fold(f32::NEG_INFINITY, larger);
-        // The pieces that pass a layer have begun below it and end neither below it nor in it. Pieces of one layer only
-        // are subtracted; no piece ends before it begins.
+        // A piece passes a layer when it begins below the layer and ends above it. Pieces of one layer only are left
+        // out, so that none ends before it begins.
         let (mut begun, mut ended) = (0, 0);
         for (layer, within) in within.into_iter().enumerate() {
             ended += layers.ending[layer] - within;

@@ -178,7 +178,7 @@ fn a_surface_with_mismatched_corners_is_closed() {
     let mut cracked = Soup::cube(10.0).loose();
     cracked.vertices[0][0] += 1e-9;
     assert!(is_inside(&cracked, MIDDLE));
-    // Only one of the two triangles at the first edge has a corner on it.
+    // The first edge has a further corner on it for only one of its two triangles.
     let mut cut = Soup::cube(10.0);
     let at = cut
         .triangles

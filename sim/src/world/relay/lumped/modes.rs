@@ -1,7 +1,7 @@
 //! Modes of the unilateral elements: a flag for each, and the gap function that sets it.
 //!
-//! The right-hand side uses the flag, never the sign of the gap function. An event occurs when that sign no
-//! longer matches the flag, so rounding near a root cannot cause chatter.
+//! The equations use the flag, never the sign of the gap function. An event occurs when that sign no longer matches the
+//! flag, so rounding near a root cannot cause chatter.
 
 use super::{State, V, W, X, Y};
 
