@@ -90,8 +90,8 @@ pub struct PartTruth {
     pub defect: Option<&'static str>,
     /// Bin in which the body came to rest.
     pub landed_in: Option<String>,
-    /// Rig time that the motion of the relay has spent on each level: held in equilibrium, or all five states
-    /// integrated.
+    /// Rig time for which the relay's motion was computed at each level of detail: held in equilibrium, or all five
+    /// states integrated.
     pub levels: Levels,
 }
 

@@ -283,8 +283,8 @@ fn each_place(low: [i32; 2], columns: usize, area: &Area, mut show: impl FnMut(u
     rows(low, columns, area).for_each(|row| row.for_each(&mut show));
 }
 
-/// Returns the numbers of the cells of an area of at most two by two cells, in a grid that begins at `low`, and a mask
-/// of the distinct ones (bit k: the one at index k), because a smaller area repeats some.
+/// Returns the numbers of two by two cells, in a grid that begins at `low`, and a mask of those that the area has (bit
+/// k: the one at index k); the others repeat these.
 #[inline(always)]
 fn few(low: [i32; 2], columns: usize, area: &Area) -> ([usize; 4], u32) {
     let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize);

@@ -123,7 +123,7 @@ impl Relay {
         &self.drawn
     }
 
-    /// Returns the rig time that the motion has spent on each level, held and moving.
+    /// Returns the rig time that the motion has spent at each level of detail, held and moving.
     pub fn levels(&self) -> Levels {
         self.motion.levels()
     }
