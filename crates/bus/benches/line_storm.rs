@@ -117,7 +117,7 @@ fn chance(faults: &[&str], name: &str) -> f64 {
 }
 
 /// Draws replies of `digits` digits that overlap with a second reply. Returns the share that passes for another value,
-/// and the share of those values so near to the reads before and after that the line accepts them.
+/// and the share that also lies so near to the reads before and after that the line accepts it.
 fn passing(read: AnalogIn, digits: usize) -> (f64, f64) {
     let command = read.to(Address(1));
     let mut faults = LineFaults::none(1);

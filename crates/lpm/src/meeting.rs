@@ -19,8 +19,8 @@ use super::piece::NOISE;
 use super::prism::Prism;
 use super::vector::{Vec3, reach, sub};
 
-/// Relative error bound of what is computed here, from the difference of two places and the run to a fraction of the
-/// path: fewer than 16 roundings of 2^-53 each; the bound allows twice that.
+/// Relative error bound of the computation here, which leads from the difference of two places, and the run, to a
+/// fraction of the path: fewer than 16 roundings of 2^-53 each; the bound allows twice that.
 const ROUNDING: f64 = 32.0 * (f64::EPSILON / 2.0);
 
 /// How early a grazing contact may come before more digits refine it, mm: a tenth of the promised 1e-6 mm.

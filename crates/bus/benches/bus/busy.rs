@@ -2,9 +2,9 @@
 //! paced simulated modules, and with a request always waiting.
 //!
 //! After each reply the line pauses for two characters. No host can avoid this pause, and what it costs depends on the
-//! length of the frames. So each workload is shown with the utilisation that would remain if only the pause cost time
-//! (`bound`), and with that of a bare client on the same pseudo-terminal in the same run (`peer`). No host can exceed
-//! the bound, and on this machine hardly any exceeds the peer.
+//! length of the frames. So each workload is shown with the utilisation that the pause alone would allow (`bound`), and
+//! with that of a bare client on the same pseudo-terminal in the same run (`peer`). No host can exceed the bound, and
+//! on this machine hardly any exceeds the peer.
 
 use super::bare;
 use bus::{Answer, LineSettings, Pace, Request, Wire};

@@ -139,7 +139,7 @@ impl Layers {
         self.h2[high] = larger(self.h2[high], top_mm);
     }
 
-    /// Adds `more` to the counts of the layers between the lowest and the highest of a piece; `u32::MAX` subtracts 1.
+    /// Counts a piece in the layers that it passes: adds `more` to each of their counts; `u32::MAX` subtracts 1.
     #[inline]
     fn pass(&mut self, reach: Reach, more: u32) {
         let first = usize::from(reach.low) + 1;
