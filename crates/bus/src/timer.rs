@@ -70,7 +70,7 @@ fn arm(fd: &Receiver, us: u64) -> io::Result<()> {
 }
 
 async fn fired(fd: &Receiver) {
-    // An error would come at every call; the task then goes on, early rather than never.
+    // After an error, which every later call would return too, the task goes on: early rather than never.
     while fd.readable().await.is_ok() {
         match fd.try_read(&mut [0; 8]) {
             Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}

@@ -59,7 +59,7 @@ impl Cover {
     pub(crate) fn swept(&self, run: Vec3) -> Cover {
         let (low, high) = (Four::of(&self.low), Four::of(&self.high));
         let (way, rest) = (Four::rounded(&run), Four::all(0.0));
-        // Twice the rounding of the sum, and of the path.
+        // The slack is twice the rounding of the sum, and of the path.
         let slack = |bound: Four| {
             let magnitude = bound.abs().plus(way.abs());
             magnitude.times(Four::all(SINGLE)).plus(Four::all(TINY))

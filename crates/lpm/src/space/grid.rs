@@ -225,8 +225,8 @@ impl Grid {
         let mut counts = vec![0u32; self.layers.len()];
         for seat in seats {
             let word = seat.reach.word();
-            // Mostly two by two squares or fewer: their number is unpredictable, so the code counts four, some of them
-            // by 0.
+            // Most pieces cover two by two squares or fewer, in a number that processors predict badly, so the code
+            // counts four, some of them by 0.
             if seat.area.is_few() {
                 let (places, used) = few(self.area.low, self.columns, &seat.area);
                 for (square, place) in places.into_iter().enumerate() {

@@ -213,7 +213,8 @@ fn a_reversed_turn_has_the_same_verdict() {
 
 #[test]
 fn a_disc_turning_near_a_wall_stays_clear() {
-    // The distance never changes, which is hardest for conservative advancement: turned about its axis, and tumbled.
+    // The distance never changes, which is hardest for conservative advancement: the disc turns in place, or as it
+    // slides.
     let wall = standing(&block(5.0, 100.0, 100.0), Pose::IDENTITY);
     let disc = cylinder(30.0, 8.0);
     for (gap, is_blocked) in [(-1e-3, true), (0.0, true), (1e-3, false), (0.1, false)] {
