@@ -1,7 +1,7 @@
 //! Tests: points inside a mesh, however untidy its file is.
 use super::*;
 
-/// Corners, and triangles that face outward.
+/// A mesh: corners, and triangles that face outward.
 #[derive(Clone, Default)]
 struct Soup {
     vertices: Vec<[f64; 3]>,

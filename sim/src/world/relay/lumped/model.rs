@@ -180,7 +180,7 @@ impl Model {
         [flux, v, armature * per_armature, w, tip * per_tip]
     }
 
-    /// Returns the gap function of a kind; a value above zero sets its flag.
+    /// Returns the gap function of an element; a value above zero sets the flag of the element.
     #[inline]
     pub fn gap(&self, kind: Element, s: &State, drive: &Drive) -> f64 {
         match (kind, drive) {

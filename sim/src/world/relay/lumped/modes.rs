@@ -41,13 +41,13 @@ impl Element {
 pub struct Modes([bool; 5]);
 
 impl Modes {
-    /// Checks whether a kind is engaged.
+    /// Checks whether an element is engaged.
     #[inline]
     pub fn is_engaged(self, kind: Element) -> bool {
         self.0[kind as usize]
     }
 
-    /// Sets or clears the flag of a kind.
+    /// Sets or clears the flag of an element.
     pub fn set(&mut self, kind: Element, on: bool) {
         self.0[kind as usize] = on;
     }
