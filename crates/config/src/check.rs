@@ -197,7 +197,8 @@ impl File {
         }
     }
 
-    /// Reports each of `needed` that is missing, except where an unknown name resembles it, which is reported already.
+    /// Reports each missing name of `needed`, except one that an unknown name resembles: that typing error is reported
+    /// already.
     fn needed<'a>(
         &self,
         path: &str,

@@ -8,7 +8,7 @@ use machine::rig::wiring::LineId;
 use machine::station::trouble::Alarm;
 use units::{RigTime, Span};
 
-/// Share of the allowance for a late reply from which on the lateness of this computer explains a missing one.
+/// Share of the time that a reply may take: this computer explains a missing reply when it wakes later than that.
 const EXPLAINS: f64 = 0.5;
 
 impl Cycle {
@@ -102,8 +102,8 @@ impl Cycle {
         self.bus_alarm.get_or_insert_with(|| Alarm::bus(detail));
     }
 
-    /// Keeps trouble with an answer as [`Cycle::note_bus_trouble`] does, or as lateness of this computer when that
-    /// explains a missing reply.
+    /// Keeps trouble with an answer as [`Cycle::note_bus_trouble`] does, but as an alarm about this computer when its
+    /// lateness explains a missing reply.
     fn note_line_trouble(&mut self, answer: &Answer, detail: &str) {
         let is_missing = matches!(answer.outcome, Err(LineError::TimeOut { .. }));
         match self.host_late().filter(|_| is_missing) {
@@ -115,7 +115,7 @@ impl Cycle {
         }
     }
 
-    /// Returns the lateness of this computer in the last seconds when it takes half of what a reply may be late, or more.
+    /// Returns how late this computer woke the cycle in the last seconds, if late enough to explain a missing reply.
     pub(super) fn host_late(&self) -> Option<Span> {
         let allowed_ms = self.wiring.bus.digital_allowance_ms;
         let recent = self.lateness.recent();

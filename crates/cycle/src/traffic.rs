@@ -17,7 +17,7 @@ use std::task::Poll;
 use tokio::sync::mpsc;
 use units::{RigTime, Span};
 
-/// Most commands that wait for one line: several times those of a verification.
+/// Largest number of commands that wait for one line; a verification queues far fewer.
 const MAX_QUEUE: usize = 2_000;
 
 fn reset_questions(wiring: &Wiring, line: LineId) -> Vec<Command> {

@@ -1,6 +1,7 @@
 //! Run rules: patterns of points on a control chart that are unlikely by chance.
 //!
-//! A number is how many points in a row make the pattern; deviations are standard deviations from the centre.
+//! A number in the table is how many points in a row make the pattern; deviations are standard deviations from the
+//! centre.
 //!
 //! | rule: points | Nelson | Western Electric |
 //! |---|---|---|

@@ -151,13 +151,13 @@ impl LotRunner<'_> {
     }
 }
 
-/// Returns the end of a program that cannot write its history.
+/// Returns the exit of a program that has lost its history, because it cannot write it.
 pub(crate) fn lost(error: &anyhow::Error) -> Exit {
     tracing::error!("history: {error:#}");
     Exit::Trouble(Cause::history_lost(&format!("{error:#}")))
 }
 
-/// Returns the clock of a rig.
+/// Returns the pace of rig time: virtual, or that of the wall clock.
 pub(crate) fn pace_of(source: &RigSource) -> Pace {
     match source.is_virtual() {
         true => Pace::virtual_time(),
@@ -220,7 +220,7 @@ impl Stream<'_, '_> {
         }
     }
 
-    /// Publishes the last durable part and the end of an outage.
+    /// Publishes the ordinal of the last part on the disk, and the end of an outage.
     fn written(&self, outage: &mut Option<Outage>, ordinal: u64, recorded: &AtomicU64) {
         recorded.fetch_max(ordinal, Ordering::AcqRel);
         if outage.take().is_some() {

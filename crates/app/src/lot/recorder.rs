@@ -248,7 +248,7 @@ impl Recorder {
         }
     }
 
-    /// Writes the pending rows while no cycle turns.
+    /// Writes the pending rows while no cycle runs.
     fn write(&mut self) -> anyhow::Result<()> {
         let store = self.store.as_mut().context("the history is closed")?;
         store.record(&self.rows)?;

@@ -38,7 +38,7 @@ pub(super) struct Player {
     journal: Option<File>,
 }
 
-/// What has happened so far, as far as a step of the script may wait for it.
+/// Events so far that a step of the script may wait for.
 #[derive(Debug, Default)]
 struct Observed {
     lot: bool,

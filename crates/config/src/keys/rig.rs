@@ -58,7 +58,7 @@ fn counter() -> Vec<&'static str> {
     declared(|kind| kind.counter.to_vec())
 }
 
-/// Keys of the whole file.
+/// All keys of `rig.toml`.
 pub const FILE: &[Key] = keys! {
     key("line", Form::Named(&Form::Table(LINE)), "bus", "RS-485 lines by name");
     key("bus", Form::Table(BUS), "bus, cycle", "times and counts of every line");
