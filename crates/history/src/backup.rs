@@ -6,8 +6,8 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 impl Archive {
-    /// Copies the present state to `target`, which must not exist. The copy is checked before it gets this name.
-    /// Returns the size of the copy in bytes.
+    /// Copies the present state of the history to `target`, which must not exist. The copy is checked before it gets
+    /// this name. Returns the size of the copy in bytes.
     pub fn backup(&self, target: &Path) -> Result<u64> {
         if target.exists() {
             return Err(HistoryError::Exists {

@@ -207,7 +207,7 @@ impl Archive {
             .doing("reading the state of a lot")
     }
 
-    /// Counts the parts of a lot: tested first, passed then, passed in a retest, suspect.
+    /// Counts the parts of a lot: first tests, those of them that passed, parts that passed in a retest, suspect parts.
     pub fn lot_yield(&self, lot: &str) -> Result<LotYield> {
         const DOING: &str = "counting a lot over its runs";
         let count = |sql: &str| {

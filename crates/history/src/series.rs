@@ -54,7 +54,7 @@ pub(super) fn pack_all(connection: &Connection) -> rusqlite::Result<()> {
     runs.into_iter().try_for_each(|run| pack(connection, run))
 }
 
-/// Reads the values of one run from the index; `None` when the run has no value.
+/// Reads the values of one run from the index `measurement_value`; `None` when the run has no value.
 fn loose(connection: &Connection, parameter: i64, run: i64) -> rusqlite::Result<Option<Piece>> {
     let mut found: Vec<(i64, f64)> = connection
         .prepare_cached(OF_RUN)?
@@ -89,8 +89,8 @@ fn packed(connection: &Connection, parameter: i64, run: i64) -> rusqlite::Result
 }
 
 impl Archive {
-    /// Returns the values of `param` in order of judgement, run after run; `None` when the filter selects only some
-    /// parts of a run, or when parts of two runs alternate in time.
+    /// Returns the values of `param` in order of judgement, those of each run side by side; `None` when the filter
+    /// selects only some parts of a run, or when parts of two runs alternate in time.
     pub(super) fn side_by_side(
         &self,
         param: &str,

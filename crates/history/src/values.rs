@@ -1,5 +1,5 @@
 //! Values of one parameter in order of judgement, with their limits: the input of the statistics. They come from the
-//! packed values of closed runs, or else from the index of values.
+//! packed values of closed runs, or else from the index `measurement_value`.
 
 use super::error::{Doing, Result};
 use super::{Archive, Filter};
@@ -10,7 +10,7 @@ use rusqlite::{OptionalExtension, params};
 pub struct Values {
     /// Finite values in order of judgement; the values of an import are in order of the file.
     pub values: Vec<f64>,
-    /// Limits in force.
+    /// Limits of the runs that the values come from.
     pub limits: LimitsSeen,
 }
 

@@ -1,4 +1,4 @@
-//! The view as server-sent events.
+//! The view of the machine as server-sent events.
 //!
 //! | event | data | when |
 //! |---|---|---|

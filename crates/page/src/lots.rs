@@ -3,7 +3,7 @@
 //! | route | members | answer |
 //! |---|---|---|
 //! | `GET /api/lots` | `limit`, `offset` | array of lots, latest run first: state, recipe, counts over all runs, and `why_not` |
-//! | `GET /api/wear` | | array of wear counters of the rig in the view |
+//! | `GET /api/wear` | | array of wear counters of the rig that the server shows |
 //!
 //! `why_not` maps each order about lots to null, or to the reason (`code`, `args`, `en`, `zh`) why the state of the lot forbids
 //! it. For the lot under way the buttons of the view apply instead.

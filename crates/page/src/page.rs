@@ -23,7 +23,7 @@ const LOOK: &str = concat!(
     include_str!("page/look.css"),
     include_str!("page/pages.css")
 );
-/// Scripts of the first answer, in order: shared functions, the operator's page, the start.
+/// Scripts of the answer to `GET /`, in order: shared functions, the operator's page, the start.
 const SCRIPT: &str = concat!(
     include_str!("page/script/shared.js"),
     include_str!("page/script/texts.js"),

@@ -26,8 +26,8 @@ use std::ops::RangeInclusive;
 const PPM: f64 = 1e6;
 /// Rated voltage of the part that `[lot]` of a world describes, V.
 const LOT_V: f64 = 12.0;
-/// Share of the usual uncertainty: a value with less has had a confirmation measurement, since noise alone changes an
-/// uncertainty by less.
+/// A value whose uncertainty is below this share of the usual one has had a confirmation measurement: noise alone
+/// changes an uncertainty by less than 2 %.
 const AGAIN: f64 = 0.98;
 
 /// Runs the lots and makes the report.
@@ -55,8 +55,8 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     Ok(Report::new("decision", about, groups, chart))
 }
 
-/// Returns the false rejects and accepts that the rule predicts for one parameter, with and without guard band: a row in
-/// parts per million, and the probabilities of a false accept and a false reject with guard band.
+/// Returns the false rejects and accepts that the decision rule predicts for one parameter, with and without guard
+/// band: a row in parts per million, and the probabilities of a false accept and a false reject with guard band.
 fn predicted(
     parameter: Parameter,
     limits: &RangeInclusive<f64>,

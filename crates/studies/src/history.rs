@@ -173,7 +173,7 @@ const PLAIN: &str = "SELECT total(m.value) FROM measurement AS m
     JOIN parameter ON parameter.id = m.parameter_id
     WHERE parameter.key = ?1 AND m.population = 'lot'";
 
-/// Returns a filter for which the history cannot use the packed values of whole runs.
+/// Returns a filter for the parts that passed: for these the history cannot use the packed values of whole runs.
 fn good() -> Filter {
     Filter {
         verdict: Some("pass".to_owned()),
@@ -202,7 +202,8 @@ fn stats(archive: &Archive, db: &Path, name: &str, filter: &Filter) -> anyhow::R
         .with("median_over_plain", ratio.map(|(ours, plain)| ours / plain)))
 }
 
-/// Exports spreadsheets of two sizes, each in a process of its own; returns time of the greater, memory of both.
+/// Exports spreadsheets of two sizes, each in a process of its own; returns the time of the larger one and the memory
+/// of both.
 fn sheets(order: &Order, db: &Path) -> anyhow::Result<Vec<Figure>> {
     let (_, little) = exported(order, db, LESSER)?;
     let (wall, much) = exported(order, db, SHEET)?;

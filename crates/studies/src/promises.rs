@@ -31,7 +31,7 @@ const NOTICED_PCT: f64 = 95.0;
 const COVERED_PCT: f64 = 92.0;
 /// Greatest share of lots with a false alarm, percent.
 const FALSE_ALARMS_PCT: f64 = 0.5;
-/// Confidence of the upper bound of that share.
+/// Confidence of the upper bound of the share of false alarms, 0 to 1.
 const CONFIDENCE: f64 = 0.95;
 
 /// Every promise of `rig.toml` that a world can break by more scatter or a wider tolerance: dotted path in `rig.toml`,

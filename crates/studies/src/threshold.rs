@@ -3,7 +3,7 @@
 //!
 //! The world has no errors of instruments, certificates, temperature and operations, which leaves the error of the
 //! strategy. Operate includes 25 ms of settling at the pre-bias, because a recipe without coil resistance spends them
-//! there. A pulse gives a bit and no value.
+//! there. The strategy `pulse` finds whether a limit is kept, and no value.
 
 use super::figure::Bar;
 use super::method::{self, BAUDS, TimedParameter};

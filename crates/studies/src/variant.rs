@@ -32,8 +32,8 @@ const EXACT: [(&str, f64); 13] = [
 ];
 /// Standard uncertainty of every certificate in a world without errors: the format demands one above zero.
 const CERTIFIED_U: f64 = 1e-6;
-/// Baud rate below which the host watchdog gets a longer time-out: asking every module at the start takes longer there
-/// than the usual time-out.
+/// Baud rate below which the host watchdog gets a longer time-out: the requests to all modules at the start take longer
+/// there than the usual time-out.
 const SLOW_BAUD: u32 = 19_200;
 
 /// Differences of a variant from the configuration that it copies.

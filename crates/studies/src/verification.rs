@@ -64,7 +64,8 @@ fn read(rows: &str) -> anyhow::Result<Day> {
     Ok(day)
 }
 
-/// Returns the share of verifications that fail when the factors are normal, independent and as uncertain as stated.
+/// Returns the share of verifications that [`K_JOINT`] lets fail when the factors are normal, independent and as
+/// uncertain as stated.
 fn chosen_failure_rate(factors: usize) -> f64 {
     let inside = 2.0 * Normal::standard().cdf(K_JOINT) - 1.0;
     1.0 - inside.powi(factors as i32)

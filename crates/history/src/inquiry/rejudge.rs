@@ -70,7 +70,8 @@ pub struct Change {
 pub struct Rejudging {
     recipe: Recipe,
     filter: Filter,
-    /// Recipe data that the values of each run were measured by; an import without a recipe has those of `recipe`.
+    /// By number of the run, data of the recipe that its parts were measured by; for an import without a recipe,
+    /// `recipe` takes its place.
     bases: BTreeMap<u32, Basis>,
 }
 

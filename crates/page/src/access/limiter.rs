@@ -1,8 +1,8 @@
 //! Limits how often a wrong password may be tried.
 //!
 //! A name may fail five times within five minutes, all names together thirty times. Then the next try must wait until
-//! the oldest of these failures is five minutes old. A right password clears the failures of its name. Thirty failures
-//! bound the memory.
+//! the oldest of these failures is five minutes old. A right password clears the failures of its name. At most thirty
+//! failures are kept.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};

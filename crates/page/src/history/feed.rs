@@ -21,7 +21,8 @@ const PIECE: usize = 32 * 1024;
 
 type Piece = io::Result<Bytes>;
 
-/// Streams what `write` writes, on a blocking thread that keeps the archive and its permit until the end.
+/// Streams what `write` writes, on a blocking thread that keeps the archive and `place`, the permit to read it, until
+/// the end.
 pub(super) fn streamed(
     (archive, place): (Archive, impl Send + 'static),
     write: impl FnOnce(&Archive, &mut Pieces) -> io::Result<()> + Send + 'static,

@@ -104,7 +104,7 @@ impl<'a> Storm<'a> {
         })
     }
 
-    /// Runs all lives of a seed.
+    /// Runs all lives of a seed and returns the case for `judge`.
     fn case(&self, seed: u64, db: &Path) -> anyhow::Result<Case> {
         let scenario = Scenario::of(seed, self.order.parts, &self.plant.wiring);
         let rig = self.rig(scenario.rig, scenario.uncalibrated, &scenario.faults)?;
