@@ -229,7 +229,7 @@ fn lines(station: &Station, epoch_us: i64) -> Vec<AlarmLine> {
         .collect()
 }
 
-/// Returns an alarm as pages show it.
+/// Returns an alarm as one line of the alarm list on pages.
 pub fn line(one: &ListedAlarm, epoch_us: i64) -> AlarmLine {
     let alarm = &one.alarm;
     let help = |lang| alarm.code.help(lang).map(str::to_owned);

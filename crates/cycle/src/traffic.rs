@@ -180,7 +180,7 @@ impl Traffic {
         self.scanning = true;
     }
 
-    /// Stops the scan; queued commands and heartbeats still go.
+    /// Stops the scan, so that only queued commands (writes) and heartbeats go out.
     pub fn only_writes(&mut self) {
         self.scanning = false;
     }

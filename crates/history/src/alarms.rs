@@ -58,7 +58,7 @@ pub struct Alarm {
     pub acknowledged: Option<Moment>,
     /// Person who acknowledged the alarm, if any.
     pub acknowledged_by: Option<String>,
-    /// Last time that a person shelved the alarm, if any.
+    /// The last shelving of the alarm, if any.
     pub shelf: Option<Shelf>,
     /// State of the alarm, as the times above give it.
     pub state: AlarmState,

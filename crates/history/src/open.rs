@@ -123,7 +123,7 @@ fn check(connection: &Connection, path: &Path) -> Result<i64> {
     }
 }
 
-/// Returns application id, schema, and the number of tables and indexes.
+/// Reads the header of the file: application id, schema, and the number of tables and indexes.
 fn header(connection: &Connection) -> rusqlite::Result<(i64, i64, i64)> {
     let tables = "SELECT count(*) FROM sqlite_schema";
     Ok((

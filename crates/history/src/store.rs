@@ -18,7 +18,7 @@ pub(crate) const PROGRAM: &str = concat!("relayrig ", env!("CARGO_PKG_VERSION"))
 #[derive(Debug)]
 pub struct Store {
     connection: Connection,
-    /// The file, for messages.
+    /// Path of the file, for messages.
     pub(super) path: PathBuf,
     row_ids: RowIds,
 }

@@ -20,7 +20,8 @@ use std::time::Instant;
 
 const COOKIE: &str = "relayrig_session";
 
-/// The people of this rig, behind one lock: logins run one after another, because each takes 19 MiB and 20 ms of a core.
+/// People and sessions of this rig, behind one lock: logins run one after another, because each takes 19 MiB and 20 ms
+/// of a core.
 #[derive(Debug, Clone)]
 pub struct Sessions(Arc<Inner>);
 

@@ -85,7 +85,7 @@ fn out_of_limits(parts: &[&Part]) -> Figure {
         .with("passed", Some(passed as f64))
 }
 
-/// Counts EEPROM writes, alarms and logged errors.
+/// Returns figures about the machine: counts of EEPROM writes, alarms and logged errors.
 pub fn machine(lots: &[Lot]) -> Vec<Figure> {
     let n = lots.len() as u64;
     let writes: Option<u64> = lots.iter().map(|lot| lot.summary.eeprom_writes).sum();

@@ -87,7 +87,8 @@ fn drifting(order: &Order) -> anyhow::Result<Vec<Figure>> {
     Ok(figures)
 }
 
-/// Returns, for each number of closures, the scatter of one body from pass to pass, percent of its resistance.
+/// Shows the effect of films: for each number of closures, the scatter of one body from pass to pass, percent of its
+/// resistance.
 fn films(order: &Order) -> anyhow::Result<Vec<Figure>> {
     let bodies = (order.parts / PASSES).max(2);
     let order = Order {

@@ -47,7 +47,7 @@ impl Errors {
         }
     }
 
-    /// Collects errors that have no uncertainty.
+    /// Collects the listed errors, which have no uncertainty.
     fn listed(errors: impl Iterator<Item = f64>) -> Self {
         Self {
             spread: Spread::of(&errors.collect::<Vec<f64>>()),

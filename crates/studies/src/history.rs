@@ -24,7 +24,7 @@ use tempfile::TempDir;
 const SHEET: u64 = 100_000;
 /// Number of parts of the smaller exported sheet; the larger one must not need much more memory.
 const LESSER: u64 = 10_000;
-/// Number of parts that the study writes in one transaction each.
+/// Number of parts that the study writes singly, each in a transaction of its own.
 const SINGLE: u64 = 500;
 /// Number of filter queries.
 const FILTERS: usize = 300;

@@ -101,7 +101,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     Ok(Report::new("promises", about, groups, chart).noted(notes.collect()))
 }
 
-/// Returns name, key of the world and value of each term that the order wants.
+/// Returns the change of the world for each term that the order wants: name of the term, key of the world, value.
 fn changes(order: &Order) -> anyhow::Result<Vec<(&'static str, &'static str, f64)>> {
     let rig = table(&order.config.join("rig.toml"))?;
     let mut all = Vec::new();

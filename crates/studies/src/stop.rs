@@ -27,7 +27,7 @@ use tempfile::TempDir;
 
 /// Delay of the replies in every second lot, ms: 3 ms less than `rig.toml` allows.
 const LATE_MS: f64 = 25.0;
-/// Number of bars of the chart.
+/// Number of classes of instants; each is a bar of the chart.
 const CLASSES: usize = 20;
 
 /// One press of the emergency stop.
@@ -114,7 +114,7 @@ fn reaction(result: &SweepResult, bound_ms: f64) -> Figure {
         .bar(Bar::AtMost(bound_ms))
 }
 
-/// Draws the longest reaction over the instant in the cycle.
+/// Draws the longest reaction in each class of instants in the cycle.
 fn chart(result: &SweepResult, bound_ms: f64) -> Chart {
     let width = result.sweep.span_s() / CLASSES as f64;
     let worst = |class: usize| {

@@ -50,7 +50,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     Ok(method::report("timing", order, groups, 2, marks))
 }
 
-/// Returns latched gate, raw gate and bounce of both directions.
+/// Returns the rows of both directions: latched gate, raw gate, bounce.
 fn rows(name: &str, lots: &[Lot]) -> Vec<Figure> {
     let of = |(direction, time, bounce): &(&str, TimedParameter, TimedParameter)| {
         let raw = Pooled::by(lots, |part| raw(part, time.parameter, bounce.parameter));

@@ -24,7 +24,7 @@ pub const USUAL_RTOL: f64 = 1e-8;
 /// Number of integrations of a case for its wall time.
 const REPEATS: usize = 5;
 
-/// An integrated case.
+/// The answer to one case: its transient, and the wall time of the integration.
 struct Answer {
     name: String,
     transient: Transient,

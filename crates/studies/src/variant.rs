@@ -173,7 +173,7 @@ fn set(table: &mut Table, path: &str, value: Value) -> anyhow::Result<()> {
     }
 }
 
-/// Reads a TOML file.
+/// Reads a TOML file as a table.
 ///
 /// # Errors
 /// Fails when the file cannot be read, or is not TOML.

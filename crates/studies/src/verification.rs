@@ -20,7 +20,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// Result of one verification: the deviation of each factor, in standard uncertainties, by name.
+/// Result of the verification on one day: the deviation of each factor, in standard uncertainties, by name.
 type Day = BTreeMap<String, f64>;
 
 /// Calibrates one rig per lot of the order, verifies it once per part of a lot, and makes the report.

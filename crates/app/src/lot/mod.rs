@@ -184,11 +184,11 @@ impl Stream<'_, '_> {
         self.recorder.receive(event, &self.lot)
     }
 
-    /// Receives the events of the cycle until it ends; sets `recorded` to the last durable part. [`Stream::close`]
-    /// writes the rows that an outage leaves pending.
+    /// Keeps the events of the cycle in the history until the cycle ends; sets `recorded` to the last part on the disk.
+    /// [`Stream::close`] writes the rows that an outage leaves pending.
     ///
     /// # Errors
-    /// Fails when an event has no rows.
+    /// Fails when an event cannot be made into rows.
     async fn keep(
         &mut self,
         mut events: mpsc::UnboundedReceiver<Event>,

@@ -81,7 +81,7 @@ impl Recorder {
     /// Turns an event into rows that wait for the next transaction.
     ///
     /// # Errors
-    /// Fails when a calibration is no JSON.
+    /// Fails when a calibration cannot be written as JSON.
     pub fn receive(&mut self, event: &LotEvent, lot: &LotProgress) -> anyhow::Result<()> {
         match event {
             LotEvent::Cycle(event) => self.of_the_cycle(event, lot)?,

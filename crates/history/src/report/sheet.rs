@@ -235,8 +235,8 @@ fn number(to: &mut Worksheet, row: u32, column: u16, value: Option<f64>) -> Resu
     Ok(())
 }
 
-/// Converts an instant to local time in days as spreadsheets count them, to the second; `None` beyond the range of the
-/// calendar.
+/// Converts an instant to the serial date of a spreadsheet: local time in days, to the second; `None` beyond the range
+/// of the calendar.
 fn serial(at: Moment, zone: &TimeZone) -> Option<f64> {
     let stamp = Timestamp::from_microsecond(at.0).ok()?;
     let stamp = stamp.round(Unit::Second).ok()?;

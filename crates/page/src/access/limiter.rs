@@ -14,7 +14,7 @@ const PER_NAME: usize = 5;
 /// Most failures of all names within [`WINDOW`]: above the typing errors of a shift, far below what guessing needs.
 const IN_ALL: usize = 30;
 
-/// The failures that still count, oldest first.
+/// Limits tries by the failures that still count, oldest first.
 #[derive(Debug, Default)]
 pub(crate) struct Limiter {
     failures: VecDeque<(Instant, String)>,
@@ -37,7 +37,7 @@ impl Limiter {
         self.failures.push_back((now, name.to_owned()));
     }
 
-    /// Forgets the failures of `name`.
+    /// Forgets the failures of `name` after a right password.
     pub fn succeeded(&mut self, name: &str) {
         self.failures.retain(|(_, it)| it != name);
     }

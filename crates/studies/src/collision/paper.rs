@@ -33,7 +33,7 @@ struct Layer {
     cells: Vec<Vec<u32>>,
 }
 
-/// The model of the paper over one scene, and a mover.
+/// The paper's method, which steps a mover through one scene.
 #[derive(Debug)]
 pub struct Stepping {
     elements: Vec<Prepared>,

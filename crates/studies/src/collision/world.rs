@@ -44,7 +44,7 @@ impl TestMove {
             * UNIT_MM
     }
 
-    /// Returns the move as a query of the collision core.
+    /// Returns the move in the form that the collision core takes.
     pub fn order(&self) -> Move<'static> {
         let mm = |place: [i64; 3]| Pose::at(place.map(|it| it as f64 * UNIT_MM));
         Move {

@@ -41,7 +41,7 @@ const CALM: u64 = 3;
 /// Number of parts of a lot without faults.
 const CALM_PARTS: u64 = 2;
 
-/// Inputs of all seeds.
+/// A storm: the inputs that all seeds share.
 struct Storm<'a> {
     order: &'a Order,
     plant: Plant,

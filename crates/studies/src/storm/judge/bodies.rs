@@ -41,8 +41,8 @@ pub fn violations(case: &Case) -> Vec<String> {
     violations
 }
 
-/// Returns each row with the number of its body, and a description of each row without a body. The bin identifies the
-/// body of a landed part, the place at the verdict any other body.
+/// Returns each row with its owner, the number of the body, and a description of each row without a body. The bin
+/// identifies the body of a landed part, the place at the verdict any other body.
 pub fn owners(case: &Case) -> (Vec<(&Part, usize)>, Vec<String>) {
     let (mut owners, mut violations) = (Vec::new(), Vec::new());
     let (landed, other): (Vec<&Part>, Vec<&Part>) =
