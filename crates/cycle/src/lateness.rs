@@ -50,7 +50,7 @@ impl Lateness {
         self.windows[0].max(self.windows[1])
     }
 
-    /// Returns the figures for screens and metrics.
+    /// Returns percentiles, worst values and buckets for screens and metrics.
     pub fn view(&self) -> LatenessView {
         let ms = |span: Span| span.as_seconds() * 1e3;
         // A percentile is the upper edge of its bucket, which may lie above the worst value.

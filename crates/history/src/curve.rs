@@ -24,7 +24,7 @@ pub struct CurveRecord {
     pub signal: String,
     /// Unit of the values; empty for bits and counts.
     pub unit: String,
-    /// Resolution, in the unit of the values: they are stored as whole multiples of it. More than 0.
+    /// Resolution, in the unit of the values, above 0: the file stores each value as a whole number of steps.
     pub step: f64,
     /// Instant (microseconds since 1970 UTC) and value, in order of time; the value is `None` for a reading over range.
     pub samples: Vec<(i64, Option<f64>)>,

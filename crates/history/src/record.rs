@@ -77,7 +77,7 @@ pub struct MeasurementRecord {
     pub key: String,
     /// Value, in the unit that the key names; `None` without a usable value.
     pub value: Option<f64>,
-    /// Expanded uncertainty (k = 2), in the same unit.
+    /// Expanded uncertainty (k = 2), in the unit of `value`.
     pub uncertainty: Option<f64>,
     /// Lower limit of the recipe, if any.
     pub low: Option<f64>,

@@ -45,7 +45,7 @@ pub(super) fn pack(connection: &Connection, run: i64) -> rusqlite::Result<()> {
     Ok(())
 }
 
-/// Packs the values of runs that were closed before this table existed.
+/// Packs the values of runs that were closed before the table `series` existed.
 pub(super) fn pack_all(connection: &Connection) -> rusqlite::Result<()> {
     let runs: Vec<i64> = connection
         .prepare("SELECT id FROM run WHERE closed_at_us IS NOT NULL")?

@@ -39,7 +39,7 @@ fn text(scrape: Scrape) -> String {
     text
 }
 
-/// The state that one request reports.
+/// State of rig and program that one request for metrics reports.
 #[derive(Debug)]
 struct Scrape {
     view: View,

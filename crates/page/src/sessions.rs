@@ -135,7 +135,7 @@ fn token(headers: &HeaderMap) -> Option<String> {
     named.next().map(str::to_owned)
 }
 
-/// Locks also after a panic of another holder: each change of the data is complete in itself.
+/// Locks even after another holder panicked: no panic leaves the data half changed.
 fn locked<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
     lock.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -110,8 +110,8 @@ fn films(order: &Order) -> anyhow::Result<Vec<Figure>> {
     Ok(by_root(figures))
 }
 
-/// Adds the column `by_root` to each row: the value of the first row of the same contact, if scatter falls with the
-/// root of the number of closures. NC has one closure more than NO, at rest.
+/// Adds the column `by_root` to each row: the value expected from the first row of the same contact if scatter falls
+/// with the root of the number of closures. The NC contact has one closure more than NO, the one at rest.
 fn by_root(figures: Vec<Figure>) -> Vec<Figure> {
     let first: Vec<Option<f64>> = figures.iter().take(2).map(|row| row.value).collect();
     let root = |place: usize| {
@@ -124,7 +124,7 @@ fn by_root(figures: Vec<Figure>) -> Vec<Figure> {
         .collect()
 }
 
-/// Returns the pooled scatter of the values of one body, percent of its mean.
+/// Returns the repeatability: the pooled scatter of the values of one body, percent of its mean.
 fn repeatability(name: String, lots: &[Lot], timed: TimedParameter, bodies: u64) -> Figure {
     let body = |lot: &Lot, body: u64| -> Vec<f64> {
         let again = lot.good().filter(|part| (part.seq - 1) % bodies == body);

@@ -213,7 +213,8 @@ fn has_curves(archive: &Archive, row: &Part) -> anyhow::Result<bool> {
     Ok(shown.iter().all(|it| !it.curves.is_empty()))
 }
 
-/// Returns true when the printed part has the verdict and bin of its row, and its landing, where recorded, the same bin.
+/// Returns true when printed part and row have the same verdict and bin, and the recorded landing, if any, is in this
+/// bin.
 fn is_same(row: &Part, reported: &Value) -> bool {
     reported["verdict"] == row.verdict.as_str()
         && reported["bin"] == row.bin.as_deref().unwrap_or_default()

@@ -34,8 +34,8 @@ const FALSE_ALARMS_PCT: f64 = 0.5;
 /// Confidence of the upper bound of the share of false alarms, 0 to 1.
 const CONFIDENCE: f64 = 0.95;
 
-/// Every promise of `rig.toml` that a world can break by more scatter or a wider tolerance: dotted path in `rig.toml`,
-/// whose last key is the name of the term, and key of the world.
+/// Each promise of `rig.toml` that a world can break by more scatter or a wider tolerance: its dotted path, whose last
+/// key names the term, and the key of the world that breaks it.
 const TERMS: [(&str, &str); 12] = [
     ("accuracy.ai_noise_lsb", "devices.ai_noise_lsb"),
     (
@@ -141,7 +141,7 @@ fn number(table: &Table, path: &str) -> Option<f64> {
 }
 
 impl BrokenWorld {
-    /// Returns the share of lots that notice, and the least coverage of a parameter.
+    /// Returns the share of lots that notice the broken promise, and the least coverage of a parameter.
     fn figures(&self) -> [Figure; 2] {
         let n = self.lots.len() as u64;
         let after: Vec<f64> = self.lots.iter().filter_map(noticed_after).collect();
@@ -188,7 +188,7 @@ impl BrokenWorld {
     }
 }
 
-/// Returns the parts judged before the run noticed; `None` when it has not.
+/// Returns the number of parts judged before the run noticed the broken promise; `None` when it did not.
 fn noticed_after(lot: &Lot) -> Option<f64> {
     let broken = lot.summary.broken_promises.iter();
     let after = broken.map(|it| it.after_parts).min();

@@ -35,7 +35,8 @@ const CLASSES: usize = 20;
 struct Stop {
     /// Time from the start of the swept interval to the press, seconds.
     instant_s: f64,
-    /// Time from the opening of the contact until the last motion output is off, milliseconds; `None` when none was on.
+    /// Time from the opening of the emergency-stop contact until the last motion output is off, milliseconds; `None`
+    /// when none was on.
     reaction_ms: Option<f64>,
 }
 

@@ -33,7 +33,7 @@ pub struct PartUnderWay {
 }
 
 impl PartUnderWay {
-    /// Returns the part's number within its kind, and the name of the kind.
+    /// Returns the number of the part among those of its kind, and the name of the kind.
     pub fn number(&self) -> (u64, &'static str) {
         rows::number(&self.judged.part.kind, self.reference_count)
     }

@@ -123,7 +123,7 @@ impl Narrator {
         self.stamped(now, &text);
     }
 
-    /// Returns the account; its end tells the parts in each bin, the collisions and the overdriven coils of `rig`.
+    /// Returns the account, which ends with the parts in each bin, the collisions and the overdriven coils of `rig`.
     pub fn end(mut self, rig: &SharedRig) -> String {
         let bins: Vec<String> = self
             .bins

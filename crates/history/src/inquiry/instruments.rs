@@ -8,7 +8,7 @@ use machine::dut::instruments::{Certificate, factors};
 use serde::Serialize;
 use units::Unit;
 
-/// Coverage factor of all expanded uncertainties in the answer.
+/// Coverage factor of all expanded uncertainties in [`Instruments`].
 const K: f64 = 2.0;
 
 /// Calibrations and reference parts of a rig.

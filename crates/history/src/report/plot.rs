@@ -1,5 +1,5 @@
 //! A drawing area with axes: converts values to places, draws ticks at round values, lines and marks. Lengths are in px
-//! of the view box.
+//! of the SVG's view box.
 
 use super::svg::Svg;
 use quality::ordered::round_step;

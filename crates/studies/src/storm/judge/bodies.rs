@@ -10,7 +10,7 @@ use rigsim::truth::{BodyTruth, Place};
 
 /// Longest time from a body at rest to its confirmation by the beam, microseconds: fall, second body, repeated polls.
 const CONFIRMED_US: u64 = 3_000_000;
-/// Time in which the fingers open, microseconds: a run that ends meanwhile declares the part before it falls.
+/// Time in which the fingers open, microseconds: a run that ends meanwhile declares the part lost before it falls.
 const OPENING_US: u64 = 300_000;
 /// Longest time until the reset that detects a lost part, microseconds: the operator may take this long.
 const NOTICED_US: u64 = 60_000_000;
