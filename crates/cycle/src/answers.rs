@@ -8,7 +8,8 @@ use machine::rig::wiring::LineId;
 use machine::station::trouble::Alarm;
 use units::{RigTime, Span};
 
-/// Share of the time that a reply may take: this computer explains a missing reply when it wakes later than that.
+/// Share of the time that a reply may take: this computer explains a missing reply when it wakes the cycle later than
+/// that.
 const EXPLAINS: f64 = 0.5;
 
 impl Cycle {

@@ -52,7 +52,7 @@ pub struct Alarm {
     pub cause_zh: Option<&'static str>,
     /// Time at which the alarm was raised.
     pub raised: Moment,
-    /// Time at which the cause was gone; `None` while the alarm is active, and when it ended its run.
+    /// Time at which the cause was gone; `None` while the alarm is active, and for one that ended its run.
     pub cleared: Option<Moment>,
     /// Time of the acknowledgement, if any.
     pub acknowledged: Option<Moment>,

@@ -109,8 +109,8 @@ impl Store {
 
     /// Writes a batch in one transaction; on an error no row of it is written.
     ///
-    /// A part or landing that equals its row is skipped, so the caller may send a batch again when an error leaves
-    /// open whether it was written; one that differs from its row is refused.
+    /// A part or landing that equals its row is skipped, so the caller may send a batch again after an error that does
+    /// not tell whether it was written. A part that differs from its row is refused.
     pub fn record(&mut self, rows: &[Row]) -> Result<()> {
         const DOING: &str = "recording";
         let Self {

@@ -13,7 +13,7 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 /// Value of p above which the interaction counts as chance (AIAG MSA, 4th edition, appendix on ANOVA).
 const POOL_ABOVE: f64 = 0.25;
 
-/// Factor by which the ratio of part to gauge deviation becomes the number of distinct categories (AIAG: 1.41).
+/// Factor that turns the ratio of part to gauge deviation into the number of distinct categories (AIAG: 1.41).
 const CATEGORIES: f64 = 1.41;
 
 /// One reading of the study.

@@ -82,9 +82,9 @@ fn readings(parameter: Parameter, lots: &[Lot]) -> Vec<Reading> {
         .collect()
 }
 
-/// Estimates process and measurement from the rows. The process is normal; its variance is that of the values minus
-/// that of the measurement. The uncertainty of one measurement is the median over parts; that after a confirmation
-/// measurement is the median of the clearly smaller ones.
+/// Estimates the distributions of process and measurement from `readings`. The process is normal; its variance is that
+/// of the values minus that of the measurement. The uncertainty of one measurement is the median over parts; that after
+/// a confirmation measurement is the median of the clearly smaller ones.
 fn chance(readings: &[Reading]) -> Option<DecisionRisk> {
     let values = Spread::of(&readings.iter().map(|it| it.value).collect::<Vec<f64>>());
     let stated: Vec<f64> = readings.iter().filter_map(|it| it.uncertainty).collect();

@@ -13,8 +13,8 @@ use toml::{Table, Value};
 /// A key by its dotted path, and its new value.
 pub type Change = (&'static str, Value);
 
-/// Keys of a world without errors of instruments, temperature and operations, which leaves the error of the strategy.
-/// Noise and resolution of the converters stay; there are no defects.
+/// Keys of an exact world: no errors of instruments, temperature and operations, so that the error of the strategy
+/// remains. Noise and resolution of the converters stay; there are no defects.
 const EXACT: [(&str, f64); 13] = [
     ("devices.ai_gain_pct", 0.0),
     ("devices.ai_offset_pct_of_range", 0.0),

@@ -61,7 +61,8 @@ pub fn owners(case: &Case) -> (Vec<(&Part, usize)>, Vec<String>) {
     (owners, violations)
 }
 
-/// Returns the body that came to rest in the bin just before the confirmation and was inside at the verdict.
+/// Returns the body that came to rest in the row's bin just before the beam confirmed it, and was inside at the
+/// verdict.
 fn body_by_bin(case: &Case, row: &Part) -> Option<usize> {
     let (bin, seen_us) = (row.landed_bin.as_deref()?, rig_us(row.landed_at?));
     let judged_us = rig_us(row.time);
@@ -180,14 +181,14 @@ fn in_a_bin(
     }
 }
 
-/// Returns true when an alarm declares the loss: one of the life at that instant, or of a later life up to the first
-/// that homed.
+/// Returns true when an alarm declares a loss at `at_us`: an alarm of the life at that instant, or of a later life up
+/// to the first that homed.
 fn is_declared(case: &Case, at_us: u64) -> bool {
     has_alarm(case, at_us, |alarm| DECLARED.contains(&alarm.code.as_str()))
 }
 
-/// Returns true when an alarm counts a second body in the bin. A killed life may have confirmed the first body and not yet
-/// counted the second.
+/// Returns true when an alarm counts a second body in `bin`, or when a kill came first: a killed life may have
+/// confirmed the first body and not yet counted the second.
 fn is_counted(case: &Case, at_us: u64, bin: &str) -> bool {
     let confirmed_us = at_us + CONFIRMED_US;
     let cut_off = case
