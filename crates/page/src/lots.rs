@@ -5,8 +5,8 @@
 //! | `GET /api/lots` | `limit`, `offset` | array of lots, latest run first: state, recipe, counts over all runs, and `why_not` |
 //! | `GET /api/wear` | | array of wear counters of the rig that the server shows |
 //!
-//! `why_not` maps each order about lots to null, or to the reason (`code`, `args`, `en`, `zh`) why the state of the lot forbids
-//! it. For the lot under way the buttons of the view apply instead.
+//! `why_not` maps each order about lots to null, or to the reason (`code`, `args`, `en`, `zh`) why the state of the lot
+//! forbids it. For the lot under way the buttons of the view apply instead.
 
 use super::error::{ApiError, JsonResult, Members};
 use super::router::App;

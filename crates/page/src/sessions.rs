@@ -6,9 +6,9 @@
 //! | page | cookie `relayrig_session`: `HttpOnly`, `SameSite=Strict` | what the role allows |
 //! | script | `Authorization: Bearer TOKEN` from the answer to `POST /api/login` | what the role allows |
 //!
-//! An expired session counts as none: 401. A role that is too weak gets 403 with the role needed. Browsers do not send the
-//! cookie with requests of other sites, and `origin.rs` refuses those as well. The cookie has no `Secure`, because the
-//! program serves plain HTTP on loopback; elsewhere the plant's proxy adds it.
+//! An expired session counts as none: 401. A role that is too weak gets 403 with the role needed. Browsers do not send
+//! the cookie with requests of other sites, and `origin.rs` refuses those as well. The cookie has no `Secure`, because
+//! the program serves plain HTTP on loopback; elsewhere the plant's proxy adds it.
 
 use super::access::{AccessError, Limiter, Person, Register, Role, SESSION_S};
 use super::error::{ApiError, blocking};

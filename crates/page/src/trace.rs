@@ -1,7 +1,7 @@
 //! `GET /api/trace`: the last traffic of every line with its meaning.
 //!
-//! `last` is the number of messages of each line, 1 to [`MOST`]; 100 when absent. The array is empty until a run has opened
-//! its lines.
+//! `last` is the number of messages of each line, 1 to [`MOST`]; 100 when absent. The array is empty until a run has
+//! opened its lines.
 
 use super::error::{ApiError, JsonResult, Members};
 use super::router::App;

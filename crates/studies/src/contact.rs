@@ -2,8 +2,8 @@
 //! and early stop.
 //!
 //! - Error is the difference from the resistance of the closures that were read. Every world here has an EMF of 10 uV.
-//! - Repeatability is the scatter of the same bodies fed again and again. Films on the contact cause nearly all of it, and
-//!   it falls with the root of the number of closures.
+//! - Repeatability is the scatter of the same bodies fed again and again. Films on the contact cause nearly all of it,
+//!   and it falls with the root of the number of closures.
 //! - Seconds are those of all stages that read a contact; the same stages measure times and bounce.
 
 use super::figure::{Figure, rms};
@@ -143,8 +143,8 @@ fn repeatability(name: String, lots: &[Lot], timed: TimedParameter, bodies: u64)
     Figure::new(name, n, rms, "%").with("seconds", timed.seconds(lots).mean())
 }
 
-/// Compares early stop with a fixed number of closures: early stop reads a part far from its limit once, one near the limit
-/// up to eight times.
+/// Compares early stop with a fixed number of closures: early stop reads a part far from its limit once, one near the
+/// limit up to eight times.
 fn early(order: &Order) -> anyhow::Result<Vec<Figure>> {
     let mut figures = Vec::new();
     for mohm in [20.0, 60.0, 80.0, 95.0] {

@@ -1,7 +1,8 @@
 //! Rig time of a test and of a cycle, and the pieces of both.
 //!
-//! A cycle runs from nest exit to nest exit. The cycle without the test is mechanics; the part of the test that the rows
-//! do not name is `rest`. Shares are means over parts that have both times, so that the pieces add up to the mean cycle.
+//! A cycle runs from nest exit to nest exit. The cycle without the test is mechanics; the part of the test that the
+//! rows do not name is `rest`. Shares are means over parts that have both times, so that the pieces add up to the mean
+//! cycle.
 
 use super::bins;
 use super::chart::Chart;

@@ -1,12 +1,13 @@
-//! False accepts and false rejects: counted against the truth, and predicted by the decision rule ([`super::risk`]) from
-//! the rows.
+//! False accepts and false rejects: counted against the truth, and predicted by the decision rule ([`super::risk`])
+//! from the rows.
 //!
 //! A lot in the middle of its limits has next to no risk, and a count of zero proves little. A second set of lots
-//! therefore has its mean operate voltage one standard deviation inside the limit: one part in six lies beyond the limit,
-//! and one in twenty gets a confirmation measurement.
+//! therefore has its mean operate voltage one standard deviation inside the limit: one part in six lies beyond the
+//! limit, and one in twenty gets a confirmation measurement.
 //!
 //! Reference parts and instruments are common to all parts of a lot, so that lots differ by more than chance. The bar
-//! of a count is its prediction plus or minus three standard deviations of the sum over lots, from the scatter of the lots.
+//! of a count is its prediction plus or minus three standard deviations of the sum over lots, from the scatter of the
+//! lots.
 
 use super::bins;
 use super::chart::Chart;

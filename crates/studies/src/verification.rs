@@ -1,11 +1,11 @@
 //! How often `calibrate --verify` fails a rig that has not changed.
 //!
-//! The study calibrates every rig once and verifies it on other days: the errors of the rig stay, while noise, operations
-//! and temperatures of the reference parts change (fault `noise_seed`). A verification checks that every factor lies
-//! within [`K_JOINT`] standard uncertainties of both measurements together. With independent factors and exact
-//! uncertainties one of fifteen factors is outside in about one verification of 25. The bar is that rate plus three
-//! standard deviations of a count. Further rows show the scatter of each factor divided by its stated uncertainty: a ratio
-//! above 1 means that the stated uncertainty is too small.
+//! The study calibrates every rig once and verifies it on other days: the errors of the rig stay, while noise,
+//! operations and temperatures of the reference parts change (fault `noise_seed`). A verification checks that every
+//! factor lies within [`K_JOINT`] standard uncertainties of both measurements together. With independent factors and
+//! exact uncertainties one of fifteen factors is outside in about one verification of 25. The bar is that rate plus
+//! three standard deviations of a count. Further rows show the scatter of each factor divided by its stated
+//! uncertainty: a ratio above 1 means that the stated uncertainty is too small.
 
 use super::chart::Chart;
 use super::figure::{Bar, Figure, rms};

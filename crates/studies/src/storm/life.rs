@@ -1,5 +1,5 @@
-//! One life of the controller: the program as `run` starts it, in virtual time, in this process, on a rig that keeps its
-//! state from life to life. A kill drops the program with all its tasks in the middle of a turn.
+//! One life of the controller: the program as `run` starts it, in virtual time, in this process, on a rig that keeps
+//! its state from life to life. A kill drops the program with all its tasks in the middle of a turn.
 
 use super::operator::{Answered, Operator};
 use super::scenario::Life;

@@ -1,7 +1,7 @@
-//! Checks that every body lies in the one bin that its row names, or that an alarm declares it lost; that no row lacks a
-//! body, and no body has two rows. The truth of the rig assigns rows to bodies: by the body in the nest at the verdict, and
-//! by the body that came to rest in the bin at the confirmation. A body that clung to another one has no row, because it
-//! was never judged; the alarm of the beam that counted it names its bin.
+//! Checks that every body lies in the one bin that its row names, or that an alarm declares it lost; that no row lacks
+//! a body, and no body has two rows. The truth of the rig assigns rows to bodies: by the body in the nest at the
+//! verdict, and by the body that came to rest in the bin at the confirmation. A body that clung to another one has no
+//! row, because it was never judged; the alarm of the beam that counted it names its bin.
 
 use super::{Case, rig_us, seconds};
 use crate::storm::life::{End, EndedLife};
@@ -141,8 +141,8 @@ fn misplaced(case: &Case, body: &BodyTruth, rows: &[&Part]) -> Option<String> {
     }
 }
 
-/// Returns the instant at which the body began to fall, microseconds: the life that released it must declare it lost, not
-/// a life that began during the fall.
+/// Returns the instant at which the body began to fall, microseconds: the life that released it must declare it lost,
+/// not a life that began during the fall.
 fn let_go_us(body: &BodyTruth) -> u64 {
     let mut falls = body.path.iter().rev();
     let fell = falls.find(|(_, place)| *place == Place::Air);

@@ -1,5 +1,5 @@
-//! Checks that every value belongs to the body of its row and that the verdict agrees with the truth. Only complete tests
-//! count: an interrupted one has no verdict.
+//! Checks that every value belongs to the body of its row and that the verdict agrees with the truth. Only complete
+//! tests count: an interrupted one has no verdict.
 
 use super::Case;
 use super::bodies::owners;
