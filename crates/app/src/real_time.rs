@@ -22,9 +22,9 @@ use tokio::runtime::Handle;
 use tokio::sync::oneshot;
 use units::{RigTime, Span};
 
-/// Priority under SCHED_FIFO: above every usual process, below the kernel's threads that serve interrupts (50).
+/// Priority under SCHED_FIFO: above every usual process, below the threads of the kernel that serve interrupts' timers.
 const PRIORITY: u8 = 49;
-/// Time between two wake-ups of [`BareLoop`], the usual one of cyclictest.
+/// Interval of the bare loop, as cyclictest has it.
 const INTERVAL: Span = Span::ms(1);
 
 /// A thread whose runtime serves the lines and the cycle. Dropping it ends their tasks.

@@ -28,8 +28,7 @@ impl LiveRig {
     }
 }
 
-/// Returns the faults of the source, and one more that loads reference parts as often as the reference checks of the
-/// lot need them.
+/// Returns the faults of the source, and one more that loads reference parts as often as the lot's checks need them.
 fn faults(plant: &Plant, source: &Simulated) -> Vec<String> {
     let mut faults = source.faults.clone();
     let asked = faults.iter().any(|it| it.starts_with("golden_every"));

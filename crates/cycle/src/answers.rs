@@ -8,8 +8,7 @@ use machine::rig::wiring::LineId;
 use machine::station::trouble::Alarm;
 use units::{RigTime, Span};
 
-/// Share of the time that a reply may take: this computer explains a missing reply when it wakes the cycle later than
-/// that.
+/// Share of the allowance for a late reply from which on the lateness of this computer explains a missing one.
 const EXPLAINS: f64 = 0.5;
 
 impl Cycle {
@@ -116,7 +115,8 @@ impl Cycle {
         }
     }
 
-    /// Returns how late this computer woke the cycle in the last seconds, if late enough to explain a missing reply.
+    /// Returns the lateness of this computer in the last seconds when it takes half of what a reply may be late, or
+    /// more.
     pub(super) fn host_late(&self) -> Option<Span> {
         let allowed_ms = self.wiring.bus.digital_allowance_ms;
         let recent = self.lateness.recent();
