@@ -115,8 +115,7 @@ impl Cycle {
         }
     }
 
-    /// Returns the lateness of this computer in the last seconds when it takes half of what a reply may be late, or
-    /// more.
+    /// Returns the lateness of this computer in the last seconds when it takes half of what a reply may be late, or more.
     pub(super) fn host_late(&self) -> Option<Span> {
         let allowed_ms = self.wiring.bus.digital_allowance_ms;
         let recent = self.lateness.recent();

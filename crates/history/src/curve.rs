@@ -187,7 +187,7 @@ mod tests {
     use super::*;
     use machine::instrument::trace::MAX_SAMPLES;
 
-    /// Most bytes that a sample takes: a gap below 2^35 us takes 5, a change of less than 2^47 steps 7.
+    /// Largest number of bytes that a sample takes: a gap below 2^35 us takes 5, a change of less than 2^47 steps 7.
     const WORST: usize = 5 + 7;
 
     fn curve(samples: &[(i64, Option<f64>)]) -> CurveRecord {

@@ -41,7 +41,7 @@ pub struct Filter {
     pub max: Option<f64>,
     /// True selects only suspect parts: judged after a passed reference check and before a failed one.
     pub suspect: bool,
-    /// Most parts to return, in order of judgement.
+    /// Largest number of parts to return, the first in order of judgement.
     pub limit: Option<u64>,
     /// Number of parts to skip first.
     pub offset: Option<u64>,

@@ -18,7 +18,7 @@ use serde::Serialize;
 use texts::Message;
 use tokio::sync::oneshot;
 
-/// Most orders that wait for the next turn of the cycle; a further one is refused.
+/// Largest number of orders that wait for the next turn of the cycle; a further one is refused.
 pub const WAITING: usize = 16;
 
 /// Body of the answer to an accepted order.

@@ -70,8 +70,8 @@ pub struct Change {
 pub struct Rejudging {
     recipe: Recipe,
     filter: Filter,
-    /// By number of the run, data of the recipe that its parts were measured by; for an import without a recipe,
-    /// `recipe` takes its place.
+    /// Data of the recipe by which the parts of each run were measured, by number of the run; for an import without a
+    /// recipe, `recipe` takes its place.
     bases: BTreeMap<u32, Basis>,
 }
 

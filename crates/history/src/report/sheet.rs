@@ -14,7 +14,7 @@ use quality::tally::Tally;
 use rust_xlsxwriter::{Chart, ChartType, Color, Format, Workbook, Worksheet, XlsxError};
 use std::collections::BTreeMap;
 
-/// Most parts on one sheet; a spreadsheet can hold 1,048,576 rows.
+/// Largest number of parts on one sheet; a spreadsheet can hold 1,048,576 rows.
 const ROWS: u32 = 1_000_000;
 /// Days from the day that spreadsheets count from to 1 January 1970.
 pub const EPOCH_DAYS: f64 = 25_569.0;

@@ -9,9 +9,10 @@ use std::time::{Duration, Instant};
 
 /// Time for which a failure counts.
 const WINDOW: Duration = Duration::from_secs(300);
-/// Most failures of one name within [`WINDOW`].
+/// Largest number of failures of one name within [`WINDOW`].
 const PER_NAME: usize = 5;
-/// Most failures of all names within [`WINDOW`]: above the typing errors of a shift, far below what guessing needs.
+/// Largest number of failures of all names within [`WINDOW`]: above the typing errors of a shift, far below what
+/// guessing needs.
 const IN_ALL: usize = 30;
 
 /// Limits tries by the failures that still count, oldest first.

@@ -36,7 +36,7 @@ use tempfile::TempDir;
 use tracing::subscriber::{NoSubscriber, with_default};
 use units::Span;
 
-/// Most lives after the faults; one of them must complete its lot. The first may have to discharge parts.
+/// Largest number of lives after the faults; one of them must complete its lot. The first may have to discharge parts.
 const CALM: u64 = 3;
 /// Number of parts of a lot without faults.
 const CALM_PARTS: u64 = 2;
