@@ -31,7 +31,7 @@ impl Archive {
         if partial.exists() {
             fs::remove_file(partial).map_err(place)?;
         }
-        // The connection of a reader is query-only; writing the copy needs this lifted for one statement.
+        // The connection of a reader is query-only; this is lifted for the one statement that writes the copy.
         self.connection
             .pragma_update(None, "query_only", false)
             .doing("copying the history")?;

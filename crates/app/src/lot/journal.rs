@@ -21,7 +21,7 @@ const HOLD_ALARMS: [AlarmCode; 2] = [AlarmCode::ReferenceCheckFailed, AlarmCode:
 /// Alarm that references or reference parts give no calibration; it counts as a failed reference check.
 const NOT_CALIBRATED: AlarmCode = AlarmCode::CalibrationFailed;
 
-/// What the rows so far say about the run.
+/// State of the run as the rows so far give it; the next rows depend on it.
 #[derive(Debug)]
 pub struct Journal {
     /// Name of the lot; `None` between lots.

@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 
 /// Largest number of parts on one sheet; a spreadsheet can hold 1,048,576 rows.
 const ROWS: u32 = 1_000_000;
-/// Days from the day that spreadsheets count from to 1 January 1970.
+/// 1 January 1970 in days, as spreadsheets count them.
 pub const EPOCH_DAYS: f64 = 25_569.0;
 /// Height of a chart, in rows of the summary.
 const CHART_ROWS: u32 = 16;

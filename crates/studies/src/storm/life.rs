@@ -23,7 +23,7 @@ use units::RigTime;
 
 /// Wall clock at rig time zero, microseconds since 1970 UTC: 2027-01-15. The same for every seed.
 pub const EPOCH_US: i64 = 1_800_000_000_000_000;
-/// Longest life of a few parts, with all waits of operator and station, microseconds.
+/// Longest life of the controller over a lot of a few parts, with all waits of operator and station, microseconds.
 const LONGEST_US: u64 = 300_000_000;
 
 /// End of a life.
