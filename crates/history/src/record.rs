@@ -177,7 +177,7 @@ pub struct CalibrationRecord {
 /// Reference parts have calibrated the rig during the run of a lot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CalibratedRecord {
-    /// The open lot at that time.
+    /// Name of the lot whose run is open.
     pub lot: String,
     /// The calibration that the run uses from now on.
     pub calibration: CalibrationRecord,

@@ -8,7 +8,7 @@
 use super::{Archive, Filter};
 use rusqlite::{Connection, OptionalExtension, params};
 
-/// Selects part and counted value of a parameter in one run, in no particular order.
+/// Selects, of one run, each part with its value of a parameter that counts, in no particular order.
 pub(super) const OF_RUN: &str = "SELECT part_id, value FROM measurement
     WHERE parameter_id = ?1 AND population = 'lot' AND run_id = ?2
       AND part_verdict IN ('pass', 'fail', 'void', 'unjudged')";

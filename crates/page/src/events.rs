@@ -120,7 +120,7 @@ fn same_content(view: &View, sent: &mut View) -> bool {
     view == sent
 }
 
-/// Keeps one open stream in the count of streams until it is dropped.
+/// Counts as one open stream until this value is dropped.
 struct Counted(Arc<AtomicUsize>);
 
 impl Counted {

@@ -150,7 +150,7 @@ pub struct Summary {
 pub struct BrokenPromise {
     /// Name of the promise.
     pub promise: String,
-    /// Parts of the lot judged before.
+    /// Number of parts of the lot judged before the run found that.
     pub after_parts: u64,
 }
 

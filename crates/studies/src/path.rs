@@ -34,7 +34,7 @@ fn strokes(mechanism: &MechanismTable) -> [(&'static str, f64); 6] {
     ]
 }
 
-/// Returns the path stroke by stroke, its sum, and parts an hour.
+/// Returns the critical path stroke by stroke, its sum, and the parts per hour.
 ///
 /// # Errors
 /// Fails when the world file cannot be read.

@@ -25,7 +25,7 @@ use toml::{Table, Value};
 
 /// Multiple of the promised value in a world that breaks it.
 const FACTOR: f64 = 2.0;
-/// Least share of lots that notice, percent.
+/// Least share of lots that notice the broken promise, percent.
 const NOTICED_PCT: f64 = 95.0;
 /// Least coverage of a parameter, percent of values.
 const COVERED_PCT: f64 = 92.0;

@@ -17,7 +17,7 @@ use machine::dut::em_relay::Parameter;
 
 const OPERATE: &[&str] = &["timed_operate"];
 const RELEASE: &[&str] = &["timed_release"];
-/// Name, time and bounce of each direction.
+/// Name of each direction (operate, release), its time and its bounce.
 const DIRECTIONS: [(&str, TimedParameter, TimedParameter); 2] = [
     (
         "operate",

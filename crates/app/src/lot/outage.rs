@@ -10,7 +10,7 @@ use std::path::Path;
 use std::time::Instant;
 use units::{RigTime, Span};
 
-/// Time between two tries.
+/// Time between two tries to write the history.
 const RETRY: Span = Span::ms(1000);
 
 /// An outage of the history.

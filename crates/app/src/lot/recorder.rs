@@ -60,7 +60,7 @@ impl Recorder {
         Ok((recorder, prior_state))
     }
 
-    /// Queues the begin of a run.
+    /// Queues the rows that begin a run.
     fn begin(&mut self, context: &LotContext, calibration: Option<&Calibration>) {
         let (order, recipe) = (context.order, context.recipe);
         self.rows.push(Row::Run(LotRecord {
@@ -226,7 +226,7 @@ impl Recorder {
         Ok(self.judged.take())
     }
 
-    /// Queues how the run ended.
+    /// Queues the rows about the end of the run.
     pub fn end(&mut self, ending: &Ending, exit: &Exit, lot: &LotProgress) {
         self.queue_contents();
         let end_us = lot.context.wall_us(lot.end());

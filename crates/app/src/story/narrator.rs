@@ -21,7 +21,7 @@ use units::RigTime;
 #[derive(Debug)]
 pub struct Narrator {
     text: String,
-    /// Rig time of the first trouble.
+    /// Rig time from which the account counts seconds: that of the first trouble; `None` before it.
     zero: Option<RigTime>,
     /// Name and verdict of each part, by ordinal.
     parts: BTreeMap<u64, (String, &'static str)>,

@@ -16,7 +16,7 @@ use tokio::time::timeout;
 
 /// Longest time for which a client may take no piece.
 const CLIENT_TIMEOUT: Duration = Duration::from_secs(10);
-/// Number of collected bytes from which they are sent as a piece.
+/// Number of bytes that are collected before they are sent as a piece.
 const PIECE: usize = 32 * 1024;
 
 type Piece = io::Result<Bytes>;

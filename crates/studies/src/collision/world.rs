@@ -29,7 +29,7 @@ pub struct TestMove {
     pub truth: Option<f64>,
     /// Whether a mover thinner by one unit has a contact too.
     pub deep: bool,
-    /// Number of elements whose box the swept box of a part of the mover meets.
+    /// Number of elements near the move: their box meets the swept box of a part of the mover.
     pub near: usize,
 }
 
