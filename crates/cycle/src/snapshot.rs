@@ -1,5 +1,4 @@
-//! Carries the parts of a view that the cycle knows to the screens through a channel, so that no screen delays the
-//! cycle.
+//! Brings the cycle's parts of a view to the screens, through a channel, so that no screen delays the cycle.
 
 use machine::view::{AlarmLine, LatenessView, Machine, View};
 use tokio::sync::{mpsc, watch};

@@ -29,7 +29,7 @@ pub struct Part {
     pub bin: Option<String>,
     /// Bin whose beam saw the part fall; `None` until then.
     pub landed_bin: Option<String>,
-    /// Time at which that beam saw the part.
+    /// Time at which the beam of `landed_bin` saw the part.
     pub landed_at: Option<Moment>,
     /// Reasons why the part did not pass, as texts.
     pub reasons: Vec<String>,

@@ -22,7 +22,7 @@ pub struct LotRecord {
     pub recipe: String,
     /// Text of the recipe, TOML.
     pub recipe_snapshot: String,
-    /// Hash of that text, made by [`snapshot_hash`]; runs with equal hashes share one stored text.
+    /// Hash of `recipe_snapshot`, made by [`snapshot_hash`]; runs with equal hashes share one stored text.
     pub recipe_hash: String,
     /// Hash of the calibration in force, if any.
     pub calibration_hash: Option<String>,
@@ -60,7 +60,7 @@ pub struct PartRecord {
     pub cycle_s: Option<f64>,
     /// Bin whose beam saw the part fall; `None` until then.
     pub landed_bin: Option<String>,
-    /// Time at which that beam saw the part.
+    /// Time at which the beam of `landed_bin` saw the part.
     pub landed_at_us: Option<i64>,
     /// `lot` for a production part, `golden` for a reference part; the parts of each kind are numbered from 1.
     pub kind: String,

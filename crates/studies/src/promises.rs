@@ -4,8 +4,9 @@
 //! The uncertainty rests on what `rig.toml` and the recipe promise. Each term of [`TERMS`] is a world that breaks one
 //! promise by [`FACTOR`] and keeps the others. A term keeps its bar when the run notices it in enough lots, or when the
 //! uncertainty of every parameter still covers the truth often enough: coverage has no bar where enough lots notice, and
-//! notice has none where only the coverage is enough. A run has noticed when it raises the alarm of a promise, or when it refuses the calibration. Worlds
-//! that keep every promise give the share of lots with a false alarm.
+//! notice has none where only the coverage is enough. A run has noticed the broken promise when it raises the alarm of
+//! a promise, or when it refuses the calibration. Worlds that keep every promise give the share of lots with a false
+//! alarm.
 
 use super::chart::Chart;
 use super::error::Pooled;

@@ -1,9 +1,9 @@
 //! Global risks of a wrong decision about a part (JCGM 106:2012, 9.5).
 //!
-//! Process and measurement are normal. With a guard band `w = U` the rule accepts a value inside the limit by w and
-//! rejects a value outside by w. In between it takes a confirmation measurement, and accepts the part only if the mean
-//! of all readings lies inside the limit by the U of that mean. Both readings share the systematic errors: the first
-//! one is the mean plus the noise that averaging removes.
+//! Process and measurement are normal. With a guard band `w = U` the decision rule accepts a value inside the limit by
+//! w and rejects a value outside by w. In between it takes a confirmation measurement, and accepts the part only if the
+//! mean of all readings lies inside the limit by the U of that mean. Both readings share the systematic errors: the
+//! first one is the mean plus the noise that averaging removes.
 
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::ops::RangeInclusive;

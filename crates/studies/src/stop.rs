@@ -2,9 +2,9 @@
 //!
 //! Every lot is a story (`relayrig story`) that presses the stop again and again, each time a little later after a part
 //! leaves the nest, or after the reset of a line that was stopped in the middle of a test; then it releases the stop,
-//! clears, resets and starts anew. The journal of the simulated rig gives the instants at which the contact opens and the
-//! last motion output goes off. The bound follows from `rig.toml` and holds for any delay or loss of one transaction;
-//! every second lot therefore runs with replies at the end of their timeout.
+//! clears, resets and starts anew. The journal of the simulated rig gives the instants at which the emergency-stop
+//! contact opens and the last motion output goes off. The bound of the reaction time follows from `rig.toml` and holds
+//! for any delay or loss of one transaction; every second lot therefore runs with replies at the end of their timeout.
 
 mod reaction;
 mod sweep;

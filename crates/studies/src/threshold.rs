@@ -1,9 +1,9 @@
 //! Study `threshold`: test time against error of the thresholds, for every strategy and baud rate, with the acts and
 //! transactions of the whole line.
 //!
-//! The world has no errors of instruments, certificates, temperature and operations, which leaves the error of the
-//! strategy. Operate includes 25 ms of settling at the pre-bias, because a recipe without coil resistance spends them
-//! there. The strategy `pulse` finds whether a limit is kept, and no value.
+//! The world has no errors of instruments, certificates, temperature and operations, so that the error of the strategy
+//! remains. The time of the operate threshold includes 25 ms of settling at the pre-bias, because a recipe without coil
+//! resistance spends them there. The strategy `pulse` finds whether a limit is kept, and no value.
 
 use super::figure::Bar;
 use super::method::{self, BAUDS, TimedParameter};

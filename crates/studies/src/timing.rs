@@ -1,4 +1,4 @@
-//! Error of times and bounce: the gain by the latch, and the errors of clock, gate delay and bus.
+//! Error of times and bounce: how far the latch reduces it, and the errors of clock, gate delay and bus.
 //!
 //! Gate 0 ends at the first make; gate 1 counts while the contact is open, and alone would measure the time with its
 //! bounce. The row of the raw gate is therefore the sum of two values of the same test. A count is the number of whole

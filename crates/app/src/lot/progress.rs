@@ -56,7 +56,7 @@ pub struct LotProgress<'a> {
     broken: Vec<BrokenPromise>,
     /// First alarm of the last trouble: the first one that makes the machine abort, hold or suspend.
     trouble: Option<Alarm>,
-    /// False while an alarm of that trouble is active.
+    /// False while an alarm of the last trouble is active.
     trouble_is_over: bool,
 }
 

@@ -32,8 +32,8 @@ pub fn paper(language: Lang) -> Paper {
     }
 }
 
-/// Returns the report of a lot. `ideal_cycle_s` is the shortest cycle that the line can keep, seconds; without it the 5
-/// % quantile of the cycle times is used.
+/// Returns the report of a lot. `ideal_cycle_s` is the shortest cycle that the line can keep, seconds; when absent, the
+/// 5 % quantile of the cycle times.
 pub fn lot_report(
     archive: &Archive,
     filter: &Filter,

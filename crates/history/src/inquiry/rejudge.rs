@@ -48,7 +48,7 @@ pub struct Changes {
     pub tag: &'static str,
     /// Name of the other recipe.
     pub recipe: String,
-    /// SHA-256 of its text.
+    /// SHA-256 of the text of the other recipe.
     pub recipe_hash: String,
     /// Number of parts for each pair of old and new verdict.
     pub changes: Vec<Change>,

@@ -42,13 +42,13 @@ pub enum End {
 /// Record of a life of the controller that has ended.
 #[derive(Debug, Clone)]
 pub struct EndedLife {
-    /// Name of its lot.
+    /// Name of the lot that the life ran.
     pub lot: String,
-    /// Rig time at its start, microseconds.
+    /// Rig time at the start of the life, microseconds.
     pub began_us: u64,
-    /// Rig time at its end, microseconds.
+    /// Rig time at the end of the life, microseconds.
     pub ended_us: u64,
-    /// Reason of the end.
+    /// How the life ended.
     pub end: End,
     /// Orders of the operator with their answers.
     pub answers: Vec<Answered>,

@@ -38,7 +38,7 @@ const OF_A_REPLY: [&str; 8] = [
 /// Plan of one life of the controller, that is, of its program from start to end.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Life {
-    /// Parts of its lot.
+    /// Parts of the lot that the life runs.
     pub count: u64,
     /// Whether an operator gives random orders.
     pub attended: bool,
