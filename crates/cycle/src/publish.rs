@@ -66,7 +66,7 @@ pub fn read(order: &view::Order) -> Result<Order, Refused> {
 }
 
 impl Cycle {
-    /// Sends a snapshot at most once per [`PACE`], `last` at any time; none on a rig without a screen.
+    /// Sends a snapshot at most once per [`PACE`], the `last` one at any time; none on a rig without a screen.
     pub(super) fn publish(&mut self, now: RigTime, last: bool) {
         let Some(snapshots) = self.links.snapshots.clone() else {
             return;

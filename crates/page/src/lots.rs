@@ -19,7 +19,7 @@ use texts::Message;
 
 /// Default of `limit`.
 const SHOWN: u32 = 20;
-/// Greatest `limit`: for each lot the server counts all parts of the lot.
+/// Greatest `limit`, because the server counts all parts of each listed lot.
 const MOST: u32 = 200;
 
 /// A lot with the orders that its state allows.

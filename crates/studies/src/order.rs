@@ -1,4 +1,4 @@
-//! The lots that a study runs: each in a process of this very program, with a history that goes with the process.
+//! The lots that a study runs: each in a process of this very program, with a history in a temporary folder.
 
 use super::lot::{Admitted, Lot};
 use super::pool::{self, LOTS_AT_ONCE};
