@@ -102,8 +102,8 @@ impl Cycle {
         self.bus_alarm.get_or_insert_with(|| Alarm::bus(detail));
     }
 
-    /// Keeps trouble with an answer as [`Cycle::note_bus_trouble`] does, or as lateness of this computer when that
-    /// explains a missing reply.
+    /// Keeps trouble with an answer as [`Cycle::note_bus_trouble`] does, but as an alarm about this computer when its
+    /// lateness explains a missing reply.
     fn note_line_trouble(&mut self, answer: &Answer, detail: &str) {
         let is_missing = matches!(answer.outcome, Err(LineError::TimeOut { .. }));
         match self.host_late().filter(|_| is_missing) {
