@@ -22,9 +22,9 @@ use tokio::sync::oneshot;
 use units::{RigTime, Span};
 
 /// Priority under SCHED_FIFO: above every usual process, below the threads of the kernel that serve interrupts' timers.
-const PRIORITY: u8 = 49;
-/// Interval of the bare loop, as cyclictest has it.
-const INTERVAL: Span = Span::ms(1);
+pub const PRIORITY: u8 = 49;
+/// Interval of the waits of a latency test, as cyclictest has it.
+pub const INTERVAL: Span = Span::ms(1);
 
 /// A thread whose runtime serves the lines and the cycle. Dropping it ends their tasks.
 pub struct RigThread {
@@ -88,7 +88,7 @@ fn raise() -> HostView {
     let mut rights = HostView::default();
     match raise_thread() {
         Ok(()) => rights.fifo_priority = Some(PRIORITY),
-        Err(why) => rights.refused.push(format!("SCHED_FIFO: {why}")),
+        Err(why) => rights.refused.push(format!("SCHED_FIFO: {why:?}")),
     }
     match lock_memory() {
         Ok(()) => rights.memory_locked = true,
@@ -101,29 +101,35 @@ fn raise() -> HostView {
 ///
 /// # Errors
 /// Fails with the reason of the system.
-pub fn raise_thread() -> Result<(), String> {
+pub fn raise_thread() -> Result<(), thread_priority::Error> {
     let priority = ThreadPriority::from_posix(ScheduleParams {
         sched_priority: PRIORITY.into(),
     });
     let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
     set_thread_priority_and_policy(thread_native_id(), priority, policy)
-        .map_err(|error| format!("{error:?}"))
+}
+
+/// Reason why the memory of the program stays unlocked.
+#[derive(Debug, thiserror::Error)]
+enum LockError {
+    /// The limit is finite, kB.
+    #[error("found a limit of {0} kB, expected none")]
+    Limit(u64),
+    #[error(transparent)]
+    Refused(#[from] rustix::io::Errno),
 }
 
 /// Keeps the pages of the program in memory from their first use on.
 ///
 /// A finite limit would later refuse memory that the program needs, so only an unlimited one serves.
-fn lock_memory() -> Result<(), String> {
+fn lock_memory() -> Result<(), LockError> {
     if let Some(limit) = getrlimit(Resource::Memlock).current
         && !rustix::process::geteuid().is_root()
     {
-        return Err(format!(
-            "found a limit of {} kB, expected none",
-            limit / 1024
-        ));
+        return Err(LockError::Limit(limit / 1024));
     }
     let all = MlockAllFlags::CURRENT | MlockAllFlags::FUTURE | MlockAllFlags::ONFAULT;
-    mlockall(all).map_err(|error| error.to_string())
+    Ok(mlockall(all)?)
 }
 
 fn log(rights: &HostView) {

@@ -59,9 +59,6 @@ use units::{RigTime, Span};
 /// Longest pause between two turns when the station asks for no earlier instant.
 const IDLE: Span = Span::ms(50);
 
-/// Share of the allowance for a late reply from which on the lateness of this computer explains a missing one.
-const EXPLAINS: f64 = 0.5;
-
 /// Channels and flags between the cycle and the rest of the program.
 #[derive(Debug)]
 pub struct CycleLinks {
@@ -461,11 +458,10 @@ impl Cycle {
         }
     }
 
-    /// Returns the lateness of this computer in the last seconds when it takes half of what a reply may be late, or more.
+    /// Returns the lateness of this computer in the last seconds when it explains a missing reply.
     fn host_late(&self) -> Option<Span> {
-        let allowed_ms = self.wiring.bus.digital_allowance_ms;
         let recent = self.lateness.recent();
-        (recent.as_seconds() * 1e3 >= EXPLAINS * allowed_ms).then_some(recent)
+        (recent >= self.wiring.explaining_lateness()).then_some(recent)
     }
 
     fn is_measuring(&self, line: LineId) -> bool {
