@@ -70,7 +70,7 @@ pub enum AdmissionError {
     OtherRecipe {
         /// Name of the lot.
         lot: String,
-        /// Name and hash of the recipe as ordered.
+        /// Recipe that the order names: its name and the first 12 characters of its hash.
         found: String,
         /// State of the lot, and the recipe with which the lot began.
         standing: Box<LotStatus>,

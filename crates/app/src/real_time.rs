@@ -13,6 +13,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
+use thiserror::Error;
 use thread_priority::{
     RealtimeThreadSchedulePolicy, ScheduleParams, ThreadPriority, ThreadSchedulePolicy,
     set_thread_priority_and_policy, thread_native_id,
@@ -88,48 +89,54 @@ fn raise() -> HostView {
     let mut rights = HostView::default();
     match raise_thread() {
         Ok(()) => rights.fifo_priority = Some(PRIORITY),
-        Err(why) => rights.refused.push(format!("SCHED_FIFO: {why:?}")),
+        Err(why) => rights.refused.push(why.to_string()),
     }
     match lock_memory() {
         Ok(()) => rights.memory_locked = true,
-        Err(why) => rights.refused.push(format!("locked memory: {why}")),
+        Err(why) => rights.refused.push(why.to_string()),
     }
     rights
+}
+
+/// Reason why the system refuses a right.
+#[derive(Debug, Error)]
+pub enum Refused {
+    /// The thread may not have a real-time priority.
+    #[error("SCHED_FIFO: {0:?}")]
+    Fifo(thread_priority::Error),
+    /// Memory may be locked up to a limit only, beyond which the system would refuse memory that the program needs.
+    #[error("locked memory: found a limit of {limit_kb} kB, expected none")]
+    Limit {
+        /// The limit (RLIMIT_MEMLOCK), kB.
+        limit_kb: u64,
+    },
+    /// Memory may not be locked.
+    #[error("locked memory: {0}")]
+    Lock(rustix::io::Errno),
 }
 
 /// Raises this thread to SCHED_FIFO.
 ///
 /// # Errors
-/// Fails with the reason of the system.
-pub fn raise_thread() -> Result<(), thread_priority::Error> {
+/// Fails when the system refuses the priority.
+pub fn raise_thread() -> Result<(), Refused> {
     let priority = ThreadPriority::from_posix(ScheduleParams {
         sched_priority: PRIORITY.into(),
     });
     let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
-    set_thread_priority_and_policy(thread_native_id(), priority, policy)
-}
-
-/// Reason why the memory of the program stays unlocked.
-#[derive(Debug, thiserror::Error)]
-enum LockError {
-    /// The limit is finite, kB.
-    #[error("found a limit of {0} kB, expected none")]
-    Limit(u64),
-    #[error(transparent)]
-    Refused(#[from] rustix::io::Errno),
+    set_thread_priority_and_policy(thread_native_id(), priority, policy).map_err(Refused::Fifo)
 }
 
 /// Keeps the pages of the program in memory from their first use on.
-///
-/// A finite limit would later refuse memory that the program needs, so only an unlimited one serves.
-fn lock_memory() -> Result<(), LockError> {
+fn lock_memory() -> Result<(), Refused> {
     if let Some(limit) = getrlimit(Resource::Memlock).current
         && !rustix::process::geteuid().is_root()
     {
-        return Err(LockError::Limit(limit / 1024));
+        let limit_kb = limit / 1024;
+        return Err(Refused::Limit { limit_kb });
     }
     let all = MlockAllFlags::CURRENT | MlockAllFlags::FUTURE | MlockAllFlags::ONFAULT;
-    Ok(mlockall(all)?)
+    mlockall(all).map_err(Refused::Lock)
 }
 
 fn log(rights: &HostView) {

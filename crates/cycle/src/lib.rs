@@ -7,6 +7,7 @@
 //! for one request ([`traffic`]). A turn begins when an answer arrives, or at the instant that the last step asked for.
 //! Only the station knows which kind of device is under test.
 
+mod answers;
 mod commission;
 mod event;
 mod jog_preview;
@@ -26,8 +27,7 @@ pub use lateness::Lateness;
 pub use snapshot::{Snapshot, snapshots};
 pub use traffic::LineEnds;
 
-use bus::{Answer, LineError, Pace, Timer};
-use dcon::Command;
+use bus::{Pace, Timer};
 pub use event::Event;
 use machine::guard::Guard;
 use machine::handling::NestId;
@@ -250,90 +250,6 @@ impl Cycle {
         self.traffic.note_time(now);
     }
 
-    fn take(&mut self, line: LineId, purpose: Purpose, answer: Answer) {
-        assert!(
-            answer.answered_at >= answer.requested_at,
-            "an answer precedes its request"
-        );
-        // Reading the reset status clears it, so the read cannot be repeated: when its reply is lost, the
-        // module may have restarted while it measured the part, and the part is void.
-        let is_status = matches!(
-            answer.command,
-            Command::Common(_, dcon::Common::ReadResetStatus)
-        );
-        let trouble = match &answer.outcome {
-            Ok(reply) => self
-                .image
-                .accept(
-                    line,
-                    &answer.command,
-                    reply,
-                    &answer.raw,
-                    answer.requested_at,
-                )
-                .err()
-                .map(|unexpected| format!("line {}: {unexpected}", self.wiring.line(line).name)),
-            Err(error) => Some(format!(
-                "{error} ({} of {} tries)",
-                answer.tries_used,
-                self.traffic.tries(line)
-            )),
-        };
-        let refused =
-            matches!(&answer.outcome, Err(LineError::Reply { reason, .. }) if reason.is_answer());
-        match (purpose, trouble) {
-            (Purpose::Write { module, job }, None) => {
-                self.outputs.confirmed(module);
-                self.timeouts.written(module);
-                self.finish_job(job, answer.answered_at, None);
-            }
-            // A module that refuses writes has a tripped host watchdog: its outputs are at their safe values.
-            (Purpose::Write { module, .. }, Some(_)) if self.making_safe && refused => {
-                self.outputs.confirmed(module);
-            }
-            (Purpose::Write { module, job }, Some(trouble)) => {
-                if self.timeouts.may_rewrite(module) {
-                    self.outputs.failed(module);
-                    if job {
-                        self.traffic.rewrite_for_job(module);
-                    }
-                } else {
-                    self.finish_job(job, answer.answered_at, Some(trouble.clone()));
-                    self.note_line_trouble(&answer, &trouble);
-                }
-            }
-            (Purpose::Job, trouble) => {
-                let trouble = match is_status {
-                    true => trouble.or(self.lost_status.take()),
-                    false => trouble,
-                };
-                if let Some(trouble) = trouble.as_ref().filter(|_| !refused && !is_status) {
-                    self.note_line_trouble(&answer, trouble);
-                }
-                self.finish_job(true, answer.answered_at, trouble);
-            }
-            (Purpose::Scan, Some(trouble)) => {
-                if is_status && self.is_measuring(line) {
-                    self.lost_status = Some(trouble.clone());
-                }
-                if let Some(times) = self.timeouts.scan_failed(line, &answer.command) {
-                    self.note_line_trouble(&answer, &format!("{trouble}, {times} times in a row"));
-                }
-            }
-            (Purpose::Scan, None) => self.timeouts.scan_answered(line, &answer.command),
-            (Purpose::Check, Some(trouble)) => {
-                self.note_line_trouble(&answer, &trouble);
-            }
-            (Purpose::Check | Purpose::Heartbeat, _) => {}
-        }
-    }
-
-    fn finish_job(&mut self, is_job: bool, at: RigTime, trouble: Option<String>) {
-        if is_job && let Some(done) = self.traffic.job_part_done(at, trouble) {
-            self.job_done = Some(done);
-        }
-    }
-
     fn step(&mut self, now: RigTime) -> TurnOutput {
         if let Some(requested_at) = self.image.input_at(DigitalIn::EmergencyStopOk) {
             self.worst_age = self.worst_age.max(now.since(requested_at));
@@ -438,30 +354,6 @@ impl Cycle {
         if let Err(needs) = self.outputs.set(point, on) {
             self.note_bus_trouble(&needs.to_string());
         }
-    }
-
-    /// Keeps the first bus trouble of the turn; the station learns it in its next step.
-    fn note_bus_trouble(&mut self, detail: &str) {
-        self.bus_alarm.get_or_insert_with(|| Alarm::bus(detail));
-    }
-
-    /// Keeps trouble with an answer as [`Cycle::note_bus_trouble`] does, or as lateness of this computer when that
-    /// explains a missing reply.
-    fn note_line_trouble(&mut self, answer: &Answer, detail: &str) {
-        let is_missing = matches!(answer.outcome, Err(LineError::TimeOut { .. }));
-        match self.host_late().filter(|_| is_missing) {
-            Some(late) => {
-                let alarm = || Alarm::host_late(detail, late);
-                self.bus_alarm.get_or_insert_with(alarm);
-            }
-            None => self.note_bus_trouble(detail),
-        }
-    }
-
-    /// Returns the lateness of this computer in the last seconds when it explains a missing reply.
-    fn host_late(&self) -> Option<Span> {
-        let recent = self.lateness.recent();
-        (recent >= self.wiring.explaining_lateness()).then_some(recent)
     }
 
     fn is_measuring(&self, line: LineId) -> bool {

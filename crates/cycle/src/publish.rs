@@ -3,7 +3,7 @@
 use super::{Cycle, Snapshot};
 use machine::dut::verdict::Bin;
 use machine::guard::{Actuator, Position};
-use machine::handling::ledger::{Kind, Part};
+use machine::handling::ledger::{Part, PartRole};
 use machine::handling::mechanism::SENSOR_AGE;
 use machine::rig::point::DigitalInput;
 use machine::station::Station;
@@ -208,8 +208,8 @@ fn places(station: &Station) -> BTreeMap<String, Token> {
 
 fn token(part: &Part) -> Token {
     let (kind, name) = match &part.kind {
-        Kind::Reference(serial) => ("golden", serial.clone()),
-        Kind::Lot(seq) => ("lot", seq.to_string()),
+        PartRole::Reference(serial) => ("golden", serial.clone()),
+        PartRole::Lot(seq) => ("lot", seq.to_string()),
     };
     Token {
         kind: kind.into(),

@@ -298,8 +298,7 @@ impl Filter {
         }
     }
 
-    /// Adds the conditions on `part`; with `by_value`, leaves out kind and verdict, which the index has already
-    /// restricted.
+    /// Adds the conditions on `part`; with `by_value`, without kind and verdict, which [`Self::values`] sets.
     fn part_conditions(&self, select: &mut Select, by_value: bool) {
         if !by_value {
             match self.kind.as_deref() {

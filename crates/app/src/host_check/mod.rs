@@ -66,12 +66,13 @@ pub fn run(
         let mut phases = Vec::new();
         for phase in Phase::ALL {
             let file = scratch.take_if(|_| phase == Phase::Loaded);
-            tokio::select! {
+            let result = tokio::select! {
                 biased;
                 () = interrupts.next() => return Ok(None),
-                result = test(phase, Span(span.0 / 2), &thread, file) => phases.push(result?),
-            }
-            phases.iter().last().map_or(Ok(()), &mut *ended)?;
+                result = test(phase, Span(span.0 / 2), &thread, file) => result?,
+            };
+            ended(&result)?;
+            phases.push(result);
         }
         Ok(Some(report(wiring, &thread, phases)))
     })

@@ -10,7 +10,7 @@ use crate::links::EepromCount;
 use bus::LineLog;
 use cycle::{Ended, Event};
 use machine::dut::{Bin, Reason, Verdict};
-use machine::handling::ledger::Kind;
+use machine::handling::ledger::PartRole;
 use machine::handling::output::{Interrupted, Judged, Landed};
 use machine::station::catalogue::Reaction;
 use machine::station::packml::State;
@@ -141,8 +141,8 @@ impl<'a> LotProgress<'a> {
     fn judged(&mut self, judged: &Judged) {
         let ordinal = judged.part.ordinal;
         match judged.part.kind {
-            Kind::Reference(_) => self.reference_count += 1,
-            Kind::Lot(_) => self.counts.add(judged.verdict.name()),
+            PartRole::Reference(_) => self.reference_count += 1,
+            PartRole::Lot(_) => self.counts.add(judged.verdict.name()),
         }
         let part = PartUnderWay {
             judged: Box::new(judged.clone()),
@@ -162,7 +162,7 @@ impl<'a> LotProgress<'a> {
         reasons.push(Reason::interrupted(&interrupted.why));
         let before = std::mem::replace(&mut part.judged.verdict, Verdict::Void(reasons));
         part.judged.part.bin = Some(Bin::RETEST);
-        if matches!(part.judged.part.kind, Kind::Lot(_)) {
+        if matches!(part.judged.part.kind, PartRole::Lot(_)) {
             self.counts.remove(before.name());
             self.counts.add("void");
         }
@@ -170,7 +170,7 @@ impl<'a> LotProgress<'a> {
 
     fn landed(&mut self, landed: &Landed) -> Option<LotEvent> {
         let part = self.under_way.remove(&landed.part.ordinal)?;
-        if matches!(landed.part.kind, Kind::Lot(_)) {
+        if matches!(landed.part.kind, PartRole::Lot(_)) {
             self.last_landed = Some(landed.at);
             *self.counts.bins.entry(landed.bin.to_string()).or_insert(0) += 1;
         }
