@@ -23,9 +23,9 @@ use tokio::sync::oneshot;
 use units::{RigTime, Span};
 
 /// Priority under SCHED_FIFO: above every usual process, below the threads of the kernel that serve interrupts' timers.
-const PRIORITY: u8 = 49;
-/// Interval of the bare loop, as cyclictest has it.
-const INTERVAL: Span = Span::ms(1);
+pub const PRIORITY: u8 = 49;
+/// Interval of the waits of a latency test, as cyclictest has it.
+pub const INTERVAL: Span = Span::ms(1);
 
 /// A thread whose runtime serves the lines and the cycle. Dropping it ends their tasks.
 pub struct RigThread {

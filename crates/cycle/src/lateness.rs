@@ -30,7 +30,7 @@ impl Lateness {
         }
         let late = now.since(until);
         self.all.add(late);
-        self.sum = self.sum + late;
+        self.sum += late;
         self.worst = self.worst.max(late);
         let age = now.since(self.window_began);
         if age > WINDOW {

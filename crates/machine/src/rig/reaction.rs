@@ -33,6 +33,8 @@ const LONGEST_DIGITAL_REPLY: u64 = 12;
 const TURNAROUND: u64 = 2;
 /// Characters of the longest reply of any module: eight readings of seven characters, with lead, checksum and CR.
 const LONGEST_ANALOG_REPLY: u64 = 60;
+/// Share of the digital allowance from which on lateness of the computer explains a missing reply.
+const EXPLAINS: f64 = 0.5;
 
 impl Wiring {
     /// Returns the line with the emergency-stop contact.
@@ -46,6 +48,18 @@ impl Wiring {
         let lines = moved.map(|point| self.module(self.digital_out(*point).module).line);
         let made_safe = lines.map(|line| self.longest_writing(line)).max();
         self.emergency_stop_max_age() + made_safe.unwrap_or_default()
+    }
+
+    /// Returns the time that is left between [`Wiring::longest_reaction`] and the reaction that the plant accepts. A wait
+    /// that ends late during the reaction lengthens it by at most its lateness.
+    pub fn reaction_slack(&self) -> Span {
+        let accepted = Span::seconds(self.safety.estop_reaction_ms / 1000.0);
+        Span(accepted.0.saturating_sub(self.longest_reaction().0))
+    }
+
+    /// Returns the lateness of the computer that explains a missing reply: half of what a digital module may take.
+    pub fn explaining_lateness(&self) -> Span {
+        Span::seconds(EXPLAINS * self.bus.digital_allowance_ms / 1000.0)
     }
 
     /// Returns the longest time from the decision to make the outputs safe until the last write on a line.
