@@ -9,6 +9,7 @@ pub mod config;
 #[cfg(feature = "sim")]
 pub mod demo;
 pub mod history;
+pub mod host;
 pub mod init;
 pub mod lot;
 mod output;
@@ -93,6 +94,9 @@ pub enum Command {
     /// Check the configuration, or print the schema of a file
     #[command(subcommand)]
     Config(config::Args),
+    /// Whether this computer keeps the rig's time
+    #[command(subcommand)]
+    Host(host::Args),
     /// Find modules, send one command, watch a line
     Bus(bus::BusArgs),
     /// Collision answers for a scene, no rig
@@ -160,6 +164,7 @@ impl Cli {
             }
             Command::Init(args) => init::run(&args),
             Command::Config(args) => config::run(config, &args),
+            Command::Host(args) => unless_pipe_closed(host::run(&files, &args)),
             Command::Bus(args) => bus::run(&args),
             Command::Check(args) => check::run(args),
             Command::History(args) => history::run(config, db, args),

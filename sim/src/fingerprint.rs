@@ -222,7 +222,7 @@ fn spec(address: u8) -> Result<ModuleSpec, SimError> {
     })
 }
 
-/// Signals at the terminals of the line.
+/// Signals at the terminals of the line, which identify module and channel.
 struct Fingerprints {
     now_us: u64,
     outputs: Outputs,

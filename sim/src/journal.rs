@@ -72,9 +72,9 @@ pub(crate) struct JournaledWorld {
 /// Replies that this computer made late, in real time.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct LateReplies {
-    /// Number of them.
+    /// Number of late replies.
     pub count: u64,
-    /// Lateness of the latest, microseconds.
+    /// Lateness of the most delayed reply, microseconds.
     pub worst_us: u64,
 }
 

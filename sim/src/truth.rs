@@ -76,11 +76,11 @@ pub struct PartTruth {
     pub operate_bounce_ms: Option<f64>,
     /// Open time of NC after its first make in the last full-voltage release, ms.
     pub release_bounce_ms: Option<f64>,
-    /// Mean over the closures of NO that carried the source's current, milliohm.
+    /// Mean resistance over the closures of NO that carried the source's current, milliohm.
     pub contact_resistance_no_mohm: Option<f64>,
-    /// Mean over the closures of NC that carried the source's current, milliohm.
+    /// Mean resistance over the closures of NC that carried the source's current, milliohm.
     pub contact_resistance_nc_mohm: Option<f64>,
-    /// Resistance of a dummy at the reference temperature, ohm; `None` for an open one. Relays omit this key.
+    /// Resistance of a resistor dummy at the reference temperature, ohm; `None` for an open one. Relays omit this key.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub resistance_ohm: Option<f64>,
     /// Number of full-voltage operations of a relay, from rest to the first make of NO. Dummies omit this key.
@@ -90,8 +90,8 @@ pub struct PartTruth {
     pub defect: Option<&'static str>,
     /// Bin in which the body came to rest.
     pub landed_in: Option<String>,
-    /// Rig time that the motion of the relay has spent on each level: held in equilibrium, or all five states
-    /// integrated.
+    /// Rig time for which the relay's motion was computed at each level of detail: held in equilibrium, or all five
+    /// states integrated.
     pub levels: Levels,
 }
 

@@ -33,7 +33,7 @@ impl Plug {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = stream;
     }
 
-    /// Checks whether another clone of the plug exists, so that a host may still open it.
+    /// Checks whether another clone of the plug exists, so that a host may still open the stream.
     fn is_held(&self) -> bool {
         Arc::strong_count(&self.0) > 1
     }

@@ -250,6 +250,34 @@ fn an_imported_file_comes_back_in_statistics_and_query() {
 }
 
 #[test]
+fn a_host_check_answers_and_leaves_no_file() {
+    let workshop = Workshop::new("host-check");
+    for seconds in ["0", "3601", "ten"] {
+        let said = workshop.run(&format!("host check --seconds {seconds}"));
+        assert_eq!(said.with_status(2).stdout, "");
+    }
+    let said = workshop.run("host check --seconds 1 --plot late.svg --json");
+    let (phases, others): (Vec<Value>, Vec<Value>) = said
+        .objects()
+        .into_iter()
+        .partition(|it| it["type"] == "phase");
+    let names: Vec<&Value> = phases.iter().map(|it| &it["phase"]).collect();
+    assert_eq!(names, ["as_it_is", "loaded"]);
+    assert!(
+        phases
+            .iter()
+            .all(|it| it["lateness"]["waits"].as_u64() > Some(0))
+    );
+    let verdict = others.last().unwrap();
+    let is_kept = verdict["is_kept"].as_bool().unwrap();
+    assert_eq!(said.status, i32::from(!is_kept), "{said}");
+    let left = std::fs::read_dir(&workshop.folder).unwrap();
+    let mut left: Vec<_> = left.map(|it| it.unwrap().file_name()).collect();
+    left.sort();
+    assert_eq!(left, ["config", "late.svg"]);
+}
+
+#[test]
 fn a_move_is_answered_by_the_exit_status() {
     let workshop = Workshop::new("check");
     let cylinder = r#"{"units": "mm",

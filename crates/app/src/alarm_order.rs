@@ -1,4 +1,5 @@
-//! Acknowledges or shelves alarms that ended runs left, when a person orders it; the audit keeps order and name.
+//! Acknowledges or shelves alarms of runs that have ended, when a person orders it; the audit keeps the order with the
+//! person's name.
 
 use anyhow::bail;
 use history::{AlarmChange, AlarmChangeRecord, OrderRecord, Row, Store};
@@ -6,7 +7,7 @@ use machine::station::orders::shelf_minutes;
 use machine::view::{By, Order};
 use serde_json::json;
 
-/// Writes an order about alarms, and the change that the order makes to them.
+/// Writes an order about alarms into the history, with the change that it makes to them.
 ///
 /// # Errors
 /// Fails when no unacknowledged alarm has this code, or when the history cannot be written.

@@ -20,9 +20,9 @@ pub struct MoveAnswer<'a> {
     pub blocker: Option<&'a str>,
     /// Least distance over the whole move, mm; `None` when it exceeds the range of the search.
     pub clearance_mm: Option<f64>,
-    /// Point of the contact, mm.
+    /// Nearest point of the blocker at `t_stop`, mm.
     pub at: Option<[f64; 3]>,
-    /// Unit normal of the contact.
+    /// Unit vector from the blocker to the mover at `t_stop`.
     pub normal: Option<[f64; 3]>,
 }
 

@@ -38,7 +38,7 @@ fn note(db: &Path, filter: &Filter, file: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Whole-copied runs of a history that ended at least a given number of days ago.
+/// Runs of a history that were copied whole and ended at least a given number of days ago.
 pub struct OldRuns {
     store: Store,
     now_us: i64,

@@ -1,6 +1,6 @@
 //! Reasons why a command ends, with their exit status, and the cause of exit status 3.
 //!
-//! The cause of a run travels through these files:
+//! The cause with which a run ends passes through these files:
 //!
 //! - chosen in `lot/mod.rs` and `service/mod.rs` (lost history, failed assertion), `lot/progress.rs` (the alarm, or an
 //!   order), `lib.rs` (the rig refuses the lot before it begins; `admission.rs` makes its row) and
@@ -42,7 +42,7 @@ impl Exit {
         }
     }
 
-    /// Returns the trouble; `None` for every other end.
+    /// Returns the cause of trouble; `None` for every other end.
     pub const fn cause(&self) -> Option<&Cause> {
         match self {
             Self::Trouble(cause) => Some(cause),
@@ -80,7 +80,7 @@ impl Cause {
         }
     }
 
-    /// `aborted`: a person ordered the abort or the suspension while no alarm did.
+    /// `aborted`: a person ordered the abort or the suspension; no alarm caused it.
     pub fn aborted() -> Self {
         Self::new("aborted", "an order aborted the run")
     }

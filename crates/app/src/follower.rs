@@ -84,12 +84,12 @@ pub enum UpdateContent {
     Message(Message),
 }
 
-/// Last message reported, by name of the line.
+/// Last message delivered to the caller, by name of the line.
 #[derive(Debug, Default)]
 struct Delivered(BTreeMap<String, Message>);
 
 impl Delivered {
-    /// Returns the messages after the last reported ones, oldest first.
+    /// Returns the messages that are new since the last call, with a gap where some passed unseen; oldest first.
     fn news(&mut self, lines: Vec<Line>) -> Vec<Update> {
         let mut news = Vec::new();
         for Line { line, entries } in lines {

@@ -9,6 +9,7 @@
 //! | [`admission`] | checks before a lot may run |
 //! | [`lot`] | a run: one stream of events and its subscribers |
 //! | [`real_time`] | the thread of the lines and the cycle |
+//! | [`host_check`] | whether this computer keeps the rig's time |
 //! | [`exit`] | reasons why a run ends |
 //! | [`service`] | one lot after another, ordered at a page |
 //! | [`calibration`], [`gauge_study`] | runs that measure the rig itself |
@@ -24,6 +25,7 @@ pub mod exit;
 pub mod follower;
 pub mod gauge_study;
 pub mod generate;
+pub mod host_check;
 pub mod import;
 pub mod links;
 pub mod lot;

@@ -59,7 +59,7 @@ impl Lines {
         Box::new(|| None)
     }
 
-    /// Writes the truth file of a simulated rig; logs collisions and overdriven coils.
+    /// Finishes a run on a simulated rig: writes its truth file, logs collisions, late replies and overdriven coils.
     ///
     /// # Errors
     /// Fails when the file cannot be written.

@@ -23,15 +23,15 @@ use tokio::sync::oneshot;
 use units::{RigTime, Span};
 
 /// Priority under SCHED_FIFO: above every usual process, below the threads of the kernel that serve interrupts' timers.
-const PRIORITY: u8 = 49;
-/// Interval of the bare loop, as cyclictest has it.
-const INTERVAL: Span = Span::ms(1);
+pub const PRIORITY: u8 = 49;
+/// Interval of the waits of a latency test, as cyclictest has it.
+pub const INTERVAL: Span = Span::ms(1);
 
 /// A thread whose runtime serves the lines and the cycle. Dropping it ends their tasks.
 pub struct RigThread {
     /// Spawns tasks onto the thread.
     pub handle: Handle,
-    /// What the system grants; its lateness is empty.
+    /// Rights that the system grants the thread; the view's lateness is empty.
     pub rights: HostView,
     own: Option<(oneshot::Sender<()>, JoinHandle<()>)>,
 }
@@ -57,7 +57,7 @@ impl RigThread {
         let (told, rights) = std::sync::mpsc::sync_channel(1);
         let (stop, stopped) = oneshot::channel();
         let serve = move || {
-            // The receiver waits below.
+            // `start` waits for it below, so the channel is open.
             let _ = told.send(raise());
             let _ = runtime.block_on(stopped);
         };
@@ -148,7 +148,8 @@ fn log(rights: &HostView) {
     tracing::warn!("no real-time rights ({why}): a busy computer may delay the rig");
 }
 
-/// A bare loop of sleeps under SCHED_FIFO beside the rig: what this computer does to a program that does nothing else.
+/// A thread that only sleeps, under SCHED_FIFO, beside the rig: shows how late this computer wakes the simplest
+/// program.
 pub struct BareLoop {
     stop: Arc<AtomicBool>,
     thread: JoinHandle<Lateness>,
@@ -164,7 +165,7 @@ impl BareLoop {
         let stopped = Arc::clone(&stop);
         let thread = std::thread::Builder::new().name("bare loop".into());
         let thread = thread.spawn(move || {
-            // Without the right the loop shows what a usual thread suffers.
+            // Without the right the loop measures a thread of usual priority.
             let _ = raise_thread();
             bare_loop(&stopped)
         });

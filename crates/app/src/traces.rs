@@ -5,7 +5,7 @@ use config::Plant;
 use machine::view::{LineTraffic, LineView, Message, ModuleView};
 use std::path::{Path, PathBuf};
 
-/// Most traces per line and run; the first alarms tell the most.
+/// Largest number of traces per line and run; the first alarms explain the most.
 const MAX_TRACES: usize = 8;
 
 #[derive(Debug, Clone)]

@@ -1,8 +1,8 @@
 //! The full storm of line faults: `cargo bench -p bus --bench line_storm [-- TRANSACTIONS [SEED] [FAULT=VALUE]...]`.
 //!
-//! Counts the readings that the line accepts and that are wrong; ends with status 1 when there is one. Prints, beside
-//! the counts, how many wrong readings to expect: two modules that reply at once produce, with a small probability, a
-//! frame whose checksum is right. When no fault is named, every fault has a probability of 1 %.
+//! Counts the wrong readings that the line accepts; ends with status 1 when there is one. Prints beside them how many
+//! wrong readings to expect: two modules that reply at once produce, with a small probability, a frame whose checksum
+//! is right. When no fault is named, every fault has a probability of 1 %.
 
 #[path = "../../../tests/line/storm/rage.rs"]
 mod rage;
@@ -14,9 +14,9 @@ use std::process::ExitCode;
 
 /// Number of transactions, none of which may give a wrong reading.
 const TRANSACTIONS: u64 = 1_000_000;
-/// Number of times that two simultaneous replies are drawn, to find how often they pass for one reply.
+/// Number of clashes (pairs of simultaneous replies) that are drawn, to find how often two replies pass for one.
 const CLASHES: u32 = 4_000_000;
-/// Share of the transactions, 0 to 1, that read all inputs at once.
+/// Share of the transactions, 0 to 1, that read a list: all inputs at once.
 const LISTS: f64 = 1.0 / 20.0;
 const FORM: InputForm = InputForm::eight(DataFormat::Hex, TypeCode(0x08));
 /// Faults whose damage a host can detect.
@@ -60,9 +60,9 @@ fn print_counts(weather: &Weather) {
     );
 }
 
-/// Prints how many wrong readings among n transactions no host can detect. Shares, 0 to 1: c of transactions with two
-/// replies at once; p of these that pass for another value; d of damage that the host detects; q of reads of all inputs
-/// at once that pass within the noise of the reads before and after.
+/// Prints how many wrong readings among n transactions no host can detect. Shares, 0 to 1: c of the transactions with
+/// two replies at once; p of such pairs that pass for another value; q of such pairs, at a read of all inputs, that
+/// pass within the noise of the reads before and after; d of the replies with damage that a host detects.
 fn print_expected(n: f64, faults: &[&str]) {
     let channel = Channel::new(0).expect("0 is a channel");
     let (p, _) = passing(
@@ -116,8 +116,8 @@ fn chance(faults: &[&str], name: &str) -> f64 {
     value.unwrap_or(0.0)
 }
 
-/// Draws replies of `digits` digits that overlap with a second reply. Returns two shares of them: those that decode as
-/// another value, and those that moreover lie so near to two intact replies that the line accepts them.
+/// Draws replies of `digits` digits that overlap with a second reply. Returns the share that passes for another value,
+/// and the share that also lies so near to the reads before and after that the line accepts it.
 fn passing(read: AnalogIn, digits: usize) -> (f64, f64) {
     let command = read.to(Address(1));
     let mut faults = LineFaults::none(1);

@@ -12,7 +12,8 @@ pub struct Request {
     pub ticket: u64,
     /// The command to send.
     pub command: Command,
-    /// Most tries, the first one included; at least 1. A command that changes something is sent only once.
+    /// Greatest number of tries, the first one included; at least 1. A command that changes something is sent only
+    /// once.
     pub tries: u8,
 }
 
@@ -95,7 +96,7 @@ pub enum LineError {
         /// Command that was sent.
         command: Command,
     },
-    /// A module sent without a request, so the line had not fallen silent since earlier trouble; nothing was sent.
+    /// Bytes kept arriving without a request since earlier trouble, so the line did not send the command.
     #[error("line {line}, {command}: not sent, the line never falls silent")]
     NeverSilent {
         /// Name of the line.

@@ -71,7 +71,7 @@ impl Frame {
     }
 }
 
-/// What came back when the line asked a module for its name.
+/// Outcome of asking a module for its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Identification {
     /// True when the module answered.
@@ -234,7 +234,8 @@ impl Exchange<'_> {
     pub(super) async fn discard(&mut self) -> io::Result<usize> {
         let mut piece = [0; 2 * FRAME_LIMIT];
         let mut total = 0;
-        // Bounded, because a module that sends without pause could fill the buffer as fast as this loop empties it.
+        // The loop is bounded, because a module that sends without pause could fill the buffer as fast as it is
+        // emptied.
         for _ in 0..FRAME_LIMIT {
             let count = match self.read_now(&mut piece).await? {
                 None => break,
@@ -258,7 +259,8 @@ impl Exchange<'_> {
                 Poll::Pending => Ok(None),
             })
         });
-        // Outside tokio's cooperative budget, because within it `Pending` may only mean that other tasks run first.
+        // Reads outside tokio's cooperative budget, because within it `Pending` may only mean that other tasks run
+        // first.
         tokio::task::unconstrained(read).await
     }
 

@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 #[derive(Clone, Default)]
 pub struct LineLog {
     records: Arc<Mutex<Records>>,
-    /// Changes that found the records locked, oldest first; only the writer locks them.
+    /// Changes that found the records locked, oldest first; only the writing task locks this list.
     deferred: Arc<Mutex<Vec<Change>>>,
 }
 
@@ -46,7 +46,7 @@ impl LineLog {
         self.records().trace.fingerprint()
     }
 
-    /// Returns a copy of the counts of each module.
+    /// Returns a copy of the health of the modules: their counts and latencies.
     pub fn health(&self) -> Health {
         self.records().health.clone()
     }

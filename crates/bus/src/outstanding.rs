@@ -31,12 +31,12 @@ pub(super) fn identification(to: Address) -> Command {
     IDENTIFICATIONS[0].to(to)
 }
 
-/// Requests without an answer, oldest first, each with the time at which it is dropped.
+/// Replies that may still arrive: their requests, oldest first, each with the time at which it is dropped.
 #[derive(Debug, Default)]
 pub(super) struct OutstandingReplies(Vec<(Command, RigTime)>);
 
 impl OutstandingReplies {
-    /// Adds `command`, which has no answer at the time `now`.
+    /// Adds the reply to `command`, which had not arrived by the time `now`.
     pub(super) fn add(&mut self, command: Command, now: RigTime) {
         self.0.retain(|(_, until)| *until > now);
         let latest = self.0.last().map(|(_, until)| *until);

@@ -16,9 +16,9 @@ pub struct Pace {
     is_virtual: bool,
 }
 
-/// How much earlier a wait at real pace wakes, to sleep the rest on the thread: tokio's timer may be this late.
+/// Greatest lateness of tokio's timer; for this last part of a wait, [`Pace::rest_until`] blocks the thread instead.
 const FINE: Span = Span(2_000);
-/// Rig time from one pause to the next when virtual time is slowed to the wall clock: half the time of a screen frame.
+/// Rig time between two pauses by which [`Pace::limit_speed`] slows virtual time: half the time of a screen frame.
 const HOLD: Span = Span(10_000);
 
 impl Pace {
@@ -70,8 +70,8 @@ impl Pace {
         }
     }
 
-    /// Waits as [`Pace::sleep_until`] does, but at real pace to about 0.1 ms, because the last two milliseconds block
-    /// the thread. Serves for turnarounds.
+    /// Waits as [`Pace::sleep_until`] does, but at real pace is late by only some 0.1 ms, because it blocks the thread
+    /// for the last two milliseconds. Serves for turnarounds.
     pub async fn rest_until(&self, until: RigTime) {
         if self.is_virtual {
             return self.sleep_until(until).await;

@@ -1,4 +1,4 @@
-//! Sends one raw frame, for tools. The command is not known here, so nothing is repeated or checked.
+//! Sends one raw frame, for tools. It may hold any command, so nothing is repeated or checked.
 
 use super::exchange::{Exchange, Frame, FrameEnd};
 use super::{LineSettings, Pace, Port};
@@ -17,7 +17,7 @@ pub struct RawReply {
     pub taken: Span,
 }
 
-/// Sends `request`, which must include its CR, and waits for a frame as long as the slowest module may take.
+/// Sends `request`, which must include its CR, and waits for one frame, for as long as the slowest module may take.
 ///
 /// # Errors
 /// Fails when the port does.

@@ -27,7 +27,7 @@ pub struct Recorded {
     pub entries: Vec<Entry>,
 }
 
-/// Error: a text is not a trace.
+/// Reason why a text is not a recorded trace.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("line {row}: found \"{found}\", expected {expected}")]
 pub struct RecordedError {
@@ -40,7 +40,7 @@ pub struct RecordedError {
 }
 
 impl Recorded {
-    /// Takes the entries of `trace`, and stores these settings with them.
+    /// Creates a recording of `trace` with the settings of its line.
     pub fn of(trace: &Trace, line: &str, baud: u32, checksum: bool) -> Self {
         Self {
             line: line.to_owned(),

@@ -22,7 +22,7 @@ pub struct LineSettings {
     pub store_allowance_ms: u64,
     /// Time after the time-out during which a late reply may still begin; part of the silence required after trouble.
     pub late_reply_ms: u64,
-    /// Rest between a reply and the next request, in times of one character.
+    /// Pause between a reply and the next request, in times of one character.
     pub turnaround_characters: u8,
     /// Wait before the first attempt to reopen a lost port; it doubles with each failure.
     pub reopen_first_ms: u64,
@@ -50,12 +50,12 @@ impl LineSettings {
         }
     }
 
-    /// Returns the speed of the line, which gives the time of characters.
+    /// Returns the speed of the line, from which follows the time of characters on the wire.
     pub fn wire(&self) -> Wire {
         Wire { baud: self.baud }
     }
 
-    /// Returns the rest between frames.
+    /// Returns the pause between a reply and the next request.
     pub fn turnaround(&self) -> Span {
         self.wire().time(usize::from(self.turnaround_characters))
     }
@@ -65,7 +65,7 @@ impl LineSettings {
         self.request_time(command) + self.reply_limit(command)
     }
 
-    /// Returns the same time for a request whose number of characters is known.
+    /// Returns the time-out of `command` when its request has `request_characters` characters.
     pub(super) fn time_out_of(&self, command: &Command, request_characters: usize) -> Span {
         self.wire().time(request_characters) + self.reply_limit(command)
     }

@@ -19,7 +19,7 @@ mod steps;
 /// One piece of a module's reply: its delay after the request, microseconds, and its bytes.
 type Say = (u64, &'static [u8]);
 
-/// The reply `>0000001E` with its checksum: the count 30. Below: another count.
+/// Reply with the count 30 (hexadecimal 1E) and its checksum; `NINE` is the reply with the count 9.
 const THIRTY: &[u8] = b">0000001ED4\r";
 const NINE: &[u8] = b">00000009C7\r";
 
@@ -45,8 +45,8 @@ fn in_virtual_time<F: Future>(test: F) -> F::Output {
         .block_on(test)
 }
 
-/// Answers the n-th request with the n-th entry of `script`; leaves later requests unanswered. A request for its name
-/// it answers after all other bytes; neither `script` nor the returned requests contain those.
+/// Answers the n-th request with the n-th entry of `script`; leaves later requests unanswered. Answers a request for
+/// the name after all earlier bytes; such a request has no entry in `script` and is not returned.
 async fn modules(mut stream: DuplexStream, pace: Pace, script: Vec<Vec<Say>>) -> Vec<String> {
     let mut sent = Vec::new();
     let mut script = script.into_iter();
@@ -312,7 +312,7 @@ fn a_line_that_never_falls_silent_gets_no_request() {
         .iter()
         .filter(|a| matches!(a.outcome, Err(LineError::NeverSilent { .. })))
         .count();
-    // After the stray bytes the line asks each of the others twice.
+    // After the stray bytes the line reads each count that it does request twice.
     assert!(unsent > 0 && sent.len() < 2 * (10 - unsent), "{sent:?}");
     for pair in got.windows(2) {
         assert!(

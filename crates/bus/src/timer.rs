@@ -28,8 +28,8 @@ impl Timer {
         }
     }
 
-    /// Waits until `until`; returns at once if that time has passed. A dropped wait leaves nothing behind. Panics outside
-    /// a tokio runtime with I/O, and in another runtime than the first wait.
+    /// Waits until `until`; returns at once if that time has passed. A dropped wait leaves nothing behind. Panics
+    /// outside a tokio runtime with I/O, and in another runtime than that of the first wait.
     pub async fn until(&self, until: RigTime) {
         let now = self.pace.now();
         if now >= until {
@@ -44,7 +44,7 @@ impl Timer {
     }
 }
 
-/// A timer of the kernel reads like a pipe: as soon as it has fired, it has eight bytes.
+/// Creates a timer of the kernel. It reads like a pipe: as soon as it has fired, eight bytes wait in it.
 fn kernel_timer() -> io::Result<Receiver> {
     let flags = TimerfdFlags::NONBLOCK | TimerfdFlags::CLOEXEC;
     let fd = timerfd_create(TimerfdClockId::Monotonic, flags)?;
@@ -70,7 +70,7 @@ fn arm(fd: &Receiver, us: u64) -> io::Result<()> {
 }
 
 async fn fired(fd: &Receiver) {
-    // An error would come at every call; the task then goes on, early rather than never.
+    // After an error, which every later call would return too, the task goes on: early rather than never.
     while fd.readable().await.is_ok() {
         match fd.try_read(&mut [0; 8]) {
             Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}

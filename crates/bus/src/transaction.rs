@@ -1,4 +1,4 @@
-//! One transaction on an open port, with the rest, the confirmation and the resynchronisation that belong to it.
+//! One transaction on an open port, with its turnaround, its confirmation and the resynchronisation after trouble.
 //!
 //! A late reply (one to an earlier request, which timed out) is dropped in three places:
 //!
@@ -52,7 +52,7 @@ pub(super) struct Times {
     pub(super) answered_at: Option<RigTime>,
 }
 
-/// A port, with what the line remembers about its modules.
+/// What a transaction works on: an open port, and what the line remembers about its modules.
 pub(super) struct Transaction<'a> {
     pub(super) exchange: Exchange<'a>,
     pub(super) settings: &'a LineSettings,
@@ -224,7 +224,8 @@ impl Transaction<'_> {
         Ok(self.exchange.discard().await? == 0)
     }
 
-    /// Returns true when the module repeats its reply and then names itself, with no other bytes in between.
+    /// Returns true when the module confirms its reply: it repeats it and then names itself, with no other bytes in
+    /// between.
     async fn confirm(
         &mut self,
         command: &Command,

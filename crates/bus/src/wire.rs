@@ -5,7 +5,7 @@ use units::Span;
 /// Bits of a character: one start, eight data, one stop.
 const BITS: u64 = 10;
 
-/// Speed of a line.
+/// Speed of a line, which gives the time of characters on the wire.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Wire {
     /// Bits per second; 0 counts as 1.

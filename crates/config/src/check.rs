@@ -197,7 +197,8 @@ impl File {
         }
     }
 
-    /// Reports each of `needed` that is missing, except where an unknown name resembles it, which is reported already.
+    /// Reports each missing name of `needed`, except one that an unknown name resembles: that typing error is reported
+    /// already.
     fn needed<'a>(
         &self,
         path: &str,
@@ -261,7 +262,7 @@ impl File {
     }
 }
 
-/// Returns the unknown name among `entries` that resembles `missing`.
+/// Returns the name among `entries` that is unknown and, by a slip of typing, resembles `missing`.
 fn slip<'a>(entries: &'a [(String, Node)], names: &[&str], missing: &str) -> Option<&'a str> {
     let mut others = entries.iter().map(|(name, _)| name.as_str());
     others.find(|name| !names.contains(name) && nearest(name, &[missing]).is_some())

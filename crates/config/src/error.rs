@@ -59,7 +59,7 @@ pub enum ConfigError {
         file: PathBuf,
         /// Line of the key, from 1.
         line: usize,
-        /// Message of that module: key, found, expected.
+        /// Message of the module that owns the settings: key, found, expected.
         problem: String,
     },
     /// No recipe has this name.

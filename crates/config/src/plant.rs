@@ -1,4 +1,4 @@
-//! Loads everything that does not depend on the recipe.
+//! Loads the configuration of a plant, all but its recipes.
 
 use super::check::File;
 use super::error::ConfigError;
@@ -59,7 +59,7 @@ impl Default for HistorySettings {
     }
 }
 
-/// The sections of `rig.toml` that belong to measuring, and the history.
+/// The sections of `rig.toml` about measuring, and the one about the history.
 #[derive(Deserialize)]
 struct GaugeSections {
     #[serde(default)]

@@ -31,7 +31,7 @@ pub enum Entry {
     Text,
     /// One of these words.
     Choice {
-        /// The words.
+        /// The accepted words.
         words: &'static [&'static str],
     },
     /// A number.

@@ -8,9 +8,6 @@ use machine::rig::wiring::LineId;
 use machine::station::trouble::Alarm;
 use units::{RigTime, Span};
 
-/// Share of the allowance for a late reply from which on the lateness of this computer explains a missing one.
-const EXPLAINS: f64 = 0.5;
-
 impl Cycle {
     /// Stores an answer in the process image, and notes the trouble that it shows.
     pub(super) fn take(&mut self, line: LineId, purpose: Purpose, answer: Answer) {
@@ -102,8 +99,8 @@ impl Cycle {
         self.bus_alarm.get_or_insert_with(|| Alarm::bus(detail));
     }
 
-    /// Keeps trouble with an answer as [`Cycle::note_bus_trouble`] does, or as lateness of this computer when that
-    /// explains a missing reply.
+    /// Keeps trouble with an answer as [`Cycle::note_bus_trouble`] does, but as an alarm about this computer when its
+    /// lateness explains a missing reply.
     fn note_line_trouble(&mut self, answer: &Answer, detail: &str) {
         let is_missing = matches!(answer.outcome, Err(LineError::TimeOut { .. }));
         match self.host_late().filter(|_| is_missing) {
@@ -115,10 +112,9 @@ impl Cycle {
         }
     }
 
-    /// Returns the lateness of this computer in the last seconds when it takes half of what a reply may be late, or more.
+    /// Returns the lateness of this computer in the last seconds when it explains a missing reply.
     pub(super) fn host_late(&self) -> Option<Span> {
-        let allowed_ms = self.wiring.bus.digital_allowance_ms;
         let recent = self.lateness.recent();
-        (recent.as_seconds() * 1e3 >= EXPLAINS * allowed_ms).then_some(recent)
+        (recent >= self.wiring.explaining_lateness()).then_some(recent)
     }
 }

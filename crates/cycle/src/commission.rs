@@ -1,5 +1,6 @@
 //! Compares the name and the settings of every module with the wiring, before anything moves. The outputs are still
-//! safe, so no emergency stop has to be seen in time, and a request may be repeated as often as the bus settings allow.
+//! safe, so the emergency stop need not be polled yet, and a request may be repeated as often as the bus settings
+//! allow.
 
 use super::traffic::{Purpose, Traffic};
 use bus::Pace;
@@ -22,12 +23,12 @@ struct Leftover {
 enum Setting {
     /// The host watchdog has tripped: the outputs are at their safe values and the watchdog is off.
     Tripped,
-    /// The analog input module still reads only the channels of the references.
+    /// The analog input module still converts only the channels that a calibration reads.
     Masked,
 }
 
-/// Reads all settings, on all lines in parallel; returns the first mismatch or the first silent module as an alarm.
-/// Restores the settings that an interrupted run of the controller left behind, and logs each.
+/// Reads all settings, on all lines in parallel; fails with an alarm at the first mismatch or silent module. Restores
+/// the settings that an interrupted run of the controller left behind; returns alarms that name their modules.
 pub async fn verify(
     wiring: &Wiring,
     pace: &Pace,
@@ -108,7 +109,7 @@ fn leftover(wiring: &Wiring, module: ModuleId, mismatch: &Mismatch) -> Option<Le
     })
 }
 
-/// Sends every request once and returns the leftovers found.
+/// Requests every name and setting once; returns the leftovers, or an alarm about any other mismatch.
 async fn ask(wiring: &Wiring, pace: &Pace, traffic: &mut Traffic) -> Result<Vec<Leftover>, Alarm> {
     let mut all: Vec<Leftover> = Vec::new();
     let checks = verification(wiring);

@@ -37,7 +37,8 @@ pub enum Event {
     Checked(Checked, RigTime),
     /// The station answered an order, at this rig time.
     Ordered(Box<AnsweredOrder>, RigTime),
-    /// Parts moved inside the machine: contents for the next run, and use counts of the wearing parts since the start.
+    /// Parts moved inside the machine: its contents, and the use counts of the wearing parts since the start of the
+    /// run.
     Inside(Inside, Uses),
     /// The lot itself began, after calibration and reference parts, at this rig time.
     LotBegan(RigTime),

@@ -6,9 +6,9 @@ use units::{RigTime, Span};
 
 /// Length of a window; [`Lateness::recent`] looks at the current window and the one before.
 const WINDOW: Span = Span::ms(1_000);
-/// Upper edge of the first bucket of a view; each further edge is twice the one before.
+/// Upper edge of the first bucket of a [`LatenessView`]; each further edge is twice the one before.
 const FIRST_EDGE: Span = Span(64);
-/// Number of buckets of a view; the last edge is 2.1 s.
+/// Number of buckets of a [`LatenessView`]; the last edge is 2.1 s.
 const BUCKETS: u32 = 16;
 
 /// Lateness of all waits of a run, and the worst of the last seconds.
@@ -30,7 +30,7 @@ impl Lateness {
         }
         let late = now.since(until);
         self.all.add(late);
-        self.sum = self.sum + late;
+        self.sum += late;
         self.worst = self.worst.max(late);
         let age = now.since(self.window_began);
         if age > WINDOW {
@@ -50,10 +50,10 @@ impl Lateness {
         self.windows[0].max(self.windows[1])
     }
 
-    /// Returns the figures for screens and metrics.
+    /// Returns percentiles, worst values and buckets for screens and metrics.
     pub fn view(&self) -> LatenessView {
         let ms = |span: Span| span.as_seconds() * 1e3;
-        // A percentile is the upper edge of its class, which may lie above the worst value.
+        // A percentile is the upper edge of its bucket, which may lie above the worst value.
         let at = |share| {
             ms(self
                 .all

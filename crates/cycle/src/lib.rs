@@ -83,11 +83,11 @@ pub struct CycleLinks {
 /// How a run of the cycle ended.
 #[derive(Debug)]
 pub struct Ended {
-    /// Way in which it ended.
+    /// Way in which the run ended.
     pub ending: Ending,
-    /// Wall time of the phases of its turns.
+    /// Wall time of the phases of the turns.
     pub profile: Profile,
-    /// How late this computer woke it.
+    /// How late this computer woke the cycle.
     pub lateness: Lateness,
 }
 
@@ -387,7 +387,7 @@ impl Cycle {
         }
     }
 
-    /// Returns the first instant at which the state of the emergency-stop contact is too old to be known.
+    /// Returns the first instant at which the last poll of the emergency-stop contact is too old; `None` once it is.
     fn contact_unknown(&self, now: RigTime) -> Option<RigTime> {
         let until = self.image.emergency_stop_known_until()?;
         (until >= now).then_some(until + Span(1))

@@ -19,7 +19,7 @@ use units::{RigTime, Span};
 /// Shortest time between two views.
 pub const PACE: Span = Span::ms(50);
 
-/// Parses an order; an error says which word it has and which words are known.
+/// Parses an order; the error about an unknown word names it and the known ones.
 pub fn read(order: &view::Order) -> Result<Order, Refused> {
     let expected = |member, known: Vec<&'static str>, found: Option<&str>| Refused::UnknownWord {
         member,
@@ -66,7 +66,7 @@ pub fn read(order: &view::Order) -> Result<Order, Refused> {
 }
 
 impl Cycle {
-    /// Sends a snapshot at most once per [`PACE`], and only on a rig with a screen.
+    /// Sends a snapshot at most once per [`PACE`], the `last` one at any time; none on a rig without a screen.
     pub(super) fn publish(&mut self, now: RigTime, last: bool) {
         let Some(snapshots) = self.links.snapshots.clone() else {
             return;
@@ -80,7 +80,7 @@ impl Cycle {
         let station = &self.station;
         let (activity, ledger) = (station.activity(), station.ledger());
         let in_lot = !station.is_between_lots();
-        // When no snapshot can wait, screens lag behind; the rig does not.
+        // A full channel drops the snapshot: screens lag behind, the rig does not.
         let _ = snapshots.try_send(Snapshot {
             at_us: jiff::Timestamp::now().as_microsecond(),
             state: activity.name(),
@@ -229,7 +229,7 @@ fn lines(station: &Station, epoch_us: i64) -> Vec<AlarmLine> {
         .collect()
 }
 
-/// Returns an alarm as pages show it.
+/// Returns an alarm as one line of the alarm list on pages.
 pub fn line(one: &ListedAlarm, epoch_us: i64) -> AlarmLine {
     let alarm = &one.alarm;
     let help = |lang| alarm.code.help(lang).map(str::to_owned);

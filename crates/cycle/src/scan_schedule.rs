@@ -7,7 +7,7 @@
 
 use dcon::Command;
 
-/// One transaction in this many, polls of the contact not counted, reads the reset status of a module.
+/// One transaction in this many, polls of the emergency-stop contact not counted, reads the reset status of a module.
 const RESET_EVERY: usize = 16;
 
 /// Schedule of the scan of one line.
@@ -19,7 +19,7 @@ pub(super) struct ScanSchedule {
     others: Vec<Command>,
     /// Commands that read the reset status, one for every module with outputs.
     pub(super) resets: Vec<Command>,
-    /// True when the next transaction must poll the contact, because the last one did not.
+    /// True when the next transaction must poll the emergency-stop contact, because the last one did not.
     contact_is_due: bool,
     turn: usize,
     next_other: usize,
@@ -32,7 +32,7 @@ pub(super) struct ScanSchedule {
 /// What the scan polls next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum ScanPoll {
-    /// The poll of the contact; the next turn follows at once.
+    /// The poll of the emergency-stop contact; the scan does not pause afterwards.
     Priority(Command),
     /// Any other poll; the scan pauses afterwards.
     Other(Command),
@@ -57,13 +57,13 @@ impl ScanSchedule {
         }
     }
 
-    /// Returns the poll of the contact when it is due; the contact is then no longer due.
+    /// Returns the poll of the emergency-stop contact when it is due; it is then no longer due.
     pub(super) fn contact(&mut self) -> Option<Command> {
         let is_due = std::mem::take(&mut self.contact_is_due);
         self.priority.filter(|_| is_due)
     }
 
-    /// Notes that a transaction did not poll the contact, which is therefore due next.
+    /// Notes that a transaction did not poll the emergency-stop contact, which is therefore due next.
     pub(super) fn note_other(&mut self) {
         self.contact_is_due = true;
     }

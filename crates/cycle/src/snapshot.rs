@@ -1,9 +1,9 @@
-//! What the cycle knows of a view: it leaves the cycle through a channel, so that no screen can hold the cycle up.
+//! Brings the cycle's parts of a view to the screens, through a channel, so that no screen delays the cycle.
 
 use machine::view::{AlarmLine, LatenessView, Machine, View};
 use tokio::sync::{mpsc, watch};
 
-/// Snapshots that wait at most; the cycle drops further ones while the rest of the program does not run.
+/// Largest number of snapshots that wait in the channel; the cycle drops further ones.
 const WAITING: usize = 16;
 
 /// Parts of a [`View`] that the cycle knows.
@@ -38,8 +38,8 @@ impl Snapshot {
     }
 }
 
-/// Returns the cycle's end of the channel, `None` without a screen; `view` shows what comes through it until that end is
-/// dropped, when the returned future ends.
+/// Returns the cycle's end of the channel, `None` without a screen, and a future that puts each snapshot into `view`
+/// until the cycle drops its end.
 pub fn snapshots(
     view: watch::Sender<View>,
 ) -> (Option<mpsc::Sender<Snapshot>>, impl Future<Output = ()>) {

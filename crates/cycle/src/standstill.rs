@@ -30,7 +30,7 @@ impl Cycle {
         self.outputs.everything_safe();
     }
 
-    /// Waits until no transaction is under way; stops the scan.
+    /// Stops the scan, and waits until no transaction is queued or under way.
     async fn quiet(&mut self) {
         self.traffic.only_writes();
         while !self.traffic.is_quiet() {

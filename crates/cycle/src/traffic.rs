@@ -17,7 +17,7 @@ use std::task::Poll;
 use tokio::sync::mpsc;
 use units::{RigTime, Span};
 
-/// Most commands that wait for one line: several times those of a verification.
+/// Largest number of commands that wait for one line; a verification queues far fewer.
 const MAX_QUEUE: usize = 2_000;
 
 fn reset_questions(wiring: &Wiring, line: LineId) -> Vec<Command> {
@@ -180,7 +180,7 @@ impl Traffic {
         self.scanning = true;
     }
 
-    /// Stops the scan; queued commands and heartbeats still go.
+    /// Stops the scan, so that only queued commands (writes) and heartbeats go out.
     pub fn only_writes(&mut self) {
         self.scanning = false;
     }

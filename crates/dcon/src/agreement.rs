@@ -15,11 +15,12 @@
 
 use super::{Command, Reading, Reply, TypeCode};
 
-/// How far an input, read with others at once, may lie outside its first and third reading; fraction of the range.
+/// How far noise may take an input, read with others at once, outside its first and third reading; fraction of the
+/// range.
 const NOISE_SHARE: f64 = 1.0 / 1024.0;
-/// Most counts per millisecond.
+/// Fastest rise of a count that is accepted, counts per millisecond.
 const COUNTS_PER_MS: u64 = 100;
-/// Least time between two events on a digital input, milliseconds.
+/// Least time between two events counted on a digital input, milliseconds.
 const MS_PER_EVENT: u64 = 10;
 
 impl Command {
@@ -108,7 +109,7 @@ mod tests {
         UpTo,
     };
 
-    /// Returns the index of the selected answer, with 3 ms from the first to the last.
+    /// Returns the index of the selected answer, when the requests lie 3 ms apart.
     fn select(command: Command, said: &[&str]) -> Option<usize> {
         let answers: Vec<_> = said
             .iter()

@@ -32,9 +32,9 @@ pub enum InputMode {
 /// Signal level whose least pulse width or TTL threshold a command reads or sets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Edge {
-    /// `H`.
+    /// `H`: the high level.
     High,
-    /// `L`.
+    /// `L`: the low level.
     Low,
 }
 

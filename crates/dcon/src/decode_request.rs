@@ -1,8 +1,8 @@
 //! Parses a request back into commands; the request is as on the wire, from first to last character.
 //!
 //! The same characters mean different things to different modules (`$016` reads a channel mask, a level or sixteen
-//! bits), so one request may fit several commands; each family has its own list. A request does not tell the range, so
-//! numbers stay in their notation.
+//! bits), so one request may fit several commands; a list per family gives the candidates. A request does not tell the
+//! range, so numbers stay in their notation.
 
 use super::frame::{hex_digit, hex_number};
 use super::{
@@ -51,7 +51,7 @@ pub fn decode_request(request: &[u8]) -> Vec<Command> {
     found.extend(analog_out(rest).into_iter().map(|ask| ask.to(to)));
     found.extend(digital(rest).into_iter().map(|ask| ask.to(to)));
     found.extend(counter(rest).into_iter().map(|ask| ask.to(to)));
-    // Each candidate is encoded again: this checks the first character and whatever the lists above accept too freely.
+    // Each candidate is encoded again: this checks the first character and whatever the lists accept too freely.
     let mut encoded = Vec::with_capacity(24);
     found.retain(|command| {
         encoded.clear();
@@ -61,8 +61,8 @@ pub fn decode_request(request: &[u8]) -> Vec<Command> {
     found
 }
 
-/// Rewrites `#AABBDD` in the spelling that [`Command::encode`] uses: 0A (first group) as 00, Ac (one output of it) as
-/// 1c.
+/// Rewrites `#AABBDD` in the spelling that [`Command::encode`] uses: BB = 0A (group A) as 00, Ac (output c of group A)
+/// as 1c.
 fn canonical(request: &[u8]) -> Option<Vec<u8>> {
     let (place, digit) = match request {
         [b'#', _, _, b'0', b'A', _, _] => (4, b'0'),

@@ -5,7 +5,7 @@ use super::request::Request;
 use super::shape::Shape;
 use super::{Address, Channel, OutputWord, UpTo};
 
-/// Which of the two stored output patterns is meant.
+/// One of the two output patterns that a module stores.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stored {
     /// Pattern applied at power-on.
@@ -30,14 +30,14 @@ pub enum GroupWrite {
     GroupA(u8),
     /// BB = 0B: outputs 8..15 of a module with 16 outputs, bit n = output 8 + n.
     GroupB(u8),
-    /// BB = 1c: output c of the first group.
+    /// BB = 1c: output c of group A (outputs 0..7).
     OneOfA {
         /// Number of the output, 0 to 7.
         output: UpTo<7>,
         /// New state of the output.
         on: bool,
     },
-    /// BB = Bc: output c of the second group.
+    /// BB = Bc: output c of group B (outputs 8..15).
     OneOfB {
         /// Number of the output within the group, 0 to 7.
         output: UpTo<7>,
@@ -51,7 +51,7 @@ pub enum GroupWrite {
 pub enum Digital {
     /// `$AA6`: reads inputs and outputs, outputs first.
     ReadAll,
-    /// `@AA`: reads the same; the reply begins with `>`.
+    /// `@AA`: reads inputs and outputs like `$AA6`; the reply begins with `>` instead of `!`.
     ReadPort,
     /// `@AA(data)`: sets all outputs.
     Write(OutputWord),

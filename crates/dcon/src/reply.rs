@@ -86,7 +86,7 @@ pub struct Text {
 }
 
 impl Text {
-    /// Most characters. Names have up to six, versions fewer; the rest is in reserve.
+    /// Most characters, with a reserve: names have up to six, versions fewer.
     pub const LONGEST: usize = 16;
 
     /// Creates a text; returns `None` when it is empty or too long.

@@ -102,7 +102,7 @@ fn is_common_in_effect(ask: Common, found: Reply) -> bool {
     }
 }
 
-/// Returns a configuration word without the code of the model that it may contain.
+/// Returns the settings in a configuration word, without the code of the model that it may contain.
 fn settings_of(config: Config) -> Config {
     let FormatByte(format) = config.format;
     let format = match config.type_code {

@@ -57,7 +57,7 @@ pub(super) enum Shape {
     Alarm,
     /// `>` and one field
     Reading(InputForm),
-    /// `>` and all fields
+    /// `>` and one field per channel
     Readings(InputForm),
     /// `!AA(data)`
     Level(OutputForm),
@@ -67,7 +67,7 @@ pub(super) enum Shape {
     ChannelRange(Channel),
 }
 
-/// Recognises `?AA` and `!` alone, by which a module refuses. Any other lead is checked by the form.
+/// Fails when `text` is a refusal: `?AA`, or `!` alone. [`Shape::decode`] rejects any other wrong lead.
 pub(super) fn check_refusal(text: &[u8], to: Address, effect: Effect) -> Result<(), ReplyError> {
     let output = effect == Effect::Output;
     let mut fields = Fields::new(text);
@@ -147,7 +147,8 @@ impl Shape {
         }
     }
 
-    /// Returns true when a shorter reply may be complete too, so that only a CR or a checksum proves the end.
+    /// Returns true for a form with an open end: a shorter reply may be complete too, so only a CR or a checksum proves
+    /// it.
     pub(super) fn is_open(self) -> bool {
         self.shortest() < self.longest()
     }

@@ -1,7 +1,7 @@
 //! State changes of alarms (ISA-18.2): returned, acknowledged, shelved. They survive a restart.
 //!
-//! A change applies to a code: one acknowledgement covers all occurrences of an alarm, even three. The real rig and the
-//! simulated rig are kept apart.
+//! A change applies to a code: one acknowledgement covers all occurrences of an alarm. The real rig and the simulated
+//! rig are kept apart.
 
 use super::Store;
 use super::alarms::args;

@@ -52,13 +52,13 @@ pub struct Alarm {
     pub cause_zh: Option<&'static str>,
     /// Time at which the alarm was raised.
     pub raised: Moment,
-    /// Time at which the cause was gone; `None` while the alarm is active, and when it ended its run.
+    /// Time at which the cause was gone; `None` while the alarm is active, and for one that ended its run.
     pub cleared: Option<Moment>,
     /// Time of the acknowledgement, if any.
     pub acknowledged: Option<Moment>,
     /// Person who acknowledged the alarm, if any.
     pub acknowledged_by: Option<String>,
-    /// Last time that a person shelved the alarm, if any.
+    /// The last shelving of the alarm, if any.
     pub shelf: Option<Shelf>,
     /// State of the alarm, as the times above give it.
     pub state: AlarmState,

@@ -17,12 +17,12 @@ pub struct Archive {
 pub(super) const VALUES: &str = "SELECT parameter.key, m.value, m.uncertainty FROM measurement AS m
     JOIN parameter ON parameter.id = m.parameter_id
     WHERE m.part_id = ?1 ORDER BY m.parameter_id, m.attempt";
-/// Selects all attempts of one part, with limits, verdict and budget.
+/// Selects the measurements of one part: all attempts, with limits, verdict and budget.
 pub(super) const MEASUREMENTS: &str = "SELECT parameter.key, m.attempt, m.value, m.uncertainty,
       m.low, m.high, m.verdict, m.budget, m.parameter_id
     FROM measurement AS m JOIN parameter ON parameter.id = m.parameter_id
     WHERE m.part_id = ?1 ORDER BY m.parameter_id, m.attempt";
-/// Selects the replies of one attempt.
+/// Selects the samples of one attempt, which are replies of modules.
 pub(super) const SAMPLES: &str = "SELECT line, module, channel, command, raw, at_us FROM sample
     WHERE part_id = ?1 AND parameter_id = ?2 AND attempt = ?3 ORDER BY n";
 

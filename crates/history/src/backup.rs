@@ -6,8 +6,8 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 impl Archive {
-    /// Copies the present state to `target`, which must not exist. The copy is checked before it gets this name.
-    /// Returns the size of the copy in bytes.
+    /// Copies the present state of the history to `target`, which must not exist. The copy is checked before it gets
+    /// this name. Returns the size of the copy in bytes.
     pub fn backup(&self, target: &Path) -> Result<u64> {
         if target.exists() {
             return Err(HistoryError::Exists {
@@ -31,7 +31,7 @@ impl Archive {
         if partial.exists() {
             fs::remove_file(partial).map_err(place)?;
         }
-        // The connection of a reader is query-only; writing the copy needs this lifted for one statement.
+        // The connection of a reader is query-only; this is lifted for the one statement that writes the copy.
         self.connection
             .pragma_update(None, "query_only", false)
             .doing("copying the history")?;

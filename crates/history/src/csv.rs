@@ -17,7 +17,7 @@ const LINE_END: [char; 2] = ['\r', '\n'];
 /// A record with its line number.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Record {
-    /// Number of its first line in the file, from 1.
+    /// Number of the record's first line in the file, from 1.
     pub line: usize,
     /// Fields without their quotes.
     pub fields: Vec<String>,

@@ -24,7 +24,7 @@ pub struct CurveRecord {
     pub signal: String,
     /// Unit of the values; empty for bits and counts.
     pub unit: String,
-    /// Resolution, in the unit of the values: they are stored as whole multiples of it. More than 0.
+    /// Resolution, in the unit of the values, above 0: the file stores each value as a whole number of steps.
     pub step: f64,
     /// Instant (microseconds since 1970 UTC) and value, in order of time; the value is `None` for a reading over range.
     pub samples: Vec<(i64, Option<f64>)>,
@@ -187,7 +187,7 @@ mod tests {
     use super::*;
     use machine::instrument::trace::MAX_SAMPLES;
 
-    /// Most bytes that a sample takes: a gap below 2^35 us takes 5, a change of less than 2^47 steps 7.
+    /// Largest number of bytes that a sample takes: a gap below 2^35 us takes 5, a change of less than 2^47 steps 7.
     const WORST: usize = 5 + 7;
 
     fn curve(samples: &[(i64, Option<f64>)]) -> CurveRecord {

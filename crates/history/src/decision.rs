@@ -35,7 +35,8 @@ impl Decision {
         Self::ALL.into_iter().find(|it| it.order() == word)
     }
 
-    /// Returns the state of the lot afterwards; a release makes a lot that was complete before complete again.
+    /// Returns the new state of the lot; the history stores `Complete` in place of `Open` for a lot that was complete
+    /// before a hold.
     pub const fn becomes(self) -> LotState {
         match self {
             Self::Hold => LotState::Held,

@@ -36,9 +36,9 @@ pub enum HistoryError {
     OtherRig {
         /// Path of the file.
         path: PathBuf,
-        /// Rig of the file.
+        /// Kind of rig that the file belongs to.
         holds: &'static str,
-        /// Rig that would write.
+        /// Kind of rig that would write the file.
         found: &'static str,
     },
     /// Another process held the file for longer than the busy timeout.

@@ -41,7 +41,7 @@ pub struct Filter {
     pub max: Option<f64>,
     /// True selects only suspect parts: judged after a passed reference check and before a failed one.
     pub suspect: bool,
-    /// Most parts to return, in order of judgement.
+    /// Largest number of parts to return, the first in order of judgement.
     pub limit: Option<u64>,
     /// Number of parts to skip first.
     pub offset: Option<u64>,
@@ -180,8 +180,8 @@ impl Filter {
         }
     }
 
-    /// Selects row number of the part and value of a parameter, in no particular order. Reads only the index, unless
-    /// the filter has a bin, a time or `suspect`.
+    /// Selects the row number of each part and its value of a parameter, in no particular order. Reads only the index
+    /// `measurement_value`, unless the filter has a bin, a time or `suspect`.
     pub(super) fn series(&self, param: &str) -> Select {
         let joined = self.restricts_part();
         let mut select = self.values(param, "m.part_id, m.value", joined);
@@ -191,7 +191,7 @@ impl Filter {
         select
     }
 
-    /// Counts the parts; reads only the index of values when that is enough.
+    /// Counts the selected parts; reads only the index `measurement_value` when it holds every member of the filter.
     pub(super) fn count(&self) -> Select {
         let found = match &self.param {
             Some(param) if !self.restricts_part() => {
@@ -215,12 +215,12 @@ impl Filter {
         production && self.verdict.is_none() && !ranged && !self.restricts_part()
     }
 
-    /// Returns true when a member needs a column that the index of values lacks.
+    /// Returns true when a member of the filter needs a column that the index `measurement_value` lacks.
     fn restricts_part(&self) -> bool {
         self.suspect || self.bin.is_some() || self.since.is_some() || self.until.is_some()
     }
 
-    /// Selects the known cycle times.
+    /// Selects the cycle times of the parts that have one.
     pub(super) fn cycles(&self) -> Select {
         let mut select =
             Select::new("SELECT part.cycle_s FROM part WHERE part.cycle_s IS NOT NULL");

@@ -76,7 +76,7 @@ pub struct ReferenceCheckRecord {
     pub at_us: i64,
     /// True when the readings agree with the certificates.
     pub passed: bool,
-    /// Serial numbers of the parts, or the deviation found.
+    /// Result in words: serial numbers of the reference parts, or the deviation found.
     pub text: String,
 }
 
@@ -91,7 +91,7 @@ pub struct LotStatus {
     pub since: Moment,
     /// Name of the recipe of its last run, imports aside.
     pub recipe: String,
-    /// Hash of that recipe.
+    /// Hash of the recipe of its last run.
     pub recipe_hash: String,
 }
 
@@ -117,7 +117,7 @@ pub struct ReferenceCheck {
     pub at: Moment,
     /// True when the readings agree with the certificates.
     pub passed: bool,
-    /// Serial numbers of the parts, or the deviation found.
+    /// Result in words: serial numbers of the reference parts, or the deviation found.
     pub text: String,
     /// Time from which parts are suspect after a failed check; `None` for a passed one.
     pub suspect_since: Option<Moment>,
@@ -207,7 +207,7 @@ impl Archive {
             .doing("reading the state of a lot")
     }
 
-    /// Counts the parts of a lot: tested first, passed then, passed in a retest, suspect.
+    /// Counts the parts of a lot: first tests, those of them that passed, parts that passed in a retest, suspect parts.
     pub fn lot_yield(&self, lot: &str) -> Result<LotYield> {
         const DOING: &str = "counting a lot over its runs";
         let count = |sql: &str| {

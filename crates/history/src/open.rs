@@ -123,7 +123,7 @@ fn check(connection: &Connection, path: &Path) -> Result<i64> {
     }
 }
 
-/// Returns application id, schema, and the number of tables and indexes.
+/// Reads the header of the file: application id, schema, and the number of tables and indexes.
 fn header(connection: &Connection) -> rusqlite::Result<(i64, i64, i64)> {
     let tables = "SELECT count(*) FROM sqlite_schema";
     Ok((
@@ -145,8 +145,8 @@ fn migrate(connection: &Connection, found: i64) -> Result<()> {
     done
 }
 
-/// Runs the missing steps. Reads the schema again, because another process may have migrated the file while this one
-/// waited for the lock.
+/// Runs the missing migrations. Reads the schema again, because another process may have migrated the file while this
+/// one waited for the lock.
 fn steps(connection: &Connection) -> rusqlite::Result<()> {
     let from: i64 = connection.pragma_query_value(None, "user_version", |row| row.get(0))?;
     for (step, sql) in MIGRATIONS

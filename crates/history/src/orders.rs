@@ -32,7 +32,7 @@ pub struct OrderEntry {
     pub at: Moment,
     /// Name of the lot whose run was open at that time, if any.
     pub lot: Option<String>,
-    /// Number of that run within its lot.
+    /// Number of the run within `lot`.
     pub run: Option<u32>,
     /// Name of the person; empty when not logged in.
     pub who: String,

@@ -29,11 +29,11 @@ pub struct Part {
     pub bin: Option<String>,
     /// Bin whose beam saw the part fall; `None` until then.
     pub landed_bin: Option<String>,
-    /// Time at which that beam saw the part.
+    /// Time at which the beam of `landed_bin` saw the part.
     pub landed_at: Option<Moment>,
     /// Reasons why the part did not pass, as texts.
     pub reasons: Vec<String>,
-    /// The same reasons as codes.
+    /// The same `reasons` as codes.
     pub reason_codes: Vec<Reason>,
     /// Time of the verdict.
     pub time: Moment,
@@ -64,7 +64,7 @@ pub struct Measurement {
     pub attempt: u32,
     /// Value, in the unit that the key names; `None` without a usable value.
     pub value: Option<f64>,
-    /// Expanded uncertainty (k = 2), in the same unit.
+    /// Expanded uncertainty (k = 2), in the unit of `value`.
     pub uncertainty: Option<f64>,
     /// Lower limit of the recipe, if any.
     pub low: Option<f64>,

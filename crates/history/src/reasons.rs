@@ -10,7 +10,7 @@ use rusqlite::{Connection, Row, params};
 pub(super) const REASONS: &str = "SELECT code, parameter.key, side, detail FROM reason
     LEFT JOIN parameter ON parameter.id = reason.parameter_id WHERE part_id = ?1 ORDER BY n";
 
-/// Number of parts that the migration reads at a time.
+/// Number of parts that the migration to schema 8 reads at a time.
 const BATCH: usize = 1_000;
 
 /// Inserts reasons for the part in row `part`; numbers them from `n`, which is at least 1.

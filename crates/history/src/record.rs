@@ -22,7 +22,7 @@ pub struct LotRecord {
     pub recipe: String,
     /// Text of the recipe, TOML.
     pub recipe_snapshot: String,
-    /// Hash of that text, made by [`snapshot_hash`]; runs with equal hashes share one stored text.
+    /// Hash of `recipe_snapshot`, made by [`snapshot_hash`]; runs with equal hashes share one stored text.
     pub recipe_hash: String,
     /// Hash of the calibration in force, if any.
     pub calibration_hash: Option<String>,
@@ -60,7 +60,7 @@ pub struct PartRecord {
     pub cycle_s: Option<f64>,
     /// Bin whose beam saw the part fall; `None` until then.
     pub landed_bin: Option<String>,
-    /// Time at which that beam saw the part.
+    /// Time at which the beam of `landed_bin` saw the part.
     pub landed_at_us: Option<i64>,
     /// `lot` for a production part, `golden` for a reference part; the parts of each kind are numbered from 1.
     pub kind: String,
@@ -77,7 +77,7 @@ pub struct MeasurementRecord {
     pub key: String,
     /// Value, in the unit that the key names; `None` without a usable value.
     pub value: Option<f64>,
-    /// Expanded uncertainty (k = 2), in the same unit.
+    /// Expanded uncertainty (k = 2), in the unit of `value`.
     pub uncertainty: Option<f64>,
     /// Lower limit of the recipe, if any.
     pub low: Option<f64>,
@@ -177,7 +177,7 @@ pub struct CalibrationRecord {
 /// Reference parts have calibrated the rig during the run of a lot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CalibratedRecord {
-    /// The open lot at that time.
+    /// Name of the lot whose run is open.
     pub lot: String,
     /// The calibration that the run uses from now on.
     pub calibration: CalibrationRecord,

@@ -29,7 +29,7 @@ pub struct Reopening {
     pub why: String,
 }
 
-/// Opens the lot and keeps the decision.
+/// Inserts the decision, and opens the lot again.
 pub(super) fn insert(tx: &Transaction<'_>, it: &ReopeningRecord) -> Result<()> {
     const DOING: &str = "reopening a lot";
     let state = "UPDATE lot_state SET state = 'open', completed = 0, why = NULL, since_us = ?2

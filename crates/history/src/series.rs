@@ -1,14 +1,14 @@
 //! Packed values of closed runs, for statistics over many runs.
 //!
-//! When a run is closed, the counted values of its production parts are packed into one blob per parameter: 8 bytes per
-//! value instead of the 31 of an index entry, and no decoding row by row. Filters that select whole runs read the
-//! blobs; other filters, and runs that were never closed, read the index. Both ways give the same values in the same
-//! order.
+//! When a run is closed, the values of its production parts that count (judged, and not measured again) are packed into
+//! one blob per parameter: 8 bytes per value instead of the 31 of an index entry, and no decoding row by row. Filters
+//! that select whole runs read the blobs; other filters, and runs that were never closed, read the index
+//! `measurement_value`. Both ways give the same values in the same order.
 
 use super::{Archive, Filter};
 use rusqlite::{Connection, OptionalExtension, params};
 
-/// Selects part and counted value of a parameter in one run, in no particular order.
+/// Selects, of one run, each part with its value of a parameter that counts, in no particular order.
 pub(super) const OF_RUN: &str = "SELECT part_id, value FROM measurement
     WHERE parameter_id = ?1 AND population = 'lot' AND run_id = ?2
       AND part_verdict IN ('pass', 'fail', 'void', 'unjudged')";
@@ -45,7 +45,7 @@ pub(super) fn pack(connection: &Connection, run: i64) -> rusqlite::Result<()> {
     Ok(())
 }
 
-/// Packs the values of runs that were closed before this table existed.
+/// Packs the values of runs that were closed before the table `series` existed.
 pub(super) fn pack_all(connection: &Connection) -> rusqlite::Result<()> {
     let runs: Vec<i64> = connection
         .prepare("SELECT id FROM run WHERE closed_at_us IS NOT NULL")?
@@ -54,7 +54,7 @@ pub(super) fn pack_all(connection: &Connection) -> rusqlite::Result<()> {
     runs.into_iter().try_for_each(|run| pack(connection, run))
 }
 
-/// Reads the values of one run from the index; `None` when the run has no value.
+/// Reads the unpacked values of one run from the index `measurement_value`; `None` when the run has no value.
 fn loose(connection: &Connection, parameter: i64, run: i64) -> rusqlite::Result<Option<Piece>> {
     let mut found: Vec<(i64, f64)> = connection
         .prepare_cached(OF_RUN)?
@@ -89,8 +89,8 @@ fn packed(connection: &Connection, parameter: i64, run: i64) -> rusqlite::Result
 }
 
 impl Archive {
-    /// Returns the values of `param` in order of judgement, run after run; `None` when the filter selects only some
-    /// parts of a run, or when parts of two runs alternate in time.
+    /// Returns the values of `param` in order of judgement, those of each run side by side; `None` when the filter
+    /// selects only some parts of a run, or when parts of two runs alternate in time.
     pub(super) fn side_by_side(
         &self,
         param: &str,

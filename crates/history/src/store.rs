@@ -18,7 +18,7 @@ pub(crate) const PROGRAM: &str = concat!("relayrig ", env!("CARGO_PKG_VERSION"))
 #[derive(Debug)]
 pub struct Store {
     connection: Connection,
-    /// The file, for messages.
+    /// Path of the file, for messages.
     pub(super) path: PathBuf,
     row_ids: RowIds,
 }
@@ -109,8 +109,8 @@ impl Store {
 
     /// Writes a batch in one transaction; on an error no row of it is written.
     ///
-    /// A part or landing that equals its row is skipped, so the caller may send a batch again when an error leaves
-    /// open whether it was written; one that differs from its row is refused.
+    /// A part or landing that equals its row is skipped, so the caller may send a batch again after an error that does
+    /// not tell whether it was written. A part that differs from its row is refused.
     pub fn record(&mut self, rows: &[Row]) -> Result<()> {
         const DOING: &str = "recording";
         let Self {

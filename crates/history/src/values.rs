@@ -1,5 +1,5 @@
 //! Values of one parameter in order of judgement, with their limits: the input of the statistics. They come from the
-//! packed values of closed runs, or else from the index of values.
+//! packed values of closed runs, or else from the index `measurement_value`.
 
 use super::error::{Doing, Result};
 use super::{Archive, Filter};
@@ -10,7 +10,7 @@ use rusqlite::{OptionalExtension, params};
 pub struct Values {
     /// Finite values in order of judgement; the values of an import are in order of the file.
     pub values: Vec<f64>,
-    /// Limits in force.
+    /// Limits of the runs that the values come from.
     pub limits: LimitsSeen,
 }
 
@@ -80,7 +80,8 @@ impl Archive {
     }
 }
 
-/// Most gaps in the row numbers, per value, for which [`in_order`] places values instead of sorting them.
+/// Largest number of empty places per value; with more, [`in_order`] sorts the values instead of placing them by row
+/// number.
 const EMPTY: usize = 3;
 
 /// Orders values by the row number of their part, which grows in order of judgement. While row numbers have few gaps,
@@ -99,7 +100,7 @@ fn in_order(mut found: Vec<(i64, f64)>) -> Box<dyn Iterator<Item = f64>> {
     for (part, value) in found {
         placed[part.abs_diff(first) as usize] = value;
     }
-    // NaN marks an empty place; the index holds finite values only.
+    // NaN marks an empty place; the values themselves are finite.
     Box::new(placed.into_iter().filter(|value| !value.is_nan()))
 }
 

@@ -26,7 +26,7 @@ pub struct Wear {
     pub count: u64,
     /// Time of the last replacement, if any.
     pub replaced: Option<Moment>,
-    /// Person who made that replacement.
+    /// Person who made the last replacement.
     pub replaced_by: Option<String>,
 }
 

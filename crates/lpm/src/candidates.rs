@@ -1,5 +1,5 @@
-//! Keeps the stationary pieces whose boxes the mover meets, and returns the earliest first. A piece that lies in
-//! several cells of the grid comes once per cell.
+//! Keeps the stationary pieces whose boxes the mover meets, and returns first the one whose box it meets first. A piece
+//! that lies in several cells of the grid comes once per cell.
 
 use super::space::LANES;
 
@@ -16,7 +16,7 @@ pub(crate) struct Candidates {
     count: usize,
 }
 
-/// Place of a candidate: number of its bundle, and its lane in the bundle.
+/// Place of a candidate: number of its bundle ([`LANES`] pieces that are tested together), and its lane in the bundle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Place(u32);
 
@@ -42,7 +42,7 @@ impl Candidates {
         self.count > MOST - LANES
     }
 
-    /// Adds the lanes of a bundle whose bits are set, as far as there is room. Mostly one or two are set.
+    /// Adds the lanes of a bundle that `lanes` marks, as far as there is room; mostly one or two are marked.
     #[inline]
     pub(crate) fn push(&mut self, bundle: u32, lanes: u32, entry: &[f32; LANES]) {
         let place = u64::from(bundle * LANES as u32);
@@ -56,7 +56,7 @@ impl Candidates {
         }
     }
 
-    /// Removes and returns the earliest candidate; drops all of them when the earliest comes after `until`.
+    /// Removes and returns the candidate met earliest; drops all candidates when even this one is met after `until`.
     #[inline]
     pub(crate) fn earliest(&mut self, until: f64) -> Option<Place> {
         let known = &mut self.keys[..self.count.min(MOST)];

@@ -54,8 +54,8 @@ pub(crate) fn closed_surfaces(vertices: &[Vec3], part: &BTreeSet<Corners>) -> Ve
     surfaces(&closed(vertices, &proper))
 }
 
-/// Removes every open triangle of a part. Leaves walls out when the rest is closed without them and they enclose no
-/// space of their own.
+/// Removes every open triangle of a part. Leaves walls out when the other triangles are closed without them and the
+/// walls enclose no space of their own.
 fn closed(vertices: &[Vec3], part: &BTreeSet<Corners>) -> Vec<Corners> {
     let has_reverse = |corners: &Corners| part.contains(&reversed(*corners));
     let (paired, alone): (Vec<Corners>, Vec<Corners>) = part.iter().partition(|it| has_reverse(it));

@@ -93,12 +93,12 @@ pub(crate) struct Findings<'a> {
     wanted: Wanted,
     pub(crate) best: Option<Found>,
     pub(crate) pending: Vec<Pending>,
-    /// The straight path with its reciprocals, computed when first needed.
+    /// The straight path with the reciprocals of its displacement, computed when first needed.
     run: Option<Run<'a>>,
 }
 
 impl Findings<'_> {
-    /// Starts a search: no contact is found yet.
+    /// Starts with no contact found; `wanted` tells which contact the question asks for.
     #[inline]
     pub(crate) fn wanted(wanted: Wanted) -> Self {
         Findings {
@@ -130,7 +130,7 @@ impl Findings<'_> {
     }
 }
 
-/// One group of pieces on its path.
+/// The search for contacts of one group of the mover's pieces along its path.
 struct Search<'a, 'b> {
     passage: &'a Passage<'a>,
     group: &'a Group,
@@ -144,8 +144,8 @@ struct Search<'a, 'b> {
 }
 
 impl Visit for Search<'_, '_> {
-    /// Returns true when the first contact is wanted: pieces then wait as candidates. For any contact they are checked
-    /// at once.
+    /// Returns true when pieces wait as candidates and are checked in order, because the first contact is wanted. For
+    /// any contact they are checked at once.
     #[inline]
     fn in_order(&self) -> bool {
         self.found.wanted == Wanted::First

@@ -1,8 +1,8 @@
 //! First contact of two grazing discs, in double-double precision.
 //!
-//! On a grazing pass, the fraction of the path depends on the root of a small difference of radii: a rounding of
-//! 1e-12 mm moves the contact by 1e-5 mm. Where the places of the bodies themselves are exact, arithmetic with twice
-//! the digits decides whether the discs touch at all, and where.
+//! On a grazing pass, the fraction of the path at which contact begins depends on the root of a small difference of
+//! radii: a rounding of 1e-12 mm moves the contact by 1e-5 mm. Where the places of the bodies themselves are exact,
+//! arithmetic with twice the digits decides whether the discs touch at all, and where.
 
 /// A number as a sum of two f64, the second below the last place of the first (after Dekker and Knuth).
 #[derive(Debug, Clone, Copy, PartialEq)]

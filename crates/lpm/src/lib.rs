@@ -64,7 +64,7 @@
 //!    stretch ends where this separation reaches the margin, and stretches follow each other without a gap.
 //! 4. When the broad phase drops a pair, the boxes of its pieces never overlap during the move. These boxes are rounded
 //!    outward by the same error bound and then to single precision. Everything that the broad phase computes along the
-//!    path carries `space::sweep::SLACK_MM`, and the steps of height are monotone.
+//!    path carries `space::sweep::SLACK_MM`, and rounding heights to layers keeps their order.
 //! 5. `solid` finds a body inside a closed mesh, and counts a doubtful body as inside; `closed` finds the closed
 //!    surfaces of a mesh, however untidy its file is.
 //! 6. A comparison with NaN is false, and every comparison is written so that false means blocked. Iteration limits,
@@ -97,9 +97,9 @@
 //!
 //! # How early a move may be blocked
 //! - Straight moves: the verdict is designed to stay within 1e-6 mm of the margin for coordinates up to 1e6 mm. This
-//!   depends on the searches for planes, which are tested against constructed truth but not proven to converge: of the
-//!   60,000 pairs that a test draws (needles, foils, tilts of 1e-12, places up to 1e6 mm) none loses more than 5e-7 mm,
-//!   always to the safe side.
+//!   depends on the searches for planes, which are tested against constructed truth but not proven to converge: in the
+//!   60,000 pairs that a test draws (needles, foils, tilts of 1e-12, places up to 1e6 mm) the proven distance is at
+//!   most 5e-7 mm too small, and never too great.
 //! - Turning moves: at most 5e-4 mm.
 //! - The place of a contact that only grazes a round side may be reported too early, by the root of twice the radius
 //!   times the rounding: up to 1e-4 mm within a metre. This happens where bodies reached their places by rounding

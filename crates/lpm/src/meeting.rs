@@ -19,8 +19,8 @@ use super::piece::NOISE;
 use super::prism::Prism;
 use super::vector::{Vec3, reach, sub};
 
-/// Relative error bound of what is computed here, from the difference of two places and the run to a fraction of the
-/// path: fewer than 16 roundings of 2^-53 each; the bound allows twice that.
+/// Relative error bound of the computation here, which leads from the difference of two places, and the run, to a
+/// fraction of the path: fewer than 16 roundings of 2^-53 each; the bound allows twice that.
 const ROUNDING: f64 = 32.0 * (f64::EPSILON / 2.0);
 
 /// How early a grazing contact may come before more digits refine it, mm: a tenth of the promised 1e-6 mm.
@@ -111,7 +111,8 @@ impl<'a> Meeting<'a> {
         }
     }
 
-    /// Returns the same from `window` for footprints with common axes (a disc has any axes); `framed` gives the axes.
+    /// Returns the first fraction in `window` at which footprints with common axes, those of `framed`, are within the
+    /// margin.
     #[inline]
     fn rounded(&self, window: Window, framed: &Prism) -> Option<f64> {
         let radius = self.element.radius + self.mover.radius;
@@ -141,7 +142,8 @@ impl<'a> Meeting<'a> {
             (u * u + v * v).sqrt(),
         );
         let closing = (w[0] * u + w[1] * v).abs();
-        // The slack, divided by the sine of the grazing angle, moves the contact; at rest nothing moves.
+        // The slack, divided by the sine of the grazing angle, moves the contact along the path; at rest there is no
+        // graze.
         let is_graze = closing * GRAZED_MM < self.slack * radius * speed;
         if !is_graze {
             return None;
@@ -241,8 +243,8 @@ fn slab((low, high): Window, start: f64, (rate, pace): (f64, f64), half: f64) ->
     if low > high { None } else { Some((low, high)) }
 }
 
-/// Returns the first fraction in `window` at which `p + t v` is inside the rectangle of `half` with corners of
-/// `radius`; it is already within the bounding rectangle.
+/// Returns the first fraction in `window` at which the point `p + t v` is inside the rectangle of `half` with corners
+/// of `radius`; during all of `window` the point is within the rectangle that bounds this figure.
 #[inline]
 fn corner(
     (low, high): Window,

@@ -33,7 +33,7 @@ pub(crate) struct Group {
     /// Centre and half extents of the box around the group, mm; the fourth members are 0.
     centre: [f32; 4],
     half: [f32; 4],
-    /// Largest distance of a point from the origin of the body, rounded outward, mm.
+    /// Largest distance of a point of the group from the origin of the body, rounded outward, mm.
     ball: f64,
     /// By how much the boxes of the group are widened at any place, mm.
     wider: f64,
@@ -61,8 +61,8 @@ pub(crate) enum Orientation<'a> {
     Turning,
 }
 
-/// Relative error bound of the boxes of a placed group: fewer than ten roundings to single precision, of magnitudes
-/// that together are at most those of group and path along the axis, plus the error of a [`RoughYaw`].
+/// Rounding of the boxes of a placed group, relative to the sizes of group and path along the axis: fewer than ten
+/// roundings to single precision, plus the error of a [`RoughYaw`].
 const SINGLE: f64 = 1e-6;
 
 impl Mover {
@@ -144,7 +144,7 @@ impl Group {
         group
     }
 
-    /// Returns a mask of the places in use (bit k: place k).
+    /// Returns a mask of the group's places that hold a piece (bit k: place k).
     #[inline]
     pub(crate) fn used(&self) -> u32 {
         (1 << self.count) - 1

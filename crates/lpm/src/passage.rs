@@ -65,7 +65,7 @@ impl<'a> Passage<'a> {
         &self.body.pieces[index as usize]
     }
 
-    /// Returns true unless the move ignores the element of this piece.
+    /// Returns true when the element of this piece counts, that is, unless the move ignores it.
     #[inline]
     pub(crate) fn counts(&self, element: &Stationary) -> bool {
         self.way.ignore.is_empty() || !self.way.ignore.contains(&element.owner)

@@ -9,7 +9,7 @@ use super::prism::Prism;
 use super::shape::Shape;
 use super::vector::{Vec3, add, along, cross, dot, length, negate, reach, scale, sub};
 
-/// Relative error bound of everything that is computed from the numbers of a scene to one evaluated plane, in units of
+/// Relative error bound of all computation that leads from the numbers of a scene to one evaluated plane, in units of
 /// the sum of all magnitudes that entered.
 ///
 /// The count is generous: a rotation matrix from a quaternion takes 8 roundings; two nested compounds, a turn and a

@@ -264,7 +264,7 @@ mod tests {
 
     #[test]
     fn a_quarter_turn_keeps_a_block_upright() {
-        // As typical files write it: the two members differ in the last place.
+        // A quarter turn as typical files write it: the two members differ in the last place.
         let w = std::f64::consts::FRAC_1_SQRT_2;
         let frame = Frame::of([w, 0.0, 0.0, w.next_down()]);
         assert_eq!(frame.z, [0.0, 0.0, 1.0]);
@@ -292,7 +292,7 @@ mod tests {
             for long in [1.0, 1.0 + 4.9e-10, 1.0 - 5.1e-10, 1e-3, 7.0] {
                 let (w, z) = (long * cos, long * sin);
                 let (rough, yaw) = (RoughYaw::of(w, z), Yaw::of(w, z));
-                // Half a unit of single precision plus the deviation of the length.
+                // The error is at most half a unit of single precision plus the deviation of the length.
                 assert!((f64::from(rough.cos) - yaw.cos).abs() < 3.1e-8, "{w} {z}");
                 assert!((f64::from(rough.sin) - yaw.sin).abs() < 3.1e-8, "{w} {z}");
             }

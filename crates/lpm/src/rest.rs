@@ -18,8 +18,8 @@ use super::stationary::Stored;
 use super::touch::lie_apart;
 use super::vector::{Vec3, add, reach, sub};
 
-/// A question with a shortcut for a body at rest. Each answer is built directly as a return value: to extract it from
-/// another value would cost a copy that waits for the first write.
+/// A question with a shortcut for a body at rest. Each answer is built directly as a return value: extracting it from
+/// another value would cost a slow copy.
 pub(crate) trait Question {
     type Answer;
     /// Answer when nothing is met.

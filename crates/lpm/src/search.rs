@@ -6,7 +6,7 @@ use super::straight;
 use super::turning::Turning;
 
 impl Passage<'_> {
-    /// Searches the pairs on the waiting list.
+    /// Searches the pairs that wait in `found`.
     pub(crate) fn searches(&self, found: &mut Findings) {
         if found.pending.is_empty() {
             return;

@@ -103,7 +103,7 @@ impl Shape {
     #[inline]
     pub fn check(&self) -> Result<(), Flaw> {
         match self {
-            // The usual case first, without building strings for paths.
+            // Decides the usual case first, without building strings for paths.
             Shape::Block { half: [a, b, c] } if is_size(a) & is_size(b) & is_size(c) => Ok(()),
             Shape::Cylinder { radius, height } if is_size(radius) & is_size(height) => Ok(()),
             _ => check_shape(self, "", 0),

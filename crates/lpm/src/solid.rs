@@ -41,7 +41,7 @@ struct Shell {
     triangles: Vec<[Vec3; 3]>,
     low: Vec3,
     high: Vec3,
-    /// True as [`Surface::is_even`] says.
+    /// True when a path that crosses the shell once changes sides ([`Surface::is_even`]).
     is_even: bool,
     is_oriented: bool,
     is_hole: bool,

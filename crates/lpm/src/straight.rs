@@ -33,10 +33,10 @@ impl Hit {
     }
 }
 
-/// What stays constant along the move of one translated pair.
+/// A translated pair: the values that stay constant along its move.
 struct Slope {
     displacement: Vec3,
-    /// Rounding bound of a shifted plane, mm.
+    /// Rounding bound of the separation by a plane, for its shift along the move, mm.
     slack: f64,
 }
 

@@ -133,7 +133,7 @@ struct Askew {
     /// Vector from the element to the mover, along the axes of the element and along those of the mover, mm.
     in_element: [f64; 2],
     in_mover: [f64; 2],
-    /// First axis of the mover, along the axes of the element.
+    /// First axis of the mover, along the axes of the element; `cos` and `sin` are its components.
     cos: f64,
     sin: f64,
     /// How far the mover lies beyond the sides of the element, and the element beyond the sides of the mover, mm.
@@ -188,7 +188,8 @@ impl Askew {
         }
     }
 
-    /// Returns the same values when a corner of the element touches a side of the mover.
+    /// Returns depth, normal and point as [`Self::on_a_side`] does, when a corner of the element touches a side of the
+    /// mover.
     #[inline(always)]
     fn on_a_corner(&self, element: &Prism) -> (f64, [f64; 2], [f64; 2]) {
         let [first, second] = self.over_mover;

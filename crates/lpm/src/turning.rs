@@ -119,7 +119,8 @@ impl Turning<'_> {
         (t, self.gap_at(t, None).1.lower.max(0.0))
     }
 
-    /// Returns the lowest of evenly spaced samples, after a descent into its valley.
+    /// Returns a guess of `t` and the least distance: the lowest of evenly spaced samples, after a descent into its
+    /// valley.
     fn guess(&self) -> (f64, f64) {
         let steps = (1.0 / SAMPLE) as usize;
         let samples = (0..=steps).map(|step| self.lower_at(step as f64 * SAMPLE));

@@ -51,7 +51,7 @@ pub struct View {
     pub went_out: u64,
     /// Confirmed parts of the lot by bin.
     pub bins: BTreeMap<String, u64>,
-    /// Verdicts of the lot by name.
+    /// Judged parts of the lot by verdict.
     pub verdicts: BTreeMap<String, u64>,
     /// Parts per hour of rig time since the lot began.
     pub parts_per_hour: Option<f64>,
@@ -80,7 +80,7 @@ pub struct HostView {
     pub fifo_priority: Option<u8>,
     /// True when the memory of the program is locked.
     pub memory_locked: bool,
-    /// Reasons of the system for what it refuses; empty without a refusal.
+    /// Reasons that the system gives for each right it refuses; empty without a refusal.
     pub refused: Vec<String>,
     /// How late the cycle wakes.
     pub lateness: LatenessView,
@@ -93,9 +93,9 @@ pub struct LatenessView {
     pub waits: u64,
     /// Median, ms, at most 19 % too high.
     pub p50_ms: f64,
-    /// Lateness that 99 of 100 waits keep, ms, at most 19 % too high.
+    /// 99th percentile of the lateness, ms, at most 19 % too high.
     pub p99_ms: f64,
-    /// Lateness that 999 of 1000 waits keep, ms, at most 19 % too high.
+    /// 99.9th percentile of the lateness, ms, at most 19 % too high.
     pub p999_ms: f64,
     /// Greatest lateness of the run, ms.
     pub worst_ms: f64,
@@ -103,11 +103,11 @@ pub struct LatenessView {
     pub recent_ms: f64,
     /// Sum over all waits, ms.
     pub sum_ms: f64,
-    /// Waits by lateness, edges ascending; those beyond the last edge are in none.
+    /// Waits by lateness, edges ascending; a wait later than the last edge is in no bucket.
     pub buckets: Vec<Bucket>,
 }
 
-/// Number of waits above the edge before and up to this one.
+/// Number of waits later than the edge of the previous bucket, up to this one's.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Bucket {
     /// Edge, ms.

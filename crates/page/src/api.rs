@@ -1,5 +1,5 @@
-//! The list of all routes. Both the router and the OpenAPI document (`GET /api/openapi.json`) are made from it, so that the
-//! document is complete.
+//! The list of all routes. Both the router and the OpenAPI document (`GET /api/openapi.json`) are made from it, so that
+//! the document is complete.
 
 mod document;
 mod history;

@@ -1,4 +1,4 @@
-//! `GET /api/calibration`: calibration factors and reference parts of the rig in the view.
+//! `GET /api/calibration`: calibration factors and reference parts of the rig that the server shows.
 
 use super::error::JsonResult;
 use super::router::App;

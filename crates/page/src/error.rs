@@ -133,7 +133,7 @@ impl ApiError {
         }
     }
 
-    /// Returns the members of the answer besides `error` and `reason`.
+    /// Returns further members of the JSON answer, besides `error` and `reason`.
     fn more(&self) -> serde_json::Value {
         match self {
             Self::Revision {

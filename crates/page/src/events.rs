@@ -1,12 +1,12 @@
-//! The view as server-sent events.
+//! The view of the machine as server-sent events.
 //!
 //! | event | data | when |
 //! |---|---|---|
 //! | `view` | the whole view | on connecting; on change, at most 20 times a second; otherwise once a second |
 //! | `beat` | `{"alive":true}` | each second; `false` after the controller has ended |
 //!
-//! A browser that receives nothing for three seconds, or `"alive":false`, has old values and must show them as such. A slow
-//! browser skips views and never gets an older one after a newer one. The stream ends with the program.
+//! A browser that receives nothing for three seconds, or `"alive":false`, has old values and must show them as such. A
+//! slow browser skips views and never gets an older one after a newer one. The stream ends with the program.
 
 use super::end_of_program;
 use super::router::{App, AppState};
@@ -120,7 +120,7 @@ fn same_content(view: &View, sent: &mut View) -> bool {
     view == sent
 }
 
-/// Keeps one open stream in the count of streams until it is dropped.
+/// Counts as one open stream until this value is dropped.
 struct Counted(Arc<AtomicUsize>);
 
 impl Counted {

@@ -24,8 +24,8 @@
 //! | `export.csv` | all | | CSV with byte order mark, streamed |
 //! | `export.xlsx` | all | `lang` | spreadsheet with charts, of a bounded number of parts |
 //!
-//! `lang` is `zh` (when absent) or `en`. A route refuses a member that it does not use: 400 with the name. An unknown lot,
-//! run or part is 404. A few readers at a time work on blocking threads; they do not delay the writer.
+//! `lang` is `zh` (when absent) or `en`. A route refuses a member that it does not use: 400 with the name. An unknown
+//! lot, run or part is 404. A few readers at a time work on blocking threads; they do not delay the writer.
 
 pub(super) mod export;
 mod feed;

@@ -1,4 +1,4 @@
-//! The HTTP server: the pages, the view as JSON and as events, the history, figures for Prometheus.
+//! The HTTP server: the pages, the view of the machine as JSON and as events, the history, figures for Prometheus.
 //!
 //! - Clients only read the state of the rig. They change it by *orders*, which the station takes or refuses with the reason
 //!   in its next turn.

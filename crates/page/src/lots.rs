@@ -3,10 +3,10 @@
 //! | route | members | answer |
 //! |---|---|---|
 //! | `GET /api/lots` | `limit`, `offset` | array of lots, latest run first: state, recipe, counts over all runs, and `why_not` |
-//! | `GET /api/wear` | | array of wear counters of the rig in the view |
+//! | `GET /api/wear` | | array of wear counters of the rig that the server shows |
 //!
-//! `why_not` maps each order about lots to null, or to the reason (`code`, `args`, `en`, `zh`) why the state of the lot forbids
-//! it. For the lot under way the buttons of the view apply instead.
+//! `why_not` maps each order about lots to null, or to the reason (`code`, `args`, `en`, `zh`) why the state of the lot
+//! forbids it. For the lot under way the buttons of the view apply instead.
 
 use super::error::{ApiError, JsonResult, Members};
 use super::router::App;
@@ -19,7 +19,7 @@ use texts::Message;
 
 /// Default of `limit`.
 const SHOWN: u32 = 20;
-/// Greatest `limit`: for each lot the server counts all parts of the lot.
+/// Greatest `limit`, because the server counts all parts of each listed lot.
 const MOST: u32 = 200;
 
 /// A lot with the orders that its state allows.

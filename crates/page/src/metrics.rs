@@ -39,7 +39,7 @@ fn text(scrape: Scrape) -> String {
     text
 }
 
-/// The state that one request reports.
+/// State of rig and program that one request for metrics reports.
 #[derive(Debug)]
 struct Scrape {
     view: View,
@@ -114,7 +114,7 @@ fn parts(out: &mut Figures<'_>, view: &View) -> fmt::Result {
     out.each("relayrig_cycle_seconds", help, phases)
 }
 
-/// A figure of each module: name without the prefix, help text, and the function that returns the value.
+/// A figure of each module: name without the common prefix, help text, and the function that returns the value.
 type Figure<V> = (&'static str, &'static str, fn(&ModuleView) -> V);
 
 const COUNTS: [Figure<u64>; 6] = [
@@ -215,7 +215,7 @@ impl Figures<'_> {
         figure.encode_histogram::<NoLabelSet>(it.sum_ms / 1e3, it.waits, &buckets, None)
     }
 
-    /// Writes one row for each set of labels.
+    /// Writes a figure, with one row for each set of labels.
     fn each<'a, const N: usize, V: EncodeGaugeValue>(
         &mut self,
         name: &str,

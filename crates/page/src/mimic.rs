@@ -1,8 +1,8 @@
 //! The machine to scale, as SVG: the front view at the top, the view from above below it, with a common x axis.
 //!
 //! Units of the drawing are millimetres. A body that rides on actuators is a group with
-//! `data-rides='[["sort_z",0,-1], ..]'`: actuator, and the way of the group to the right and down per millimetre of stroke.
-//! The drawing has a part in every place that can hold one. The page moves the groups and shows the parts from
+//! `data-rides='[["sort_z",0,-1], ..]'`: actuator, and the way of the group to the right and down per millimetre of
+//! stroke. The drawing has a part in every place that can hold one. The page moves the groups and shows the parts from
 //! `view.machine`.
 //!
 //! Bodies are drawn back to front: the lowest first in the view from above, the farthest first in the front view.

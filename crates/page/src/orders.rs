@@ -1,9 +1,9 @@
 //! `POST /api/orders`: hands orders to the cycle.
 //!
-//! The cycle answers in its next turn: it takes the order, or refuses it with the reason in English and Chinese (409). An
-//! unknown order gets 400. Nothing is stored here: when the queue is full the order is refused. An order that the role of
-//! the person forbids also goes to the cycle, marked as denied, because the audit has one writer. Orders without a login
-//! leave no trace.
+//! The cycle answers in its next turn: it takes the order, or refuses it with the reason in English and Chinese (409).
+//! An unknown order gets 400. Nothing is stored here: when the queue is full the order is refused. An order that the
+//! role of the person forbids also goes to the cycle, marked as denied, because the audit has one writer. Orders
+//! without a login leave no trace.
 
 use super::access::{Person, Role};
 use super::error::{ApiError, JsonResult};
@@ -18,7 +18,7 @@ use serde::Serialize;
 use texts::Message;
 use tokio::sync::oneshot;
 
-/// Most orders that wait for the next turn of the cycle; a further one is refused.
+/// Largest number of orders that wait for the next turn of the cycle; a further one is refused.
 pub const WAITING: usize = 16;
 
 /// Body of the answer to an accepted order.

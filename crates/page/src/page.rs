@@ -1,8 +1,9 @@
-//! The page. The first answer holds everything that the operator's page needs; the script of any other page follows when
-//! a browser first opens that page. Nothing comes from another host.
+//! The page. The answer to `GET /` holds everything that the operator's page needs; the script of any other page
+//! follows when a browser first opens that page. Nothing comes from another host.
 //!
-//! The program makes and compresses each answer once, from the files in `page/` and the catalogue of texts. The policy lets a
-//! browser run the inline script, which it checks by a hash, and the scripts that this rig sends.
+//! The program makes and compresses each answer once, from the files in `page/` and the catalogue of texts. The content
+//! security policy lets a browser run the inline script, which it checks by a hash, and the scripts that this rig
+//! sends.
 
 mod compressed;
 mod kinds;
@@ -23,7 +24,7 @@ const LOOK: &str = concat!(
     include_str!("page/look.css"),
     include_str!("page/pages.css")
 );
-/// Scripts of the first answer, in order: shared functions, the operator's page, the start.
+/// Scripts of the answer to `GET /`, in order: shared functions, the operator's page, the start.
 const SCRIPT: &str = concat!(
     include_str!("page/script/shared.js"),
     include_str!("page/script/texts.js"),

@@ -27,7 +27,7 @@ pub(super) struct AppState {
     pub readers: Readers,
 }
 
-/// Extractor by which a route receives the state.
+/// Extractor by which a route receives [`AppState`].
 pub(super) type App = State<AppState>;
 
 /// Returns the router of all routes.

@@ -6,9 +6,9 @@
 //! | page | cookie `relayrig_session`: `HttpOnly`, `SameSite=Strict` | what the role allows |
 //! | script | `Authorization: Bearer TOKEN` from the answer to `POST /api/login` | what the role allows |
 //!
-//! An expired session counts as none: 401. A role that is too weak gets 403 with the role needed. Browsers do not send the
-//! cookie with requests of other sites, and `origin.rs` refuses those as well. The cookie has no `Secure`, because the
-//! program serves plain HTTP on loopback; elsewhere the plant's proxy adds it.
+//! An expired session counts as none: 401. A role that is too weak gets 403 with the role needed. Browsers do not send
+//! the cookie with requests of other sites, and `origin.rs` refuses those as well. The cookie has no `Secure`, because
+//! the program serves plain HTTP on loopback; elsewhere the plant's proxy adds it.
 
 use super::access::{AccessError, Limiter, Person, Register, Role, SESSION_S};
 use super::error::{ApiError, blocking};
@@ -20,7 +20,8 @@ use std::time::Instant;
 
 const COOKIE: &str = "relayrig_session";
 
-/// The people of this rig, behind one lock: logins run one after another, because each takes 19 MiB and 20 ms of a core.
+/// People and sessions of this rig, behind one lock: logins run one after another, because each takes 19 MiB and 20 ms
+/// of a core.
 #[derive(Debug, Clone)]
 pub struct Sessions(Arc<Inner>);
 
@@ -134,7 +135,7 @@ fn token(headers: &HeaderMap) -> Option<String> {
     named.next().map(str::to_owned)
 }
 
-/// Locks also after a panic of another holder: each change of the data is complete in itself.
+/// Locks even after another holder panicked: no panic leaves the data half changed.
 fn locked<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
     lock.lock().unwrap_or_else(PoisonError::into_inner)
 }

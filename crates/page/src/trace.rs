@@ -1,7 +1,7 @@
 //! `GET /api/trace`: the last traffic of every line with its meaning.
 //!
-//! `last` is the number of messages of each line, 1 to [`MOST`]; 100 when absent. The array is empty until a run has opened
-//! its lines.
+//! `last` is the number of messages of each line, 1 to [`MOST`]; 100 when absent. The array is empty until a run has
+//! opened its lines.
 
 use super::error::{ApiError, JsonResult, Members};
 use super::router::App;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// Greatest `last`: the number of messages that each line keeps.
 const MOST: usize = 1000;
 
-/// Function that returns the last messages of every line; its argument is the most messages per line.
+/// Function that returns the last messages of every line; its argument is the largest number of messages per line.
 type ReadTraffic = dyn Fn(usize) -> Vec<LineTraffic> + Send + Sync;
 
 /// Access to the traffic of the lines; clones read the same lines.

@@ -12,11 +12,11 @@ use super::gauge_rr::{GaugeRr, GaugeRrError, Reading, deviations};
 use super::squares::{Means, mean};
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// K1 by the number of trials, and K2 by the number of operators, from 2 (AIAG MSA, 4th edition; Duncan's d2*). K2 for
-/// two operators is the root of 1/2.
+/// K1 for 2 and 3 trials (AIAG MSA, 4th edition; Duncan's d2*).
 const K_OF_RANGE: [f64; 2] = [0.8862, 0.5908];
+/// K2 for 2 and 3 operators.
 const K_OF_OPERATORS: [f64; 2] = [FRAC_1_SQRT_2, 0.5231];
-/// K3 by the number of parts, from 2.
+/// K3 for 2 to 10 parts.
 const K_OF_PARTS: [f64; 9] = [
     FRAC_1_SQRT_2,
     0.5231,
@@ -32,7 +32,7 @@ const K_OF_PARTS: [f64; 9] = [
 /// Evaluates a complete crossed study of 2 or 3 trials, up to 3 operators and 2 to 10 parts.
 ///
 /// # Errors
-/// Fails as [`super::gauge_rr::anova`] does, and when the study is larger than the tables of published factors.
+/// Fails as [`super::gauge_rr::anova`] does, and when the study is larger than AIAG's tables of K1, K2 and K3.
 pub fn average_and_range(readings: &[Reading]) -> Result<GaugeRr, GaugeRrError> {
     let cells = crossing::cells(readings)?;
     let (parts, operators) = (cells.len(), cells[0].len());

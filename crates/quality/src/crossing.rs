@@ -6,7 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Readings indexed by part, operator, trial.
 pub(super) type Cells = Vec<Vec<Vec<f64>>>;
 
-/// Arranges the readings. Fails when the study is too small or incomplete, or has a reading twice.
+/// Arranges the readings by part, operator and trial. Fails when the study is too small or incomplete, or has a reading
+/// twice.
 pub(super) fn cells(readings: &[Reading]) -> Result<Cells, GaugeRrError> {
     let names = |of: fn(&Reading) -> &str| readings.iter().map(of).collect::<BTreeSet<&str>>();
     let (parts, operators) = (names(|it| &it.part), names(|it| &it.operator));

@@ -13,7 +13,7 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 /// Value of p above which the interaction counts as chance (AIAG MSA, 4th edition, appendix on ANOVA).
 const POOL_ABOVE: f64 = 0.25;
 
-/// Factor by which the ratio of part to gauge deviation becomes the number of distinct categories (AIAG: 1.41).
+/// Factor that turns the ratio of part to gauge deviation into the number of distinct categories (AIAG: 1.41).
 const CATEGORIES: f64 = 1.41;
 
 /// One reading of the study.
@@ -70,7 +70,7 @@ pub enum GaugeRrError {
         /// Number of trials found.
         trials: usize,
     },
-    /// The study is larger than the tables of published factors for averages and ranges.
+    /// The study is larger than AIAG's tables of factors for averages and ranges.
     #[error(
         "found {parts} parts, {operators} operators, {trials} trials; averages and ranges have factors for up to 10, 3 and 3 (use anova for more)"
     )]
@@ -146,7 +146,7 @@ fn components(sizes: &Sizes, squares: &Squares) -> GaugeRr {
     )
 }
 
-/// Mean squares by which those of the sources of variation are divided in the F tests.
+/// Mean squares that the F tests divide by.
 struct Denominators {
     /// For parts and operators: mean square of the interaction, or of the pooled residual.
     main: f64,

@@ -1,6 +1,7 @@
 //! Run rules: patterns of points on a control chart that are unlikely by chance.
 //!
-//! A number is how many points in a row make the pattern; deviations are standard deviations from the centre.
+//! A number in the table is how many points in a row make the pattern; deviations are standard deviations from the
+//! centre.
 //!
 //! | rule: points | Nelson | Western Electric |
 //! |---|---|---|
@@ -118,7 +119,7 @@ fn one_side(z: &[f64], n: usize, far: f64) -> bool {
     above >= n || below >= n
 }
 
-/// Returns true when the last point lies beyond `far`, and with it at least `n` points on its side.
+/// Returns true when the last point lies beyond `far`, and so do at least `n` points, itself included, on its side.
 fn ending(z: &[f64], n: usize, far: f64) -> bool {
     let Some(&end) = z.last() else { return false };
     let with_it = z.iter().filter(|&&it| it * end > 0.0 && it.abs() > far);

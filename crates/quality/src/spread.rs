@@ -36,7 +36,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Computes the figures of all values.
+    /// Computes number, mean and squared deviations of `values`.
     pub fn of(values: &[f64]) -> Self {
         if values.is_empty() {
             return Self::default();
@@ -60,7 +60,7 @@ impl Spread {
         }
     }
 
-    /// Computes the figures of both sets together.
+    /// Returns the spread of the values of both sets together.
     pub fn merged(self, other: Self) -> Self {
         let (Some((low, high)), Some((other_low, other_high))) = (self.range, other.range) else {
             return if self.n == 0 { other } else { self };
@@ -105,8 +105,8 @@ impl Spread {
     }
 }
 
-/// Returns the lag-1 autocorrelation of `values` in their order; `all` are the figures of the same values. Returns
-/// `None` with fewer than two values, and when all are equal.
+/// Returns the lag-1 autocorrelation of `values` in their order; `all` is the spread of the same values. Returns `None`
+/// with fewer than two values, and when all are equal.
 pub fn lag1_about(all: &Spread, values: &[f64]) -> Option<f64> {
     let squares = all.squares.value();
     let deviation = |value: f64| Double::new(value).minus(all.mean);

@@ -7,7 +7,7 @@
 use super::ordered::{Histogram, Ordered};
 use super::spread::Spread;
 
-/// Number of values in a portion.
+/// Number of values that are collected before they are merged into the figures.
 const SHARD: usize = 1_000;
 /// Approximate number of classes over the range of the first portion.
 const CLASSES: usize = 12;
@@ -54,7 +54,7 @@ impl Tally {
     }
 }
 
-/// Returns the same classes, empty, with twelve more classes at each end.
+/// Returns `it` without counts and with twelve more classes at each end.
 fn wider(it: Histogram) -> Histogram {
     Histogram {
         from: it.from - CLASSES as f64 * it.width,
@@ -63,7 +63,7 @@ fn wider(it: Histogram) -> Histogram {
     }
 }
 
-/// Removes empty classes at the ends.
+/// Removes the empty classes at both ends of `it`.
 fn trimmed(it: Histogram) -> Histogram {
     let first = it.counts.iter().position(|&n| n > 0).unwrap_or(0);
     let end = it

@@ -1,5 +1,5 @@
-//! Outcome of the parts: good parts rejected, bad parts passed, rows that name a bin in which the part does not lie; and
-//! the study `sorting`, which shows them over many lots.
+//! Outcome of the parts: good parts rejected, bad parts passed, rows that name a bin in which the part does not lie;
+//! and the study `sorting`, which shows them over many lots.
 
 use super::chart::Chart;
 use super::exception;
@@ -85,7 +85,7 @@ fn out_of_limits(parts: &[&Part]) -> Figure {
         .with("passed", Some(passed as f64))
 }
 
-/// Counts EEPROM writes, alarms and logged errors.
+/// Returns figures about the machine: counts of EEPROM writes, alarms and logged errors.
 pub fn machine(lots: &[Lot]) -> Vec<Figure> {
     let n = lots.len() as u64;
     let writes: Option<u64> = lots.iter().map(|lot| lot.summary.eeprom_writes).sum();
@@ -119,8 +119,8 @@ pub fn defects(lots: &[Lot]) -> Vec<Figure> {
     seen.into_iter().map(row).collect()
 }
 
-/// Cuts the parts into lots of 100 in the order of production and returns the number of lots without a reject and of all
-/// lots. Parts that do not fill a lot count only when there is no other lot.
+/// Cuts the parts into lots of 100 in the order of production and returns the number of lots without a reject and of
+/// all lots. Parts that do not fill a lot count only when there is no other lot.
 pub fn lots_without_reject(rejected: &[bool]) -> (u64, u64) {
     let size = GOOD_PARTS_OF_A_LOT.min(rejected.len()).max(1);
     let lots = rejected.chunks_exact(size);

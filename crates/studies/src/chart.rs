@@ -12,7 +12,7 @@ pub struct Chart {
     pub title: String,
     /// Unit behind every number.
     pub unit: &'static str,
-    /// Value at the left end.
+    /// Value at the left end of the axis.
     pub from: f64,
     /// Values with a line across all bars.
     pub marks: Vec<f64>,
@@ -54,7 +54,7 @@ impl Chart {
         Self::new(title, unit, marks, bars)
     }
 
-    /// Returns the value at the right end: 2 % beyond the greatest value or mark.
+    /// Returns the value at the right end of the axis: 2 % beyond the greatest value or mark.
     fn to(&self) -> f64 {
         let all = self
             .bars

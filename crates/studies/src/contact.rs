@@ -2,8 +2,8 @@
 //! and early stop.
 //!
 //! - Error is the difference from the resistance of the closures that were read. Every world here has an EMF of 10 uV.
-//! - Repeatability is the scatter of the same bodies fed again and again. Films on the contact cause nearly all of it, and
-//!   it falls with the root of the number of closures.
+//! - Repeatability is the scatter of the same bodies fed again and again. Films on the contact cause nearly all of it,
+//!   and it falls with the root of the number of closures.
 //! - Seconds are those of all stages that read a contact; the same stages measure times and bounce.
 
 use super::figure::{Figure, rms};
@@ -87,7 +87,8 @@ fn drifting(order: &Order) -> anyhow::Result<Vec<Figure>> {
     Ok(figures)
 }
 
-/// Returns, for each number of closures, the scatter of one body from pass to pass, percent of its resistance.
+/// Shows the effect of films: for each number of closures, the scatter of one body from pass to pass, percent of its
+/// resistance.
 fn films(order: &Order) -> anyhow::Result<Vec<Figure>> {
     let bodies = (order.parts / PASSES).max(2);
     let order = Order {
@@ -109,8 +110,8 @@ fn films(order: &Order) -> anyhow::Result<Vec<Figure>> {
     Ok(by_root(figures))
 }
 
-/// Adds the column `by_root` to each row: the value of the first row of the same contact, if scatter falls with the
-/// root of the number of closures. NC has one closure more than NO, at rest.
+/// Adds the column `by_root` to each row: the value expected from the first row of the same contact if scatter falls
+/// with the root of the number of closures. The NC contact has one closure more than NO, the one at rest.
 fn by_root(figures: Vec<Figure>) -> Vec<Figure> {
     let first: Vec<Option<f64>> = figures.iter().take(2).map(|row| row.value).collect();
     let root = |place: usize| {
@@ -123,7 +124,7 @@ fn by_root(figures: Vec<Figure>) -> Vec<Figure> {
         .collect()
 }
 
-/// Returns the pooled scatter of the values of one body, percent of its mean.
+/// Returns the repeatability: the pooled scatter of the values of one body, percent of its mean.
 fn repeatability(name: String, lots: &[Lot], timed: TimedParameter, bodies: u64) -> Figure {
     let body = |lot: &Lot, body: u64| -> Vec<f64> {
         let again = lot.good().filter(|part| (part.seq - 1) % bodies == body);
@@ -142,8 +143,8 @@ fn repeatability(name: String, lots: &[Lot], timed: TimedParameter, bodies: u64)
     Figure::new(name, n, rms, "%").with("seconds", timed.seconds(lots).mean())
 }
 
-/// Compares early stop with a fixed number of closures: early stop reads a part far from its limit once, one near the limit
-/// up to eight times.
+/// Compares early stop with a fixed number of closures: early stop reads a part far from its limit once, one near the
+/// limit up to eight times.
 fn early(order: &Order) -> anyhow::Result<Vec<Figure>> {
     let mut figures = Vec::new();
     for mohm in [20.0, 60.0, 80.0, 95.0] {

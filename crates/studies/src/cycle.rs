@@ -1,7 +1,8 @@
 //! Rig time of a test and of a cycle, and the pieces of both.
 //!
-//! A cycle runs from nest exit to nest exit. The cycle without the test is mechanics; the part of the test that the rows
-//! do not name is `rest`. Shares are means over parts that have both times, so that the pieces add up to the mean cycle.
+//! A cycle runs from nest exit to nest exit. The cycle without the test is mechanics; the part of the test that the
+//! rows do not name is `rest`. Shares are means over parts that have both times, so that the pieces add up to the mean
+//! cycle.
 
 use super::bins;
 use super::chart::Chart;
@@ -112,8 +113,8 @@ fn longest(name: impl Into<String>, bar_s: f64, times: &[f64]) -> Figure {
         .bar(Bar::AtMost(bar_s))
 }
 
-/// Compares the mean test of good parts with the same acts on a bus that takes no time, where conversion, settling and
-/// the contact events alone remain.
+/// Compares the mean test time of good parts with its lower bound: the same acts on a bus that takes no time, so that
+/// conversion, settling and the contact events alone remain.
 pub fn bound(lots: &[Lot], mean_bar: f64) -> Vec<Figure> {
     let tests: Vec<(f64, f64)> = lots
         .iter()

@@ -1,12 +1,13 @@
-//! False accepts and false rejects: counted against the truth, and predicted by the decision rule ([`super::risk`]) from
-//! the rows.
+//! False accepts and false rejects: counted against the truth, and predicted by the decision rule ([`super::risk`])
+//! from the rows.
 //!
 //! A lot in the middle of its limits has next to no risk, and a count of zero proves little. A second set of lots
-//! therefore has its mean operate voltage one standard deviation inside the limit: one part in six lies beyond the limit,
-//! and one in twenty gets a confirmation measurement.
+//! therefore has its mean operate voltage one standard deviation inside the limit: one part in six lies beyond the
+//! limit, and one in twenty gets a confirmation measurement.
 //!
 //! Reference parts and instruments are common to all parts of a lot, so that lots differ by more than chance. The bar
-//! of a count is its prediction plus or minus three standard deviations of the sum over lots, from the scatter of the lots.
+//! of a count is its prediction plus or minus three standard deviations of the sum over lots, from the scatter of the
+//! lots.
 
 use super::bins;
 use super::chart::Chart;
@@ -26,8 +27,8 @@ use std::ops::RangeInclusive;
 const PPM: f64 = 1e6;
 /// Rated voltage of the part that `[lot]` of a world describes, V.
 const LOT_V: f64 = 12.0;
-/// Share of the usual uncertainty: a value with less has had a confirmation measurement, since noise alone changes an
-/// uncertainty by less.
+/// A value whose uncertainty is below this share of the usual one has had a confirmation measurement: noise alone
+/// changes an uncertainty by less than 2 %.
 const AGAIN: f64 = 0.98;
 
 /// Runs the lots and makes the report.
@@ -55,8 +56,8 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     Ok(Report::new("decision", about, groups, chart))
 }
 
-/// Returns the false rejects and accepts that the rule predicts for one parameter, with and without guard band: a row in
-/// parts per million, and the probabilities of a false accept and a false reject with guard band.
+/// Returns the false rejects and accepts that the decision rule predicts for one parameter, with and without guard
+/// band: a row in parts per million, and the probabilities of a false accept and a false reject with guard band.
 fn predicted(
     parameter: Parameter,
     limits: &RangeInclusive<f64>,
@@ -82,9 +83,9 @@ fn readings(parameter: Parameter, lots: &[Lot]) -> Vec<Reading> {
         .collect()
 }
 
-/// Estimates process and measurement from the rows. The process is normal; its variance is that of the values minus
-/// that of the measurement. The uncertainty of one measurement is the median over parts; that after a confirmation
-/// measurement is the median of the clearly smaller ones.
+/// Estimates the distributions of process and measurement from `readings`. The process is normal; its variance is that
+/// of the values minus that of the measurement. The uncertainty of one measurement is the median over parts; that after
+/// a confirmation measurement is the median of the clearly smaller ones.
 fn chance(readings: &[Reading]) -> Option<DecisionRisk> {
     let values = Spread::of(&readings.iter().map(|it| it.value).collect::<Vec<f64>>());
     let stated: Vec<f64> = readings.iter().filter_map(|it| it.uncertainty).collect();

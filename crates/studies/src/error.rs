@@ -47,7 +47,7 @@ impl Errors {
         }
     }
 
-    /// Collects errors that have no uncertainty.
+    /// Collects the listed errors, which have no uncertainty.
     fn listed(errors: impl Iterator<Item = f64>) -> Self {
         Self {
             spread: Spread::of(&errors.collect::<Vec<f64>>()),
@@ -134,7 +134,7 @@ impl Pooled {
         percent(covered, self.n())
     }
 
-    /// Returns the coverage of the lot in which it is least, percent.
+    /// Returns the least coverage of any lot, percent.
     pub fn worst_coverage_pct(&self) -> Option<f64> {
         let each = self.0.iter();
         let covered = each.filter_map(|errors| percent(errors.covered, errors.n()));

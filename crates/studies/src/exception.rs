@@ -3,7 +3,7 @@
 use super::bins::bin_of;
 use super::lot::{Lot, Part};
 
-/// Most parts that a report names; the figures count all of them.
+/// Largest number of parts that a report names; the figures count all of them.
 const SHOWN: usize = 20;
 
 /// Names good parts that did not pass, other parts that did, defects in the bin of another cause, and rows that do not

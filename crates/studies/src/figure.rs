@@ -113,12 +113,12 @@ impl Figure {
     }
 }
 
-/// Returns the share in percent; `None` when `all` is 0.
+/// Returns `some` as a share of `all`, percent; `None` when `all` is 0.
 pub fn percent(some: u64, all: u64) -> Option<f64> {
     (all > 0).then(|| 100.0 * some as f64 / all as f64)
 }
 
-/// Returns the share of a quantity in percent; `None` unless both are known and `all` is above 0.
+/// Returns `some` as a share of `all`, percent; `None` unless both are known and `all` is above 0.
 pub fn share_pct(some: Option<f64>, all: Option<f64>) -> Option<f64> {
     Some(100.0 * some? / all.filter(|all| *all > 0.0)?)
 }

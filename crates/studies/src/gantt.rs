@@ -12,7 +12,7 @@ use machine::rig::point::DigitalOut;
 use machine::rig::wiring::Wiring;
 use tempfile::TempDir;
 
-/// Story of a lot long enough that the followed part has one before it and one behind.
+/// Story of a lot long enough that parts come before the followed part and after it.
 const SCRIPT: &str = "# A chart of one part\nparts 8\n";
 /// Number of parts behind the followed one.
 const BEHIND: usize = 3;

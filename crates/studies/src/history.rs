@@ -24,7 +24,7 @@ use tempfile::TempDir;
 const SHEET: u64 = 100_000;
 /// Number of parts of the smaller exported sheet; the larger one must not need much more memory.
 const LESSER: u64 = 10_000;
-/// Number of parts that the study writes in one transaction each.
+/// Number of parts that the study writes singly, each in a transaction of its own.
 const SINGLE: u64 = 500;
 /// Number of filter queries.
 const FILTERS: usize = 300;
@@ -175,7 +175,7 @@ const PLAIN: &str = "SELECT total(m.value) FROM measurement AS m
     JOIN parameter ON parameter.id = m.parameter_id
     WHERE parameter.key = ?1 AND m.population = 'lot'";
 
-/// Returns a filter for which the history cannot use the packed values of whole runs.
+/// Returns a filter for the parts that passed: for these the history cannot use the packed values of whole runs.
 fn good() -> Filter {
     Filter {
         verdict: Some("pass".to_owned()),
@@ -204,7 +204,8 @@ fn stats(archive: &Archive, db: &Path, name: &str, filter: &Filter) -> anyhow::R
         .with("median_over_plain", ratio.map(|(ours, plain)| ours / plain)))
 }
 
-/// Exports spreadsheets of two sizes, each in a process of its own; returns time of the greater, memory of both.
+/// Exports spreadsheets of two sizes, each in a process of its own; returns the time of the larger one and the memory
+/// of both.
 fn sheets(order: &Order, db: &Path) -> anyhow::Result<Vec<Figure>> {
     let (_, little) = exported(order, db, LESSER)?;
     let (wall, much) = exported(order, db, SHEET)?;

@@ -4,9 +4,9 @@
 //! the middle of a transaction, between beam and row), opens the same history and compares its rows with the parts that
 //! the process printed. The process prints a part when the beam of its bin confirms it, and the gripper opens only over
 //! durable rows. Every printed part must therefore have one row with the same verdict and bin, and curves if it failed;
-//! the numbers of the parts must have no gap; and the file must be undamaged. One round of three counts the time from the
-//! start of the process, the others from the first printed part, so that a busy machine does not kill every lot too early.
-//! All rounds share one history. After every tenth round a short lot runs to its end in it.
+//! the numbers of the parts must have no gap; and the file must be undamaged. One round of three counts the time from
+//! the start of the process, the others from the first printed part, so that a busy machine does not kill every lot too
+//! early. All rounds share one history. After every tenth round a short lot runs to its end in it.
 
 use super::chart::Chart;
 use super::dice::Dice;
@@ -213,7 +213,8 @@ fn has_curves(archive: &Archive, row: &Part) -> anyhow::Result<bool> {
     Ok(shown.iter().all(|it| !it.curves.is_empty()))
 }
 
-/// Returns true when the printed part has the verdict and bin of its row, and its landing, where recorded, the same bin.
+/// Returns true when printed part and row have the same verdict and bin, and the recorded landing, if any, is in this
+/// bin.
 fn is_same(row: &Part, reported: &Value) -> bool {
     reported["verdict"] == row.verdict.as_str()
         && reported["bin"] == row.bin.as_deref().unwrap_or_default()

@@ -29,6 +29,7 @@ mod gantt;
 mod history;
 mod journal;
 mod kill;
+mod life;
 mod lot;
 mod method;
 mod order;
@@ -83,6 +84,8 @@ pub enum Study {
     Threshold,
     /// Lots killed at random instants: rows lost, rows twice, damage
     Kill,
+    /// Memory, open files and rows of `serve` over many lots
+    Life,
     /// Parts per second of wall time, and whether the same seed gives the same bytes
     Pace,
     /// Good parts rejected, defects by bin, over many lots
@@ -111,6 +114,7 @@ impl Study {
             Self::Decision => (20, 500),
             Self::History => (1, 1_000_000),
             Self::Kill => (300, 1),
+            Self::Life => (50, 2_000),
             Self::Pace => (3, 300),
             Self::Promises => (2, 60),
             Self::Sorting => (100, 110),
@@ -134,6 +138,7 @@ impl Study {
             Self::Decision => decision::study(order),
             Self::History => history::study(order),
             Self::Kill => kill::study(order),
+            Self::Life => life::study(order),
             Self::Pace => pace::study(order),
             Self::Promises => promises::study(order),
             Self::Sorting => bins::study(order),

@@ -1,7 +1,7 @@
 //! The rows of one lot, joined with the truth about its parts.
 //!
-//! [`Lot::read`] joins two files of one run by `seq`: the rows of `run --json` and the truth of `--truth`, both one JSON
-//! object per line. It ignores unknown keys, so that either file may grow.
+//! [`Lot::read`] joins two files of one run by `seq`: the rows of `run --json` and the truth of `--truth`, both one
+//! JSON object per line. It ignores unknown keys, so that either file may grow.
 
 use anyhow::{Context, bail};
 use machine::dut::em_relay::Parameter;
@@ -150,7 +150,7 @@ pub struct Summary {
 pub struct BrokenPromise {
     /// Name of the promise.
     pub promise: String,
-    /// Parts of the lot judged before.
+    /// Number of parts of the lot judged before the run found that.
     pub after_parts: u64,
 }
 

@@ -1,4 +1,4 @@
-//! The lots that a study runs: each in a process of this very program, with a history that goes with the process.
+//! The lots that a study runs: each in a process of this very program, with a history in a temporary folder.
 
 use super::lot::{Admitted, Lot};
 use super::pool::{self, LOTS_AT_ONCE};
@@ -33,13 +33,13 @@ pub struct Order {
     pub lots: u64,
     /// First seed; only the study `storm` reads it.
     pub from: u64,
-    /// The only seed to run; only the study `storm` reads it.
+    /// The one seed to run, `None` for all; only the study `storm` reads it.
     pub seed: Option<u64>,
     /// Parts of each lot.
     pub parts: u64,
     /// Lots in worlds that keep every promise; only `promises` reads it.
     pub kept: u64,
-    /// The only broken promise; only `promises` reads it.
+    /// The one promise to break, `None` for all; only the study `promises` reads it.
     pub term: Option<String>,
 }
 

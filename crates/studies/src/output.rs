@@ -106,7 +106,7 @@ impl Report {
     }
 }
 
-/// Returns header and rows; further columns follow in the order of their first appearance.
+/// Returns the cells of header and rows; further columns follow in the order of their first appearance.
 fn cells(figures: &[Figure], number: impl Fn(f64) -> String) -> Vec<Vec<String>> {
     let mut keys: Vec<&str> = Vec::new();
     for (key, _) in figures.iter().flat_map(|figure| &figure.more) {
@@ -148,7 +148,7 @@ fn cells(figures: &[Figure], number: impl Fn(f64) -> String) -> Vec<Vec<String>>
     table
 }
 
-/// Appends the table with the first column, units, bars and results to the left and numbers to the right.
+/// Appends the table to `text`; aligns the first column, units, bars and results to the left, numbers to the right.
 fn aligned(text: &mut String, table: &[Vec<String>]) {
     let columns = table.first().map_or(0, Vec::len);
     let width = |column: usize| {

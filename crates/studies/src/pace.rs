@@ -80,7 +80,7 @@ pub fn same_bytes(lots: &[Lot]) -> Figure {
     .bar(Bar::AtMost(0.0))
 }
 
-/// Returns the mean wall seconds of every entry of the profiles, greatest first; empty without profiles.
+/// Returns the mean wall seconds of each entry of the lots' profiles, greatest first; empty without profiles.
 pub fn profile(lots: &[Lot]) -> Vec<Figure> {
     let profiles = || lots.iter().map(|lot| &lot.summary.wall_profile);
     let names: BTreeSet<&String> = profiles().flat_map(BTreeMap::keys).collect();

@@ -1,9 +1,10 @@
 //! The critical path of a cycle, and how near the line comes to it.
 //!
-//! The nest is never free from nest exit to nest exit: the pusher pushes the next part in, the jaws clamp it while the
-//! pusher returns, the probes rise, the test runs, the fingers grip while the probes go down, the jaws open and z lifts
-//! the part. Each of these strokes waits for the one before; all others (escapement, the way to the bin and back, z down)
-//! overlap with them. No overlap can shorten the sum of the mean travel times of the path and the mean test.
+//! The nest is never idle between one nest exit and the next: the pusher pushes the next part in, the jaws clamp it
+//! while the pusher returns, the probes rise, the test runs, the fingers grip while the probes go down, the jaws open
+//! and z lifts the part. Each of these strokes waits for the one before; all others (escapement, the way to the bin and
+//! back, z down) overlap with them. No overlap can shorten the sum of the mean travel times of the path and the mean
+//! test.
 
 use super::figure::{self, Bar, Figure};
 use super::lot::{Lot, Part};
@@ -34,7 +35,7 @@ fn strokes(mechanism: &MechanismTable) -> [(&'static str, f64); 6] {
     ]
 }
 
-/// Returns the path stroke by stroke, its sum, and parts an hour.
+/// Returns the critical path stroke by stroke, its sum, and the parts per hour.
 ///
 /// # Errors
 /// Fails when the world file cannot be read.

@@ -4,8 +4,9 @@
 //! The uncertainty rests on what `rig.toml` and the recipe promise. Each term of [`TERMS`] is a world that breaks one
 //! promise by [`FACTOR`] and keeps the others. A term keeps its bar when the run notices it in enough lots, or when the
 //! uncertainty of every parameter still covers the truth often enough: coverage has no bar where enough lots notice, and
-//! notice has none where only the coverage is enough. A run has noticed when it raises the alarm of a promise, or when it refuses the calibration. Worlds
-//! that keep every promise give the share of lots with a false alarm.
+//! notice has none where only the coverage is enough. A run has noticed the broken promise when it raises the alarm of
+//! a promise, or when it refuses the calibration. Worlds that keep every promise give the share of lots with a false
+//! alarm.
 
 use super::chart::Chart;
 use super::error::Pooled;
@@ -25,17 +26,17 @@ use toml::{Table, Value};
 
 /// Multiple of the promised value in a world that breaks it.
 const FACTOR: f64 = 2.0;
-/// Least share of lots that notice, percent.
+/// Least share of lots that notice the broken promise, percent.
 const NOTICED_PCT: f64 = 95.0;
 /// Least coverage of a parameter, percent of values.
 const COVERED_PCT: f64 = 92.0;
 /// Greatest share of lots with a false alarm, percent.
 const FALSE_ALARMS_PCT: f64 = 0.5;
-/// Confidence of the upper bound of that share.
+/// Confidence of the upper bound of the share of false alarms, 0 to 1.
 const CONFIDENCE: f64 = 0.95;
 
-/// Every promise of `rig.toml` that a world can break by more scatter or a wider tolerance: dotted path in `rig.toml`,
-/// whose last key is the name of the term, and key of the world.
+/// Each promise of `rig.toml` that a world can break by more scatter or a wider tolerance: its dotted path, whose last
+/// key names the term, and the key of the world that breaks it.
 const TERMS: [(&str, &str); 12] = [
     ("accuracy.ai_noise_lsb", "devices.ai_noise_lsb"),
     (
@@ -101,7 +102,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     Ok(Report::new("promises", about, groups, chart).noted(notes.collect()))
 }
 
-/// Returns name, key of the world and value of each term that the order wants.
+/// Returns the change of the world for each term that the order wants: name of the term, key of the world, value.
 fn changes(order: &Order) -> anyhow::Result<Vec<(&'static str, &'static str, f64)>> {
     let rig = table(&order.config.join("rig.toml"))?;
     let mut all = Vec::new();
@@ -141,7 +142,7 @@ fn number(table: &Table, path: &str) -> Option<f64> {
 }
 
 impl BrokenWorld {
-    /// Returns the share of lots that notice, and the least coverage of a parameter.
+    /// Returns the share of lots that notice the broken promise, and the least coverage of a parameter.
     fn figures(&self) -> [Figure; 2] {
         let n = self.lots.len() as u64;
         let after: Vec<f64> = self.lots.iter().filter_map(noticed_after).collect();
@@ -188,7 +189,7 @@ impl BrokenWorld {
     }
 }
 
-/// Returns the parts judged before the run noticed; `None` when it has not.
+/// Returns the number of parts judged before the run noticed the broken promise; `None` when it did not.
 fn noticed_after(lot: &Lot) -> Option<f64> {
     let broken = lot.summary.broken_promises.iter();
     let after = broken.map(|it| it.after_parts).min();

@@ -1,9 +1,9 @@
 //! Global risks of a wrong decision about a part (JCGM 106:2012, 9.5).
 //!
-//! Process and measurement are normal. With a guard band `w = U` the rule accepts a value inside the limit by w and
-//! rejects a value outside by w. In between it takes a confirmation measurement, and accepts the part only if the mean of
-//! all readings lies inside the limit by the U of that mean. Both readings share the systematic errors: the first one is
-//! the mean plus the noise that averaging removes.
+//! Process and measurement are normal. With a guard band `w = U` the decision rule accepts a value inside the limit by
+//! w and rejects a value outside by w. In between it takes a confirmation measurement, and accepts the part only if the
+//! mean of all readings lies inside the limit by the U of that mean. Both readings share the systematic errors: the
+//! first one is the mean plus the noise that averaging removes.
 
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::ops::RangeInclusive;
@@ -27,8 +27,8 @@ pub struct DecisionRisk {
 }
 
 impl DecisionRisk {
-    /// Returns the probabilities of a false accept and of a false reject, with the limits moved inwards by `guard` times
-    /// the expanded uncertainty (k = 2); `None` unless both standard deviations are positive.
+    /// Returns the probabilities of a false accept and of a false reject, with the limits moved inwards by `guard`
+    /// times the expanded uncertainty (k = 2); `None` unless both standard deviations are positive.
     pub fn of(&self, limits: &RangeInclusive<f64>, guard: f64) -> Option<(f64, f64)> {
         let process = Normal::new(self.mean, self.sd).ok()?;
         let noise = Normal::new(0.0, self.u).ok()?;
@@ -52,7 +52,8 @@ impl DecisionRisk {
         Some((accept, reject))
     }
 
-    /// Returns the probability that the first reading of a part is inconclusive and the confirmation measurement accepts it.
+    /// Returns the probability that the first reading of a part is inconclusive and the confirmation measurement
+    /// accepts it.
     fn second(&self, limits: &RangeInclusive<f64>, guard: f64, truth: f64) -> f64 {
         let (near, band) = (8.0 * self.u, guard * 2.0 * self.u);
         let far = |limit: &f64| (limit - truth).abs() > near;

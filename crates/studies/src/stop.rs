@@ -2,9 +2,9 @@
 //!
 //! Every lot is a story (`relayrig story`) that presses the stop again and again, each time a little later after a part
 //! leaves the nest, or after the reset of a line that was stopped in the middle of a test; then it releases the stop,
-//! clears, resets and starts anew. The journal of the simulated rig gives the instants at which the contact opens and the
-//! last motion output goes off. The bound follows from `rig.toml` and holds for any delay or loss of one transaction;
-//! every second lot therefore runs with replies at the end of their timeout.
+//! clears, resets and starts anew. The journal of the simulated rig gives the instants at which the emergency-stop
+//! contact opens and the last motion output goes off. The bound of the reaction time follows from `rig.toml` and holds
+//! for any delay or loss of one transaction; every second lot therefore runs with replies at the end of their timeout.
 
 mod reaction;
 mod sweep;
@@ -27,7 +27,7 @@ use tempfile::TempDir;
 
 /// Delay of the replies in every second lot, ms: 3 ms less than `rig.toml` allows.
 const LATE_MS: f64 = 25.0;
-/// Number of bars of the chart.
+/// Number of classes of instants; each is a bar of the chart.
 const CLASSES: usize = 20;
 
 /// One press of the emergency stop.
@@ -35,7 +35,8 @@ const CLASSES: usize = 20;
 struct Stop {
     /// Time from the start of the swept interval to the press, seconds.
     instant_s: f64,
-    /// Time from the opening of the contact until the last motion output is off, milliseconds; `None` when none was on.
+    /// Time from the opening of the emergency-stop contact until the last motion output is off, milliseconds; `None`
+    /// when none was on.
     reaction_ms: Option<f64>,
 }
 
@@ -114,7 +115,7 @@ fn reaction(result: &SweepResult, bound_ms: f64) -> Figure {
         .bar(Bar::AtMost(bound_ms))
 }
 
-/// Draws the longest reaction over the instant in the cycle.
+/// Draws the longest reaction in each class of instants in the cycle.
 fn chart(result: &SweepResult, bound_ms: f64) -> Chart {
     let width = result.sweep.span_s() / CLASSES as f64;
     let worst = |class: usize| {

@@ -1,9 +1,9 @@
 //! Study `threshold`: test time against error of the thresholds, for every strategy and baud rate, with the acts and
 //! transactions of the whole line.
 //!
-//! The world has no errors of instruments, certificates, temperature and operations, which leaves the error of the
-//! strategy. Operate includes 25 ms of settling at the pre-bias, because a recipe without coil resistance spends them
-//! there. A pulse gives a bit and no value.
+//! The world has no errors of instruments, certificates, temperature and operations, so that the error of the strategy
+//! remains. The time of the operate threshold includes 25 ms of settling at the pre-bias, because a recipe without coil
+//! resistance spends them there. The strategy `pulse` finds whether a limit is kept, and no value.
 
 use super::figure::Bar;
 use super::method::{self, BAUDS, TimedParameter};
@@ -12,7 +12,7 @@ use super::output::Report;
 use super::variant::Variant;
 use machine::dut::em_relay::{Parameter, Strategy};
 
-/// Operate, with the settling of flux and armature at the pre-bias, and release.
+/// Operate threshold, with the settling of flux and armature at the pre-bias, and release threshold.
 const THRESHOLDS: [TimedParameter; 2] = [
     TimedParameter {
         more_s: 0.025,

@@ -1,4 +1,4 @@
-//! Error of times and bounce: the gain by the latch, and the errors of clock, gate delay and bus.
+//! Error of times and bounce: how far the latch reduces it, and the errors of clock, gate delay and bus.
 //!
 //! Gate 0 ends at the first make; gate 1 counts while the contact is open, and alone would measure the time with its
 //! bounce. The row of the raw gate is therefore the sum of two values of the same test. A count is the number of whole
@@ -17,7 +17,7 @@ use machine::dut::em_relay::Parameter;
 
 const OPERATE: &[&str] = &["timed_operate"];
 const RELEASE: &[&str] = &["timed_release"];
-/// Name, time and bounce of each direction.
+/// Name of each direction (operate, release), its time and its bounce.
 const DIRECTIONS: [(&str, TimedParameter, TimedParameter); 2] = [
     (
         "operate",
@@ -50,7 +50,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     Ok(method::report("timing", order, groups, 2, marks))
 }
 
-/// Returns latched gate, raw gate and bounce of both directions.
+/// Returns the rows of both directions: latched gate, raw gate, bounce.
 fn rows(name: &str, lots: &[Lot]) -> Vec<Figure> {
     let of = |(direction, time, bounce): &(&str, TimedParameter, TimedParameter)| {
         let raw = Pooled::by(lots, |part| raw(part, time.parameter, bounce.parameter));

@@ -1,7 +1,7 @@
 //! `relayrig study transient`: the relay model of the simulated rig over cases from a file.
 //!
-//! The study integrates every case before it prints the first answer. Wall time is the median of [`REPEATS`] integrations
-//! of the same case; all other figures are the same on any machine.
+//! The study integrates every case before it prints the first answer. Wall time is the median of [`REPEATS`]
+//! integrations of the same case; all other figures are the same on any machine.
 //!
 //! Exit status: 0 after all cases, 2 for bad input or a case whose state diverges.
 
@@ -24,14 +24,15 @@ pub const USUAL_RTOL: f64 = 1e-8;
 /// Number of integrations of a case for its wall time.
 const REPEATS: usize = 5;
 
-/// An integrated case.
+/// The answer to one case: its transient, and the wall time of the integration.
 struct Answer {
     name: String,
     transient: Transient,
     wall_us: f64,
 }
 
-/// Integrates the cases of a file (`-` for standard input) and returns the text to print: a JSON line or a table per case.
+/// Integrates the cases of a file (`-` for standard input) and returns the text to print: a JSON line or a table per
+/// case.
 ///
 /// # Errors
 /// Fails when the file cannot be read, when a field is wrong, or when the state of a case diverges.

@@ -13,8 +13,8 @@ use toml::{Table, Value};
 /// A key by its dotted path, and its new value.
 pub type Change = (&'static str, Value);
 
-/// Keys of a world without errors of instruments, temperature and operations, which leaves the error of the strategy.
-/// Noise and resolution of the converters stay; there are no defects.
+/// Keys of an exact world: no errors of instruments, temperature and operations, so that the error of the strategy
+/// remains. Noise and resolution of the converters stay; there are no defects.
 const EXACT: [(&str, f64); 13] = [
     ("devices.ai_gain_pct", 0.0),
     ("devices.ai_offset_pct_of_range", 0.0),
@@ -32,8 +32,8 @@ const EXACT: [(&str, f64); 13] = [
 ];
 /// Standard uncertainty of every certificate in a world without errors: the format demands one above zero.
 const CERTIFIED_U: f64 = 1e-6;
-/// Baud rate below which the host watchdog gets a longer time-out: asking every module at the start takes longer there
-/// than the usual time-out.
+/// Baud rate below which the host watchdog gets a longer time-out: the requests to all modules at the start take longer
+/// there than the usual time-out.
 const SLOW_BAUD: u32 = 19_200;
 
 /// Differences of a variant from the configuration that it copies.
@@ -173,7 +173,7 @@ fn set(table: &mut Table, path: &str, value: Value) -> anyhow::Result<()> {
     }
 }
 
-/// Reads a TOML file.
+/// Reads a TOML file as a table.
 ///
 /// # Errors
 /// Fails when the file cannot be read, or is not TOML.

@@ -91,7 +91,7 @@ pub(crate) fn filled(lang: Lang, pattern: &'static Text, args: &FluentArgs<'_>) 
     errors.is_empty().then(|| text.into_owned())
 }
 
-/// Returns all ids in the order of the file.
+/// Returns the ids of all texts of a language, in the order of its file.
 pub fn ids(lang: Lang) -> impl Iterator<Item = &'static str> {
     resource(lang).entries().filter_map(|entry| match entry {
         Entry::Message(message) => Some(message.id.name),

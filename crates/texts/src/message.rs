@@ -75,7 +75,8 @@ impl Args {
             .collect()
     }
 
-    /// Returns the text of a code; this text may contain the other arguments, as `motion-axis_bin` contains `bin`.
+    /// Returns the text that replaces `code`, the value of argument `name`; it may contain the other arguments, as
+    /// `motion-axis_bin` contains `bin`.
     fn named<'a>(&'a self, lang: Lang, name: &str, code: &'a str) -> Cow<'a, str> {
         let family = name.rsplit('_').next().unwrap_or(name);
         let id = format!("{family}-{code}");

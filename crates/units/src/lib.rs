@@ -137,7 +137,7 @@ impl Volt {
     }
 }
 
-/// An instant of rig time: microseconds since the clock was created.
+/// An instant of rig time: microseconds since the rig's clock was created.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize,
 )]

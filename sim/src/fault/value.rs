@@ -126,7 +126,7 @@ impl Chances {
         self.0.push((probability, window));
     }
 
-    /// Draws whether any of them strikes; draws nothing while no window is open.
+    /// Draws whether any of these faults strikes; draws nothing while no window is open.
     pub(super) fn occurs(&self, rng: &mut ChaCha8Rng, now_us: u64) -> bool {
         self.0.iter().any(|(probability, window)| {
             window.holds(now_us) && *probability > 0.0 && rng.random::<f64>() < *probability

@@ -1,10 +1,10 @@
 //! The counter and frequency module 7080 (7080B, 7080D): two gated 32-bit counters.
 //!
-//! Each counter runs from its preset to its maximum, then wraps to the preset and sets its overflow flag. Gating
-//! is exact as in hardware: a counter holds the pulses of its input during the whole open time of its gate, at
-//! whatever instant the host reads it. Gate mode 0 counts while the gate is shut (low), 1 while it is open (high), 2 always. In
-//! frequency mode (type 51) a reading is the frequency in hertz with the resolution of the gate time: 10 Hz (0.1
-//! s) or 1 Hz (1.0 s, FF bit 2).
+//! Each counter runs from its preset to its maximum, then wraps to the preset and sets its overflow flag. Gating is
+//! exact as in hardware: a counter holds the pulses of its input during the whole open time of its gate, at whatever
+//! instant the host reads it. Gate mode 0 counts while the gate is shut (low), 1 while it is open (high), 2 always. In
+//! frequency mode (type 51) a reading is the frequency in hertz with the resolution of the gate time: 10 Hz (0.1 s) or
+//! 1 Hz (1.0 s, FF bit 2).
 //!
 //! `#AAN` with an invalid channel gets no answer. Settings that survive a power loss count as EEPROM writes.
 //! Every request updates the alarms ([`super::alarm`]). LED commands keep their values and have no effect.
@@ -340,7 +340,7 @@ impl Family for Counter {
         self.outputs = 0;
     }
 
-    /// Counts restart at the preset after a power loss (the battery of the 7080B keeps them).
+    /// Restarts the counts at the preset, as a power loss does (the battery of the 7080B keeps them).
     fn restart(&mut self, _plate: &ModuleBase) {
         self.outputs = 0;
         for channel in &mut self.channels {

@@ -6,7 +6,7 @@
 
 use crate::dcon;
 
-/// One type code TT of an analog input.
+/// Range of an analog input, selected by a type code TT.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     /// Value at +FS, unit of the engineering format (V, mV, mA, C).
@@ -62,7 +62,7 @@ impl Range {
         if !self.shows_over {
             return fraction.clamp(self.lowest / self.full_scale, 1.0);
         }
-        // One unit in the last place beyond the limit counts as the limit.
+        // Half a unit in the last place beyond the limit counts as the limit.
         let slack = 0.5 * 10f64.powi(-(self.decimals as i32));
         if value > self.full_scale + slack {
             f64::INFINITY
@@ -109,7 +109,7 @@ fn without_minus_zero(value: f64, decimals: usize) -> f64 {
     if value.abs() < half_step { 0.0 } else { value }
 }
 
-/// Returns a range of the 7017 and 7018 families.
+/// Returns the range of a 7017 or 7018 with this type code; `None` for a code that they lack.
 pub fn voltage_range(type_code: u8) -> Option<Range> {
     let (full_scale, decimals, per_terminal) = match type_code {
         0x00 => (15.0, 3, 1e3),
@@ -174,7 +174,7 @@ fn thermocouple_range(type_code: u8) -> Option<Range> {
     })
 }
 
-/// Returns a range of the RTD module, degrees Celsius.
+/// Returns the range of the RTD module with this type code, degrees Celsius; `None` for a code that it lacks.
 pub fn rtd_range(type_code: u8) -> Option<Range> {
     let (full_scale, lowest) = match type_code {
         0x20 | 0x24 => (100.0, -100.0),

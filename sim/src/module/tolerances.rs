@@ -1,4 +1,4 @@
-//! Individual errors, conversion rates and latency of one module, beyond its data sheet.
+//! Individual errors, conversion rates and latency of one module, which its data sheet only bounds.
 //!
 //! The seed draws the errors once per module, uniformly within the maker's limits. Each module has a random stream of
 //! its own, chosen by its name, so that adding or removing a module changes nothing for the others.

@@ -22,11 +22,11 @@ use crate::rig::Reply;
 /// Longest sleep of a line's thread.
 const IDLE: Duration = Duration::from_millis(50);
 
-/// Time by which the thread wakes before a deadline: a sleep ends some 60 us late, so the thread yields until the
-/// deadline.
+/// How long before a deadline the thread wakes: a sleep ends some 60 us late, so the thread yields for the remaining
+/// time.
 const EARLY: Duration = Duration::from_micros(120);
 
-/// Lateness of a reply from which on the journal has it, microseconds: two characters at 19,200 baud.
+/// Least lateness of a reply that the journal records, microseconds: two characters at 19,200 baud.
 const LATE_US: u64 = 1_000;
 
 /// Priority of the threads under SCHED_FIFO: below a controller on the same computer, above every usual process.
@@ -97,7 +97,7 @@ fn read(mut master: File, pieces: &Sender<Piece>, end: &AtomicBool) {
 }
 
 /// Raises this thread to SCHED_FIFO where the system grants it. Where it does not, a busy computer may make replies
-/// late; the journal then has them.
+/// late, and the journal records them.
 fn raise() {
     let priority = ThreadPriority::from_posix(ScheduleParams {
         sched_priority: PRIORITY,

@@ -48,7 +48,7 @@ pub struct Board {
     clamp_diode: bool,
     chain: bool,
     touching: bool,
-    /// Film on both coil probes together, ohm; below: its growth per touch.
+    /// Film on both coil probes together, ohm; the next field is its growth per touch.
     film_ohm: f64,
     film_per_touch_ohm: f64,
     source_live: bool,
@@ -325,7 +325,7 @@ impl Board {
         }
     }
 
-    /// Passes the start edge or the opposite edge of the drive to the window flip-flop.
+    /// Passes the edge of the drive that starts a measurement, or the opposite edge, to the window flip-flop.
     fn edges_of_drive(&mut self) {
         let driving = self.switches.drive && self.chain;
         if driving == std::mem::replace(&mut self.driving, driving) {

@@ -70,7 +70,7 @@ impl Cylinder {
         true
     }
 
-    /// Returns the end of the stroke; `None` after [`Cylinder::arrive`].
+    /// Returns the instant at which the stroke ends; `None` after [`Cylinder::arrive`].
     pub fn due_us(&self) -> Option<u64> {
         (!self.arrived).then_some(self.end_us)
     }

@@ -176,7 +176,7 @@ impl Mechanism {
         all
     }
 
-    /// Returns the start of each of the last [`MOTION_STARTS_KEPT`] motions that an output caused: microseconds and actuator.
+    /// Returns the start (microseconds) and actuator of the last [`MOTION_STARTS_KEPT`] motions that an output caused.
     pub fn motion_starts(&self) -> impl Iterator<Item = (u64, &'static str)> + '_ {
         self.driven.iter().copied()
     }

@@ -6,9 +6,9 @@
 //!                 board <-> probes <-> specimen of the part in the nest (a folder per kind: relay, resistor)
 //! ```
 //!
-//! Time runs from event to event: strokes and falls in the mechanism, contacts and timers on the board. Every
-//! subject draws from a stream of its own, so the same seed and stimuli give the same world. The world does not
-//! depend on the purpose of the controller.
+//! Time runs from event to event: strokes and falls in the mechanism, contacts and timers on the board. Every subject
+//! draws from a stream of its own, so the same seed and stimuli give the same world. The world reacts to its terminals
+//! alone, whatever the controller intends.
 
 pub mod axis;
 pub mod board;
@@ -182,7 +182,7 @@ impl World {
         }
     }
 
-    /// Makes the range relays of the supply stick, if the fault still waits.
+    /// Makes the range relays of the supply stick, if that fault has not struck yet.
     fn stick_range(&mut self) {
         if let Some(range) = self.stuck_range.take() {
             self.board.stick(range);

@@ -1,4 +1,4 @@
-//! Replaces the bodies in a program without the feature `bodies`: detects no crash.
+//! Replaces module `bodies` in a program without the feature `bodies`; detects no crash.
 
 use std::collections::BTreeSet;
 

@@ -45,9 +45,9 @@ impl Supply {
 /// Connection of the five pins: input a, input b, common, NO, NC.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pins {
-    /// The right pin is present at this probe pair.
+    /// For each probe pair: the right pin is present.
     pub present: [bool; 5],
-    /// Force and sense probe touch metal, of whatever pin, so that the Kelvin test passes.
+    /// For each probe pair: force and sense probe touch metal, of whatever pin, so that the Kelvin test passes.
     pub kelvin: [bool; 5],
 }
 

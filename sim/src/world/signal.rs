@@ -1,4 +1,4 @@
-//! The fixed names of the points, which assign signals to terminals.
+//! The fixed names of the signals; `rig.toml` wires each signal to a terminal by its name.
 
 /// Declares an enum by the names of its variants in files.
 macro_rules! vocabulary {

@@ -147,7 +147,8 @@ impl Lot {
         }
     }
 
-    /// Returns the reference part at an index, `None` past the last; `other_day` gives the same body another temperature.
+    /// Returns the reference part at an index, `None` past the last; `other_day` gives the same body another
+    /// temperature.
     pub fn reference_part(
         &self,
         seed: u64,

@@ -12,7 +12,7 @@ pub struct Wire<S> {
     pub signal: S,
     /// True when the terminal reads 0 while the signal is present.
     pub active_low: bool,
-    /// Volts at the terminal per unit of the quantity (inputs), or units per volt (outputs).
+    /// For an input, volts at the terminal per unit of the quantity; for an output, units of the quantity per volt.
     pub gain: f64,
 }
 

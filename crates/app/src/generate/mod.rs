@@ -1,10 +1,10 @@
 //! Generates a history as large as weeks of production would make it, for trying queries and reports.
 //!
-//! The values follow the lot of the default world (means, scatter, 4 % defects), and the recipe judges them by the
-//! rules of a run. The parts come in lots of [`LOT`], one every [`CYCLE_US`], and end at [`GenerateOptions::until`].
-//! Five per cent of the values have a second attempt. Only rejects carry raw replies: a rig keeps about thirty replies
-//! per part, which would make the file three times as large and would slow no query. The history marks the runs as
-//! simulated. The same seed gives the same values.
+//! The values are distributed as in a lot of the default simulated world (means, scatter, 4 % defects), and the recipe
+//! judges them by the rules of a run. The parts come in lots of [`LOT`], one every [`CYCLE_US`], and end at
+//! [`GenerateOptions::until`]. Five per cent of the values have a second attempt. Only rejects carry raw replies: a rig
+//! keeps about thirty replies per part, which would make the file three times as large and would slow no query. The
+//! history marks the runs as simulated. The same seed gives the same values.
 
 mod parts;
 
@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 
 /// Parts per lot: production of four hours.
 const LOT: u64 = 10_000;
-/// Parts per transaction.
+/// Parts that one database transaction writes.
 pub const BATCH: u64 = 1_000;
 /// Time between two parts, microseconds: 2,500 parts an hour.
 const CYCLE_US: i64 = 1_440_000;

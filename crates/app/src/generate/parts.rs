@@ -12,7 +12,7 @@ const DEFECTS: f64 = 0.04;
 /// Share of values with a second attempt, 0 to 1.
 const REPEATED: f64 = 0.05;
 
-/// One characteristic, with what is needed to draw its values.
+/// A characteristic whose values are generated, and the distribution to draw them from.
 struct Generated {
     of: Characteristic,
     limit: Limit,

@@ -18,10 +18,10 @@ use texts::Lang;
 
 /// Alarms that put the lot on hold until a person releases it.
 const HOLD_ALARMS: [AlarmCode; 2] = [AlarmCode::ReferenceCheckFailed, AlarmCode::RejectRateLimit];
-/// Alarm that references or reference parts give no calibration; it counts as a failed reference check.
+/// Alarm of a run whose references or reference parts give no calibration; it counts as a failed reference check.
 const NOT_CALIBRATED: AlarmCode = AlarmCode::CalibrationFailed;
 
-/// What the rows so far say about the run.
+/// State of the run as the rows so far give it; the next rows depend on it.
 #[derive(Debug)]
 pub struct Journal {
     /// Name of the lot; `None` between lots.

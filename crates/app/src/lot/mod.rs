@@ -151,13 +151,13 @@ impl LotRunner<'_> {
     }
 }
 
-/// Returns the end of a program that cannot write its history.
+/// Returns the exit of a program that has lost its history, because it cannot write it.
 pub(crate) fn lost(error: &anyhow::Error) -> Exit {
     tracing::error!("history: {error:#}");
     Exit::Trouble(Cause::history_lost(&format!("{error:#}")))
 }
 
-/// Returns the clock of a rig.
+/// Returns the pace of rig time: virtual, or that of the wall clock.
 pub(crate) fn pace_of(source: &RigSource) -> Pace {
     match source.is_virtual() {
         true => Pace::virtual_time(),
@@ -184,11 +184,11 @@ impl Stream<'_, '_> {
         self.recorder.receive(event, &self.lot)
     }
 
-    /// Receives the events of the cycle until it ends; sets `recorded` to the last durable part. [`Stream::close`]
-    /// writes the rows that an outage leaves pending.
+    /// Keeps the events of the cycle in the history until the cycle ends; sets `recorded` to the last part on the disk.
+    /// [`Stream::close`] writes the rows that an outage leaves pending.
     ///
     /// # Errors
-    /// Fails when an event has no rows.
+    /// Fails when an event cannot be made into rows.
     async fn keep(
         &mut self,
         mut events: mpsc::UnboundedReceiver<Event>,
@@ -220,7 +220,7 @@ impl Stream<'_, '_> {
         }
     }
 
-    /// Publishes the last durable part and the end of an outage.
+    /// Publishes the ordinal of the last part on the disk, and the end of an outage.
     fn written(&self, outage: &mut Option<Outage>, ordinal: u64, recorded: &AtomicU64) {
         recorded.fetch_max(ordinal, Ordering::AcqRel);
         if outage.take().is_some() {

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::time::Instant;
 use units::{RigTime, Span};
 
-/// Time between two tries.
+/// Time between two tries to write the history.
 const RETRY: Span = Span::ms(1000);
 
 /// An outage of the history.
@@ -47,12 +47,12 @@ impl Outage {
     }
 }
 
-/// Repeats writes of the history that fail while no cycle turns.
+/// Repeats failed writes of the history while no cycle runs.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct HistoryRetry<'a> {
     /// History file.
     pub db: &'a Path,
-    /// Flags and view of the program.
+    /// Stop flags and view that the program shares with screens.
     pub controls: &'a Controls,
     /// Clock of the rig.
     pub pace: Pace,

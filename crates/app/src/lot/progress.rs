@@ -33,7 +33,7 @@ pub struct PartUnderWay {
 }
 
 impl PartUnderWay {
-    /// Returns the part's number within its kind, and the name of the kind.
+    /// Returns the number of the part among those of its kind, and the name of the kind.
     pub fn number(&self) -> (u64, &'static str) {
         rows::number(&self.judged.part.kind, self.reference_count)
     }
@@ -56,7 +56,7 @@ pub struct LotProgress<'a> {
     broken: Vec<BrokenPromise>,
     /// First alarm of the last trouble: the first one that makes the machine abort, hold or suspend.
     trouble: Option<Alarm>,
-    /// False while an alarm of that trouble is active.
+    /// False while an alarm of the last trouble is active.
     trouble_is_over: bool,
 }
 

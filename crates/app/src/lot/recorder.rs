@@ -60,7 +60,7 @@ impl Recorder {
         Ok((recorder, prior_state))
     }
 
-    /// Queues the begin of a run.
+    /// Queues the rows that begin a run.
     fn begin(&mut self, context: &LotContext, calibration: Option<&Calibration>) {
         let (order, recipe) = (context.order, context.recipe);
         self.rows.push(Row::Run(LotRecord {
@@ -81,7 +81,7 @@ impl Recorder {
     /// Turns an event into rows that wait for the next transaction.
     ///
     /// # Errors
-    /// Fails when a calibration is no JSON.
+    /// Fails when a calibration cannot be written as JSON.
     pub fn receive(&mut self, event: &LotEvent, lot: &LotProgress) -> anyhow::Result<()> {
         match event {
             LotEvent::Cycle(event) => self.of_the_cycle(event, lot)?,
@@ -226,7 +226,7 @@ impl Recorder {
         Ok(self.judged.take())
     }
 
-    /// Queues how the run ended.
+    /// Queues the rows about the end of the run.
     pub fn end(&mut self, ending: &Ending, exit: &Exit, lot: &LotProgress) {
         self.queue_contents();
         let end_us = lot.context.wall_us(lot.end());
@@ -248,7 +248,7 @@ impl Recorder {
         }
     }
 
-    /// Writes the pending rows while no cycle turns.
+    /// Writes the pending rows while no cycle runs.
     fn write(&mut self) -> anyhow::Result<()> {
         let store = self.store.as_mut().context("the history is closed")?;
         store.record(&self.rows)?;

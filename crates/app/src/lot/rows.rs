@@ -10,7 +10,7 @@ use machine::instrument::trace::Trace;
 use serde_json::{Map, Value, json};
 use units::RigTime;
 
-/// Returns the part's number within its kind, and the name of the kind.
+/// Returns the number of a part among those of its kind, and the name of the kind.
 pub fn number(kind: &PartRole, reference_count: u64) -> (u64, &'static str) {
     match kind {
         PartRole::Lot(seq) => (*seq, "lot"),

@@ -96,9 +96,9 @@ impl Summary {
 /// A promise that did not hold, and since when.
 #[derive(Debug, Clone, Serialize)]
 pub struct BrokenPromise {
-    /// Parts of the lot judged before, with the uncertainty that was promised.
+    /// Number of parts of the lot judged before, with the promised uncertainty.
     pub after_parts: u64,
-    /// Promise, what is seen of it, and the value that the uncertainty of later parts contains.
+    /// The promise, its promised and its observed value, and the value that budgets of later parts use.
     #[serde(flatten)]
     pub broken: Broken,
 }

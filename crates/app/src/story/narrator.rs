@@ -21,7 +21,7 @@ use units::RigTime;
 #[derive(Debug)]
 pub struct Narrator {
     text: String,
-    /// Rig time of the first trouble.
+    /// Rig time from which the account counts seconds: that of the first trouble; `None` before it.
     zero: Option<RigTime>,
     /// Name and verdict of each part, by ordinal.
     parts: BTreeMap<u64, (String, &'static str)>,
@@ -123,7 +123,7 @@ impl Narrator {
         self.stamped(now, &text);
     }
 
-    /// Returns the account; its end tells the parts in each bin, the collisions and the overdriven coils of `rig`.
+    /// Returns the account, which ends with the parts in each bin, the collisions and the overdriven coils of `rig`.
     pub fn end(mut self, rig: &SharedRig) -> String {
         let bins: Vec<String> = self
             .bins

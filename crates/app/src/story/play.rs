@@ -25,7 +25,7 @@ pub const SILENCE_TIMEOUT: Span = Span::ms(180_000);
 /// Result of a story.
 #[derive(Debug)]
 pub struct StoryReport {
-    /// The account, line by line.
+    /// The account of the story, line by line.
     pub text: String,
     /// True when the whole script was played and the journal was written.
     pub complete: bool,
@@ -38,7 +38,7 @@ pub(super) struct Player {
     journal: Option<File>,
 }
 
-/// What has happened so far, as far as a step of the script may wait for it.
+/// Events so far that a step of the script may wait for.
 #[derive(Debug, Default)]
 struct Observed {
     lot: bool,

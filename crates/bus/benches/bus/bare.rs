@@ -1,6 +1,6 @@
-//! The peer of a busy line: a bare client that sends a request, reads up to the CR, waits for the time of two
-//! characters and sends the next request. What it loses against the bound is due to the simulated modules, the
-//! pseudo-terminal and this machine, so any host loses it.
+//! The peer of a busy line (`busy.rs`): a bare client that sends a request, reads up to the CR, waits for the time of
+//! two characters and sends the next request. Its utilisation is lower than the bound because of the simulated modules,
+//! the pseudo-terminal and this machine, which slow any host.
 
 use bus::Wire;
 use std::io::{self, Read, Write};
@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 /// Longest wait for a reply.
 const TIME_OUT: Duration = Duration::from_secs(2);
 
-/// How late a sleep may end; the wait sleeps that much less and then spins on the clock.
+/// How late a sleep may end; a wait sleeps that much less and then spins on the clock.
 const LATE: Duration = Duration::from_micros(150);
 
 /// Sends each of `requests` and reads its reply; returns the time from the first request to the last one.

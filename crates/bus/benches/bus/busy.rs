@@ -1,10 +1,10 @@
 //! Utilisation of a line: time that wire and module need, divided by the elapsed time; on a pseudo-terminal with the
 //! paced simulated modules, and with a request always waiting.
 //!
-//! After each reply the line rests for two characters. No host can avoid this rest, and what it costs depends on the
-//! length of the frames. So each workload is shown with the utilisation that the rest alone would allow (`bound`), and
+//! After each reply the line pauses for two characters. No host can avoid this pause, and what it costs depends on the
+//! length of the frames. So each workload is shown with the utilisation that the pause alone would allow (`bound`), and
 //! with that of a bare client on the same pseudo-terminal in the same run (`peer`). No host can exceed the bound, and
-//! hardly any on this machine the peer.
+//! on this machine hardly any exceeds the peer.
 
 use super::bare;
 use bus::{Answer, LineSettings, Pace, Request, Wire};
@@ -40,7 +40,7 @@ address = 3
 model = "I-7080"
 "#;
 
-/// Commands that the line sends in turn, with a name.
+/// A named list of commands that the line sends in turn.
 struct Workload {
     name: &'static str,
     commands: Vec<Command>,
@@ -82,14 +82,14 @@ fn workloads() -> Vec<Workload> {
     ]
 }
 
-/// What one workload gave at one baud rate.
+/// A row of the printed table: one workload, measured at one baud rate.
 struct Row {
     asked: usize,
     /// Mean number of characters in request and reply together.
     characters: f64,
     /// Utilisation of the line, 0 to 1.
     share: f64,
-    /// Utilisation if nothing but the rest of two characters came between two transactions, 0 to 1.
+    /// Utilisation if nothing but a pause of two characters came between two transactions, 0 to 1.
     bound: f64,
     /// Utilisation of the bare client, 0 to 1.
     peer: f64,
@@ -189,7 +189,7 @@ fn row(
         .map(|pair| pair[1].since(pair[0]).0)
         .collect();
     let elapsed = times[count - 1].since(times[0]).0;
-    // No request follows the last answer, so the last answer has no time to the next one.
+    // The last answer is left out, because no request follows it.
     let characters: Vec<usize> = answers[..count - 1].iter().map(characters).collect();
     let needed: u64 = characters
         .iter()

@@ -5,7 +5,7 @@ use dcon::{AnalogIn, Channel, DataFormat, InputForm, TypeCode};
 
 /// A count whose last checksum digit is wrong.
 const DAMAGED: &[u8] = b">0000001ED5\r";
-/// The counts 31 and 90 000 000.
+/// A reading soon after: count 31. `ELSEWHERE` is a reading far from it: count 90 000 000.
 const SOON: &[u8] = b">0000001FD5\r";
 const ELSEWHERE: &[u8] = b">055D4A80F9\r";
 

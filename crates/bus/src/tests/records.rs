@@ -69,8 +69,8 @@ fn the_longest_transaction_is_that_of_the_slowest_command() {
     let settings = settings();
     let both = longest_transaction(&settings, &[count(), write(), Command::HostOk]);
     assert_eq!(both, longest_transaction(&settings, &[count()]));
-    // Three times (request, repetition, resynchronisation): 7 + 12 characters, 30 ms and a rest of two characters. Then
-    // a silence of 12 characters and 30 ms.
+    // Three exchanges (request, repetition, resynchronisation), each 7 + 12 characters, 30 ms and a pause of two
+    // characters. Then a silence of 12 characters and 30 ms.
     let wire = |characters| settings.wire().time(characters).0;
     assert_eq!(
         both.0,

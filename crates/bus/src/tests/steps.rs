@@ -47,7 +47,7 @@ fn neighbour() -> Command {
     Counter::Read(UpTo::new(0).unwrap()).to(Address(5))
 }
 
-/// Sends one request to the slow module, then requests to the fast one for half a second.
+/// Sends one request to the slow module, then requests to the fast one for half a second; returns the answers.
 fn answers(late: u64, dead: usize) -> Vec<Answer> {
     in_virtual_time(async {
         let pace = Pace::virtual_time();

@@ -7,7 +7,7 @@ const QUOTA: &[Key] = keys! {
     key("auxiliary_s", from_to(0.0, 3600.0, "s"), "report", "planned time beside it that overlaps nothing else");
 };
 
-/// Keys of the whole file.
+/// All keys of `card.toml`.
 pub const FILE: &[Key] = keys! {
     key("workshop", Form::Text, "report", "workshop of the card");
     key("operation_no", Form::Text, "report", "number of the operation in the process");

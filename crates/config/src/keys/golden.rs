@@ -3,7 +3,7 @@
 use machine::dut::em_relay::keys::reference_part::PART;
 use machine::form::{Form, Key, from_to, key};
 
-/// Keys of the whole file.
+/// All keys of `golden.toml`.
 pub const FILE: &[Key] = keys! {
     key("reference_temperature_c", from_to(-40.0, 85.0, "C"), "gauge", "temperature of the certified values");
     key("golden", Form::List(&Form::Table(PART)), "gauge", "the reference parts");

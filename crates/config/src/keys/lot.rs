@@ -17,7 +17,7 @@ const WEAR: &[Key] = keys! {
         "both force contacts of the coil in series, mean over the last parts, beyond what they were at the calibration");
 };
 
-/// Keys of the whole file.
+/// All keys of `lot.toml`.
 pub const FILE: &[Key] = keys! {
     optional("first_article_parts", whole(0, 1000, ""), "station",
         "parts at the begin of a run that get confirmation measurements; 0 without it");

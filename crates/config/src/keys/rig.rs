@@ -13,7 +13,7 @@ use measuring::{ACCURACY, CALIBRATION};
 use modules::{BUS, HISTORY, LINE, MODULE, SAFETY};
 use points::{ACTUATOR, ANALOG_IN, ANALOG_OUT, BIN, CHANNEL, DIGITAL_IN, STATION, SUPPLY_RANGE};
 
-/// Returns the form of points that only kinds of device need: none must exist, and `may` returns the known names.
+/// Returns the form of points that only kinds of device need: no point is required, and `may` returns the known names.
 const fn of_kinds(may: fn() -> Vec<&'static str>, entry: &'static Form) -> Form {
     Form::Points(Points {
         must: &[],
@@ -58,7 +58,7 @@ fn counter() -> Vec<&'static str> {
     declared(|kind| kind.counter.to_vec())
 }
 
-/// Keys of the whole file.
+/// All keys of `rig.toml`.
 pub const FILE: &[Key] = keys! {
     key("line", Form::Named(&Form::Table(LINE)), "bus", "RS-485 lines by name");
     key("bus", Form::Table(BUS), "bus, cycle", "times and counts of every line");

@@ -29,7 +29,7 @@ fn without(lacks: impl Fn(&str, &Table) -> bool) -> Table {
     rig
 }
 
-/// Returns the default rig without its measuring line and without everything on it.
+/// Returns the default rig without its coil board: without the measuring line and everything on it.
 fn without_the_coil_board() -> Table {
     let rig: Table = toml::from_str(RIG).unwrap();
     let measures = |module: &Value| module["line"].as_str() == Some("measure");

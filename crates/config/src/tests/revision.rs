@@ -102,8 +102,8 @@ fn a_refused_revision_names_its_key_and_changes_nothing() {
         ("name", json!("other"), "name"),
         ("title_zh", json!("  "), "title_zh"),
         ("test.prebias_v", json!(8.0), "test.prebias_v"),
-        // These modules measure so coarsely that the guard bands leave no value to pass: the plant refuses it, not the
-        // file.
+        // The plant, not the file, refuses this limit: its modules measure so coarsely that the guard bands leave no
+        // value that passes.
         (coil, json!(439.9), "limits.coil_resistance_ohm"),
     ] {
         let refused = revise(&plant, &change(&plant, path, value)).unwrap_err();

@@ -23,7 +23,7 @@ fn change(recipe: &mut DocumentMut, path: &str, value: &str) {
     table.insert(key, entry["value"].clone());
 }
 
-/// Every fault that the check of the configuration finds after the changes of one recipe, one per line.
+/// Returns every fault that the check of the configuration finds after the changes of one recipe, one per line.
 fn faults(dir: &Path, changed: &str) -> String {
     let (name, changes) = changed.split_once(": ").unwrap();
     let path = dir.join(format!("recipes/{name}.toml"));

@@ -3,7 +3,7 @@
 use super::{Filter, Select};
 
 impl Filter {
-    /// Selects runs.
+    /// Selects the runs of the filter.
     pub(in super::super) fn runs(&self) -> Select {
         let mut select = Select::new(
             "SELECT run.id FROM run JOIN lot ON lot.id = run.lot_id \
@@ -21,7 +21,7 @@ impl Filter {
         select
     }
 
-    /// Selects alarms, with their lot and run, in order of time.
+    /// Selects the alarms of the filter, with their lot and run, in order of time.
     pub(in super::super) fn alarms(&self) -> Select {
         let mut select = Select::new(
             "SELECT lot.name, run.number, alarm.code, alarm.line, alarm.text, alarm.raised_at_us, \
@@ -39,7 +39,7 @@ impl Filter {
         select
     }
 
-    /// Selects orders, with their lot and run, in order of time.
+    /// Selects the orders of the filter, with their lot and run, in order of time.
     pub(in super::super) fn orders(&self, who: Option<&str>) -> Select {
         let mut select = Select::new(
             "SELECT ordered.at_us, lot.name, run.number, ordered.who, ordered.role, ordered.origin, \

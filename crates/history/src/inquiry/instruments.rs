@@ -8,7 +8,7 @@ use machine::dut::instruments::{Certificate, factors};
 use serde::Serialize;
 use units::Unit;
 
-/// Coverage factor of all expanded uncertainties in the answer.
+/// Coverage factor of all expanded uncertainties in [`Instruments`].
 const K: f64 = 2.0;
 
 /// Calibrations and reference parts of a rig.
@@ -63,7 +63,7 @@ pub struct ReferencePartStatus {
     pub nominal_v: f64,
     /// Time of its last test, if any.
     pub seen: Option<Moment>,
-    /// Lot and run of that test.
+    /// Lot and run of its last test.
     pub run: Option<(String, u32)>,
     /// Certified quantities, each with its latest reading.
     pub values: Vec<CertifiedReading>,

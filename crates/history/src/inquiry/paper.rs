@@ -10,7 +10,7 @@ use crate::store::PROGRAM;
 use crate::{Archive, Filter};
 use jiff::{Timestamp, tz::TimeZone};
 
-/// Returns paper for the selected runs, marked when one of them was on the simulated rig.
+/// Returns the settings of a page about the selected runs, marked SIMULATION when one of them was on the simulated rig.
 pub fn paper_of(archive: &Archive, filter: &Filter, language: Lang) -> Result<Paper> {
     Ok(Paper {
         simulated: archive.is_simulated(filter)?,
@@ -18,7 +18,8 @@ pub fn paper_of(archive: &Archive, filter: &Filter, language: Lang) -> Result<Pa
     })
 }
 
-/// Returns paper with the time zone of this computer and a foot with time and version, for no part.
+/// Returns the settings of a page that is not marked SIMULATION: time zone of this computer, time and version at the
+/// foot.
 pub fn paper(language: Lang) -> Paper {
     let zone = TimeZone::system();
     let now = Timestamp::now().to_zoned(zone.clone());
@@ -31,8 +32,8 @@ pub fn paper(language: Lang) -> Paper {
     }
 }
 
-/// Returns the report of a lot. `ideal_cycle_s` is the shortest cycle that the line can keep, seconds; without it the 5
-/// % quantile of the cycle times is used.
+/// Returns the report of a lot. `ideal_cycle_s` is the shortest cycle that the line can keep, seconds; when absent, the
+/// 5 % quantile of the cycle times.
 pub fn lot_report(
     archive: &Archive,
     filter: &Filter,
@@ -78,7 +79,7 @@ fn measured(archive: &Archive, filter: &Filter) -> Result<Vec<ParameterValues>> 
     Ok(measured)
 }
 
-/// Returns the certificate of part `seq` of the lot; its latest run is meant unless the filter names a run.
+/// Returns the certificate of part `seq` of the lot, from its latest run unless the filter names a run.
 pub fn part_certificate(
     archive: &Archive,
     filter: &Filter,

@@ -29,7 +29,7 @@ pub struct RejudgedPart {
     pub bin: String,
     /// Reasons why the part does not pass by the other recipe, as texts.
     pub reasons: Vec<String>,
-    /// The same reasons as codes.
+    /// The same `reasons` as codes.
     pub reason_codes: Vec<Reason>,
 }
 
@@ -48,7 +48,7 @@ pub struct Changes {
     pub tag: &'static str,
     /// Name of the other recipe.
     pub recipe: String,
-    /// SHA-256 of its text.
+    /// SHA-256 of the text of the other recipe.
     pub recipe_hash: String,
     /// Number of parts for each pair of old and new verdict.
     pub changes: Vec<Change>,
@@ -70,7 +70,8 @@ pub struct Change {
 pub struct Rejudging {
     recipe: Recipe,
     filter: Filter,
-    /// Recipe data that the values of each run were measured by; an import without a recipe has those of `recipe`.
+    /// Data of the recipe by which the parts of each run were measured, by number of the run; for an import without a
+    /// recipe, `recipe` takes its place.
     bases: BTreeMap<u32, Basis>,
 }
 

@@ -8,8 +8,8 @@ use quality::effectiveness::{Effectiveness, Observed, effectiveness};
 /// Quantile of the cycle times that stands in for a missing ideal cycle time.
 const QUICKEST: f64 = 0.05;
 
-/// Computes the use of the time. The time from start to end of each run is planned time; an alarm that was not cleared
-/// ends with its run. Returns `None` for imports, which have no times.
+/// Computes the effectiveness (OEE) of `runs`. The time from start to end of each run is planned time; an alarm that
+/// was not cleared ends with its run. Returns `None` for imports, which have no times.
 pub(super) fn use_of_time(
     archive: &Archive,
     filter: &Filter,

@@ -35,7 +35,7 @@ pub struct LotReport<'a> {
 pub struct ParameterValues {
     /// Key of the parameter.
     pub key: String,
-    /// Limits in force.
+    /// Limits that all runs share; none when they differ.
     pub limits: Limits,
     /// Values in order of time.
     pub values: Vec<f64>,

@@ -1,16 +1,16 @@
 //! A drawing area with axes: converts values to places, draws ticks at round values, lines and marks. Lengths are in px
-//! of the view box.
+//! of the SVG's view box.
 
 use super::svg::Svg;
 use quality::ordered::round_step;
 
-/// Margins around the plot, px, for numbers and names.
+/// Margins on the four sides of the plot, px, for numbers and names.
 const LEFT: f64 = 58.0;
 const BELOW: f64 = 24.0;
 const ABOVE: f64 = 10.0;
 const RIGHT: f64 = 64.0;
 
-/// Colours that differ in lightness too, so that a grey print shows them apart.
+/// Colours of a plot; they differ in lightness too, so that a grey print shows them apart.
 pub(super) const LINE: &str = "#1f5f99";
 pub(super) const LIMIT: &str = "#a11212";
 pub(super) const QUIET: &str = "#8a97a5";

@@ -14,9 +14,9 @@ use quality::tally::Tally;
 use rust_xlsxwriter::{Chart, ChartType, Color, Format, Workbook, Worksheet, XlsxError};
 use std::collections::BTreeMap;
 
-/// Most parts on one sheet; a spreadsheet can hold 1,048,576 rows.
+/// Largest number of parts on one sheet; a spreadsheet can hold 1,048,576 rows.
 const ROWS: u32 = 1_000_000;
-/// Days from the day that spreadsheets count from to 1 January 1970.
+/// 1 January 1970 in days, as spreadsheets count them.
 pub const EPOCH_DAYS: f64 = 25_569.0;
 /// Height of a chart, in rows of the summary.
 const CHART_ROWS: u32 = 16;
@@ -235,8 +235,8 @@ fn number(to: &mut Worksheet, row: u32, column: u16, value: Option<f64>) -> Resu
     Ok(())
 }
 
-/// Converts an instant to local time in days as spreadsheets count them, to the second; `None` beyond the range of the
-/// calendar.
+/// Converts an instant to the serial date of a spreadsheet: local time in days, to the second; `None` beyond the range
+/// of the calendar.
 fn serial(at: Moment, zone: &TimeZone) -> Option<f64> {
     let stamp = Timestamp::from_microsecond(at.0).ok()?;
     let stamp = stamp.round(Unit::Second).ok()?;

@@ -1,4 +1,5 @@
-//! Builds a picture as SVG text. Lengths are in px of the view box; `style` holds further attributes of an element.
+//! Builds a picture as SVG text. Lengths are in px of the SVG's view box; `style` holds further attributes of an
+//! element.
 
 use std::fmt::Write;
 

@@ -21,7 +21,7 @@ fn record(store: &mut Store, lot: &str, seqs: impl Iterator<Item = u64>) {
     store.record(&rows).unwrap();
 }
 
-/// Checks that both query paths agree over all runs, one run, and a page.
+/// Checks that packed values agree with those of the index, over all runs, one run, and a page.
 fn agree(file: &File) {
     let archive = file.archive();
     let of_b = Filter {

@@ -4,8 +4,8 @@ use super::timing::{Rounds, TURNS, Timed};
 use super::world::{KINDS, gripper, moves, world};
 use super::{QUERIES, RANGE_MM, SIZES, built, mover, stop};
 
-/// Prints the mean time for every size, ns, and the ratio of the largest to the smallest. Measurements alternate
-/// between the sizes.
+/// Prints each cost (time or memory) at every size, and the ratio of the largest to the smallest. Measurements
+/// alternate between the sizes.
 pub fn report(clock: f64) {
     let mover = mover(gripper());
     let worlds = SIZES.map(world);

@@ -217,7 +217,7 @@ impl Bench {
         self.any_row("far above", "any hit", || Timed::new(&ways, self.clock));
     }
 
-    /// Measures queries whose order changes from pass to pass.
+    /// Measures queries whose order changes from pass to pass, so that the processor does not learn it.
     fn unlearned_kind(&self, kind: &str, ways: &[Move]) {
         self.any_row(kind, "any, no order", || Timed::unlearned(ways, self.clock));
     }

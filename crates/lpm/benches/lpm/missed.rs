@@ -9,7 +9,7 @@ use super::{BAR, Bench, mover, row};
 /// Height above every element, mm.
 const FAR_ABOVE_MM: f64 = 10_000.0;
 
-/// Returns the same moves, lifted far above the elements.
+/// Returns `ways` lifted far above the elements.
 pub fn lifted<'a>(ways: &[Move<'a>]) -> Vec<Move<'a>> {
     let mut above = ways.to_vec();
     for way in &mut above {

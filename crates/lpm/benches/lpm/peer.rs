@@ -19,7 +19,7 @@ macro_rules! peer {
             };
             use $library::shape::{Compound, SharedShape};
 
-            /// A body of the library and its pose.
+            /// A shape of parry3d with its pose.
             pub type Placed = (Pose, SharedShape);
 
             pub struct Peer {
@@ -79,7 +79,8 @@ macro_rules! peer {
                     rounds.turn(|| bodies.to_vec(), Compound::new);
                 }
 
-                /// Inserts one leaf into the raw tree and removes it; its bounds are computed in advance.
+                /// Returns a function that inserts one leaf into the raw tree and removes it; its bounds are computed
+                /// in advance.
                 pub fn editor(&self) -> impl FnMut(&usize) {
                     let bounds = self.scene.aabbs();
                     let spare = bounds.len() as u32;

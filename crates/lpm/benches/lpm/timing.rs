@@ -7,8 +7,8 @@
 //! prediction know these very queries. The rows in random order shuffle the queries before each pass and use the median
 //! of the passes.
 //!
-//! A clock with coarse steps shows too little, most of all in the best of several readings: with steps of 10 ns about
-//! 2 ns too little for a query of 50 ns, and less for an empty one.
+//! A clock with coarse steps reads too short, most of all in the best of several readings: with steps of 10 ns some 2
+//! ns too short for a query of 50 ns, and less for an empty one.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -96,7 +96,7 @@ impl<'a, Q> Timed<'a, Q> {
         }
     }
 
-    /// Returns the distribution over the queries of the best time of each; for shuffled queries, of the median time.
+    /// Returns the distribution, over the queries, of the best time of each query, or of its median time when shuffled.
     pub fn spread(mut self) -> Spread {
         let which = if self.dice.is_some() {
             TURNS * PASSES / 2
@@ -111,7 +111,7 @@ impl<'a, Q> Timed<'a, Q> {
     }
 }
 
-/// Times one contestant alone.
+/// Times one contestant alone, with warm caches.
 pub fn warm<Q, A>(queries: &[Q], clock_ns: f64, mut ask: impl FnMut(&Q) -> A) -> Spread {
     let mut timed = Timed::new(queries, clock_ns);
     (0..TURNS).for_each(|_| timed.turn(&mut ask));

@@ -34,7 +34,7 @@ impl Cut {
     }
 }
 
-/// Returns a direction at least as good as `n`, whose separation is `best` (mm).
+/// Returns a direction at least as good as `n`; `best` is the separation along `n`, mm.
 pub(super) fn polished(a: &Piece, b: &Piece, c: Vec3, n: Vec3, best: f64, resolution: f64) -> Vec3 {
     let (mut n, mut best) = (n, best);
     let mut points = vec![support(a, b, c, n).w];

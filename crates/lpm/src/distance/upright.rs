@@ -90,7 +90,7 @@ fn footprints(a: Footprint, b: Footprint, c: Vec2) -> Flat {
     }
 }
 
-/// Returns the nearest points after both footprints are grown by their radii.
+/// Returns `flat` with its gap shrunk: its two points are grown to discs of radius `ra` and `rb`.
 fn shrunk(flat: Flat, ra: f64, rb: f64) -> Flat {
     let distance = flat.apart[0].hypot(flat.apart[1]);
     let left = distance - ra - rb;

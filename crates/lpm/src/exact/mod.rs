@@ -24,7 +24,7 @@ use polytope::Polytope;
 /// A body at a place; lengths in units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
-    /// Place of the origin of its form.
+    /// Place of the body's centre, the origin of its form.
     pub centre: [i64; 3],
     /// Form of the body.
     pub form: Form,
@@ -51,7 +51,7 @@ pub enum Form {
     Triangle([[i64; 3]; 3]),
 }
 
-/// The identity quaternion.
+/// Rotation of an upright body: the identity quaternion.
 pub const UPRIGHT: [i64; 4] = [1, 0, 0, 0];
 
 impl Body {

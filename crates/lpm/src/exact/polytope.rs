@@ -87,7 +87,7 @@ fn triangle(corners: [Vector; 3]) -> Polytope {
         normal, [0; 3],
         "a triangle that is a segment has no exact truth here"
     );
-    // The rims of a flat body count as faces, for the sake of neighbours in the same plane.
+    // The rims of a flat body count as faces, so that a plane separates it from a body beside it in its own plane.
     let rims = edges.iter().map(|edge| cross(*edge, normal));
     Polytope {
         scale: 1,

@@ -1,7 +1,7 @@
 //! Contact of an upright cylinder with another one, or with a block that is turned only about z.
 //!
-//! In z this is an interval. On the baseplate it is a disc with a disc, or a disc with a rectangle: two slabs, and four
-//! discs at the corners, in the frame of the rectangle.
+//! The Minkowski sum of both is an interval in z. On the baseplate it is a disc, or a rectangle with round corners: two
+//! slabs, and four discs at the corners, in the frame of the rectangle.
 
 use super::Form;
 use super::times::{Stretch, Time};

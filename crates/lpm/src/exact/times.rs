@@ -1,6 +1,6 @@
 //! Intervals of time whose ends are fractions of whole numbers.
 
-/// The fraction `n / d` with `d > 0`.
+/// A time: the fraction `n / d` of a move, with `d > 0`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Time {
     pub(super) n: i128,

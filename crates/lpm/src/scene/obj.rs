@@ -1,6 +1,6 @@
 //! Reads OBJ: vertices and faces, statement by statement.
 //!
-//! A statement is one line; a backslash at its end continues it on the next line. A comment ends with its line, always.
+//! A statement is one line; a backslash at its end continues it on the next line. A comment always ends with its line.
 //! Points, lines, normals, names and the like contain no surface and are skipped. Every other keyword is refused: it
 //! may be a surface (`curv`, `surf`) or a damaged face (`F`), and a lost face would leave the mesh open. A file that
 //! was cut off between two faces is not detected, because the format has no end mark.
@@ -9,7 +9,7 @@ use super::face;
 use super::mesh_file::{MeshFault, complaint, number, quoted, text};
 use crate::Mesh;
 
-/// Keywords of statements without a surface.
+/// Keywords of statements without a surface, which the reader skips.
 const PASSED_OVER: [&str; 19] = [
     "vt",
     "vn",

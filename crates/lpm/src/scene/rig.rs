@@ -159,8 +159,7 @@ fn stroke(table: &Table) -> Result<(), SceneError> {
     }
 }
 
-/// Checks the names of the actuator that carries this one and of the one that it carries, and compares them with its
-/// axis.
+/// Checks the names of the actuator that carries this one (`rides`) and of the bodies that move against it (`opposed`).
 fn carrying(actuator: &Table, names: &Names) -> Result<(), SceneError> {
     if let Some(rides) = actuator.optional("rides") {
         names.actuator(rides.path.clone(), rides.text()?)?;

@@ -180,7 +180,7 @@ impl<'a> Words<'a> {
         Ok(point)
     }
 
-    /// Skips the rest of the line; fails on a facet in it, which would mean that a line end was lost.
+    /// Skips a name, up to the end of its line; fails on a facet in it, which would mean that a line end was lost.
     fn name(&mut self) -> Result<(), MeshFault> {
         let name: Vec<&str> = self.words.by_ref().collect();
         let hides = |pair: &[&str]| {

@@ -7,7 +7,7 @@ use super::four::Four;
 /// it is exact.
 pub(crate) const PITCH_MM: f64 = 64.0;
 
-/// Columns and rows farther out than this (100 km) count as this one: no grid reaches as far.
+/// The outermost column and row, 100 km out; farther ones are clamped to it, because no grid reaches as far.
 const FARTHEST: f32 = (1 << 21) as f32;
 
 /// First and last column and row of a range of squares, each stored twice, to compare four numbers at once.
@@ -30,7 +30,7 @@ impl Ends {
     };
 }
 
-/// Masks of those of two by two squares that differ, indexed by the number of rows and columns less one.
+/// Masks of those of two by two squares that an area has, indexed by its rows less one and its columns less one.
 const DIFFERENT: [[u32; 2]; 2] = [[0b0001, 0b0011], [0b0101, 0b1111]];
 
 /// Number of cells that the grid grows by around a piece outside it.
@@ -63,7 +63,7 @@ impl Area {
         let squares = corners.times(Four::all(1.0 / PITCH_MM as f32));
         // Selects the square with the nearest centre. A bound on a grid line may belong to either side, because covers
         // are rounded outward and the covered body itself does not lie on their bounds. The same holds for bounds up to
-        // 2e-6 mm below 0. Every step is monotone, so when one area contains another it still does afterwards.
+        // 2e-6 mm below 0. Every step keeps the order, so the area of a cover contains that of every cover inside it.
         let middles = squares.minus(Four::all(0.5));
         let within = middles.within(Four::of(&ends.low), Four::of(&ends.high));
         let [left, front, right, back] = within.nearest();
@@ -94,7 +94,7 @@ impl Area {
         (self.high[0] - self.low[0] <= 1) & (self.high[1] - self.low[1] <= 1)
     }
 
-    /// Returns the mask of those of two by two cells that differ: bit 0 the first, bit 1 the next column, bit 2 the
+    /// Returns a mask of those of two by two cells that the area has: bit 0 the first, bit 1 the next column, bit 2 the
     /// next row.
     #[inline(always)]
     pub(super) fn different(&self) -> u32 {
@@ -107,7 +107,7 @@ impl Area {
         (0..2).all(|axis| self.low[axis] <= other.low[axis] && other.high[axis] <= self.high[axis])
     }
 
-    /// Returns an area that contains both, with room to grow on the sides where `other` extends beyond this one.
+    /// Returns an area that contains this one and `other`, with room to grow on the sides where `other` extends beyond.
     pub(super) fn with(&self, other: &Area) -> Area {
         let span = (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]) / 4 + GROWTH;
         let below = |axis: usize| {

@@ -16,7 +16,7 @@ pub(crate) struct Boxes<const N: usize> {
     pub(crate) high: [[f32; N]; 3],
 }
 
-/// Which boxes a moving box meets (bit k: lane k), and up to which fraction of the path it does not.
+/// Which boxes a moving box meets (bit k: lane k), and the earliest fraction of the path at which it can meet each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Crossing<const N: usize> {
     pub(crate) lanes: u32,
@@ -165,7 +165,7 @@ mod tests {
                 (run[0], run[1]) = (0.0, 0.0);
             }
             let mut boxes = Boxes::<4>::NOWHERE;
-            // Slightly larger, as it is after rounding outward.
+            // The box of the element becomes slightly larger, because it is rounded outward.
             boxes.set(1, &Cover::of((three(element.low), three(element.high))));
             let crossing = boxes.crossing(&mover, &Pace::of(run), 1.0);
             let at = |t: f64| {

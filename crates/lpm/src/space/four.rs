@@ -174,7 +174,7 @@ mod sse {
     }
 }
 
-/// The same functions, one number after the other.
+/// Implementation for other processors: the functions of `sse`, one number after the other.
 #[cfg(any(test, not(target_arch = "x86_64")))]
 mod one_by_one {
     pub(super) type Numbers = [f32; 4];

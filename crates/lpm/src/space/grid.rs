@@ -22,7 +22,7 @@ pub(crate) struct Grid {
     /// Limits of the area that the grid covers.
     pub(super) ends: Ends,
     pub(super) columns: usize,
-    /// Words of the cells, as in [`Cell`].
+    /// For each cell, the layers in which it has pieces (its word, see [`Cell`]).
     pub(super) layers: Vec<u64>,
     pub(super) heads: Vec<u32>,
     pub(super) open_layers: u64,
@@ -225,8 +225,8 @@ impl Grid {
         let mut counts = vec![0u32; self.layers.len()];
         for seat in seats {
             let word = seat.reach.word();
-            // Mostly two by two squares or fewer: their number is unpredictable, so the code counts four, some of them
-            // by 0.
+            // Most pieces cover two by two squares or fewer, in a number that processors predict badly, so the code
+            // counts four, some of them by 0.
             if seat.area.is_few() {
                 let (places, used) = few(self.area.low, self.columns, &seat.area);
                 for (square, place) in places.into_iter().enumerate() {
@@ -283,8 +283,8 @@ fn each_place(low: [i32; 2], columns: usize, area: &Area, mut show: impl FnMut(u
     rows(low, columns, area).for_each(|row| row.for_each(&mut show));
 }
 
-/// Returns the numbers of the cells of an area of at most two by two cells, in a grid that begins at `low`, and a mask
-/// of those that differ (bit k: the one at index k).
+/// Returns the numbers of two by two cells, in a grid that begins at `low`, and a mask of those that the area has (bit
+/// k: the one at index k); the others repeat these.
 #[inline(always)]
 fn few(low: [i32; 2], columns: usize, area: &Area) -> ([usize; 4], u32) {
     let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize);

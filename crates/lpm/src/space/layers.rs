@@ -15,7 +15,7 @@ use super::four::Four;
 /// Number of layers: one for each bit of a word.
 const LAYERS: usize = 64;
 
-/// Number of layers between the lowest and the highest of a piece that few pieces exceed.
+/// Most layers that a usual piece has between its lowest and its highest; few pieces have more.
 const SHORT: usize = 8;
 
 /// Height of a layer, mm: a third of the lowest elements of a fixture, so that a gripper which passes over them shares
@@ -46,7 +46,7 @@ impl Reach {
         let heights = Four::of(&[bottom_mm, top_mm, 0.0, 0.0]);
         let steps = heights.times(Four::all(1.0 / STEP_MM));
         let steps = steps.plus(Four::all(STEPS_BELOW));
-        // Every step is monotone, which is enough for safety.
+        // Every step keeps the order of heights, so two ranges of heights that overlap always share a layer.
         let within = steps.within(Four::all(0.0), Four::all(LAYERS as f32 - 1.0));
         let [low, high, ..] = within.nearest();
         Reach {
@@ -109,8 +109,8 @@ impl Layers {
         }
         layers.bottom = layers.h1.into_iter().fold(f32::INFINITY, smaller);
         layers.top = layers.h2.into_iter().fold(f32::NEG_INFINITY, larger);
-        // The pieces that pass a layer have begun below it and end neither below it nor in it. Pieces of one layer only
-        // are subtracted; no piece ends before it begins.
+        // A piece passes a layer when it begins below the layer and ends above it. Pieces of one layer only are left
+        // out, so that none ends before it begins.
         let (mut begun, mut ended) = (0, 0);
         for (layer, within) in within.into_iter().enumerate() {
             ended += layers.ending[layer] - within;
@@ -139,7 +139,7 @@ impl Layers {
         self.h2[high] = larger(self.h2[high], top_mm);
     }
 
-    /// Adds `more` to the counts of the layers between the lowest and the highest of a piece; `u32::MAX` subtracts 1.
+    /// Counts a piece in the layers that it passes: adds `more` to each of their counts; `u32::MAX` subtracts 1.
     #[inline]
     fn pass(&mut self, reach: Reach, more: u32) {
         let first = usize::from(reach.low) + 1;
@@ -190,8 +190,8 @@ impl Layers {
         Reach::of(low, high).word()
     }
 
-    /// Returns the same as [`Layers::between`] without layers in which no piece reaches into these heights. For paths
-    /// over many squares this is worth its cost.
+    /// Returns [`Layers::between`] without the lowest and the highest of these layers where no piece reaches into these
+    /// heights. For paths over many squares this is worth its cost.
     #[inline]
     pub(crate) fn meeting(&self, low: f32, high: f32) -> u64 {
         let reach = Reach::of(low, high);

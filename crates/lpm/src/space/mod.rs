@@ -77,7 +77,8 @@ impl Space {
         self.grid.bundle(number)
     }
 
-    /// Passes every piece that a moving box may meet up to the fraction `until` to `visit`, bundle by bundle.
+    /// Passes to `visit`, bundle by bundle, every piece that a moving box may meet up to the fraction `until` of its
+    /// path.
     #[inline]
     pub(crate) fn walk(&self, sweep: &Sweep, until: f64, visit: &mut impl Visit) {
         let cover = sweep.cover(until);

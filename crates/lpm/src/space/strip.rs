@@ -46,7 +46,7 @@ impl Strip {
         } else {
             (-1, area.high[AXIS])
         };
-        // How far the box moves until it begins to lie over the first band, and until it ends to; for either direction.
+        // The box lies over the first band while its displacement is between `first` and `end`, in either direction.
         let edge = f64::from(band) * PITCH_MM;
         let first = edge - f64::from(sweep.start.high[AXIS]) - SLACK_MM;
         let end = edge + PITCH_MM - f64::from(sweep.start.low[AXIS]) + SLACK_MM;

@@ -69,7 +69,7 @@ fn stacked_and_adjacent_bodies_touch_exactly() {
             centre[axis] = a[axis] + b[axis] + delta;
             let mover = Body { centre, ..mover };
             judged(&element, &mover, [0; 3], &mut dice);
-            // First lifted off, then slid along.
+            // Then a move that lifts the mover off.
             let mut away = [0; 3];
             away[axis] = 5 * MM;
             judged(&element, &mover, away, &mut dice);

@@ -1,7 +1,7 @@
 //! Tests: points inside a mesh, however untidy its file is.
 use super::*;
 
-/// Corners, and triangles that face outward.
+/// A mesh: corners, and triangles that face outward.
 #[derive(Clone, Default)]
 struct Soup {
     vertices: Vec<[f64; 3]>,
@@ -120,7 +120,7 @@ fn a_repeated_surface_is_solid() {
     let other = Soup::cuboid([30.0; 3], [40.0; 3]);
     let both = cube.clone().with(cube.clone().turned_over()).with(other);
     assert!(is_inside(&both, MIDDLE) && is_inside(&both, [35.0; 3]));
-    // The same two, with a corner in common.
+    // The same two parts, with a corner in common.
     let mut hinged = both;
     let first = hinged.vertices[7];
     hinged.vertices[16..]
@@ -178,7 +178,7 @@ fn a_surface_with_mismatched_corners_is_closed() {
     let mut cracked = Soup::cube(10.0).loose();
     cracked.vertices[0][0] += 1e-9;
     assert!(is_inside(&cracked, MIDDLE));
-    // Only one of the two triangles at the first edge has a corner on it.
+    // The first edge has a further corner on it for only one of its two triangles.
     let mut cut = Soup::cube(10.0);
     let at = cut
         .triangles
@@ -207,7 +207,7 @@ fn an_inner_surface_of_opposite_orientation_is_a_hole() {
     let island = hollow.with(Soup::cube(2.0));
     assert!(is_inside(&island, MIDDLE));
     assert!(!is_inside(&island, [3.5, 0.3, 0.2]));
-    // With the same orientation, it is another part in the same place.
+    // An inner cube of the same orientation is no hole, but another part in the same place.
     assert!(is_inside(&Soup::cube(10.0).with(Soup::cube(5.0)), MIDDLE));
 }
 

@@ -178,7 +178,7 @@ fn a_graze_in_one_point_stops_within_a_nanometre() {
     let across = straight([-3048.0, -2436.0, 0.0], [4952.0, 3564.0, 0.0]);
     let cases = [
         (across, cylinder(50.0, 10.0), 0.5),
-        // Along the mantle of the cylinder; and past a block whose side ends where the mantle touches it.
+        // A path along the mantle of the cylinder; and one past a block whose side ends where the mantle touches it.
         (
             straight([1080.0, -500.0, 0.0], [1080.0, 1500.0, 0.0]),
             cylinder(50.0, 10.0),

@@ -160,8 +160,8 @@ fn the_clearance_of_a_turn_matches_dense_samples() {
 
 #[test]
 fn the_clearance_of_a_turn_finds_the_deeper_valley() {
-    // The samples find the other valley, 14.92486 mm. On the slope of the deeper valley a distance is lower by just the
-    // resolution, 2e-4 mm; a search that demands more than the resolution cannot advance there.
+    // The samples lead into the other, shallower valley, 14.92486 mm. On the slope of the deeper one a distance is
+    // lower by just the resolution, 2e-4 mm; a search that demands more than the resolution cannot advance there.
     let model = standing(&Shape::Block { half: [3.0; 3] }, Pose::IDENTITY);
     let block = Shape::Block { half: [5.0; 3] };
     let swung = Shape::Compound(vec![(Pose::at([5.0, 0.0, 0.0]), block)]);
@@ -185,7 +185,7 @@ fn the_clearance_of_a_turn_finds_the_deeper_valley() {
     };
     let found = model.clearance(&swung, &way(from, to), 100.0).unwrap();
     assert!((found.distance_mm - 14.92425).abs() < 1e-5, "{found:?}");
-    // Exactly within the range, and just beyond.
+    // The clearance lies just within the range, then just beyond it.
     let at = |range_mm: f64| model.clearance(&swung, &way(from, to), range_mm);
     assert!(at(found.distance_mm + 1e-3).is_some());
     assert!(at(found.distance_mm - 1e-3).is_none());
@@ -213,7 +213,8 @@ fn a_reversed_turn_has_the_same_verdict() {
 
 #[test]
 fn a_disc_turning_near_a_wall_stays_clear() {
-    // The distance never changes, which is hardest for conservative advancement: turned about its axis, and tumbled.
+    // The distance never changes, which is hardest for conservative advancement: the disc turns in place, or as it
+    // slides.
     let wall = standing(&block(5.0, 100.0, 100.0), Pose::IDENTITY);
     let disc = cylinder(30.0, 8.0);
     for (gap, is_blocked) in [(-1e-3, true), (0.0, true), (1e-3, false), (0.1, false)] {

@@ -41,8 +41,8 @@ pub struct AccuracySettings {
     pub conversions_per_s: f64,
 }
 
-/// Nominal coil voltage for which `operation_scatter_mv` is stated, V. It is the current of a threshold that scatters,
-/// so the scatter in volts is proportional to the nominal voltage.
+/// Nominal coil voltage for which `operation_scatter_mv` is stated, V. For other coils the scatter in volts is
+/// proportional to the nominal voltage, because an armature responds to current.
 const SCATTERING_COIL_V: f64 = 12.0;
 
 impl AccuracySettings {
@@ -52,7 +52,7 @@ impl AccuracySettings {
         self.operation_scatter_mv / 1e3 * nominal_v / SCATTERING_COIL_V
     }
 
-    /// Returns the refresh interval assumed for an I-7021P where the file states none.
+    /// Returns the refresh interval assumed for an I-7021P where `rig.toml` states none.
     fn usual_refresh_ms() -> f64 {
         1.0
     }

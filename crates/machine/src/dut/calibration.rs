@@ -34,7 +34,7 @@ pub struct CalibrationFacts {
     pub nominal_v: f64,
     /// Factor of the supply range in which the calibration was made.
     pub range_factor: f64,
-    /// True when the calibration has every factor that the kind needs, those from reference parts included.
+    /// True when the calibration has every factor that its kind of device needs, those from reference parts included.
     pub is_complete: bool,
     /// Every measured factor, with its name and unit.
     pub factors: Vec<Named>,

@@ -1,4 +1,5 @@
-//! The operation process card of a recipe as data: what the kind says on it, and what the plant adds in `card.toml`.
+//! The operation process card of a recipe as data: what the kind of device enters, and what the plant adds in
+//! `card.toml`.
 
 use super::characteristic::Characteristic;
 use super::em_relay;
@@ -14,7 +15,7 @@ pub type TextId = &'static str;
 /// The part of the card that the kind of device fills in.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Card {
-    /// Rating of the part, preceded by the heading of that line.
+    /// Heading of the line with the part's rating, and the rating itself.
     pub rating: (TextId, Vec<Piece>),
     /// What is done to a part, in order.
     pub steps: Vec<Step>,
@@ -87,7 +88,7 @@ pub struct CardSettings {
 }
 
 impl Step {
-    /// Returns a step of the handling, which drives no part and measures nothing.
+    /// Returns a step that moves the part, and neither drives nor measures it.
     pub fn handling(name: &'static str, text: TextId) -> Self {
         Self {
             name,

@@ -27,8 +27,8 @@ pub struct Definition {
     pub bin: Bin,
 }
 
-/// A characteristic of one kind of device. The default methods suit one that does not depend on temperature and that
-/// stored curves do not bound.
+/// A characteristic of one kind of device. The default methods suit a characteristic that does not depend on
+/// temperature and has no bound from stored curves.
 pub trait KindCharacteristic {
     /// Returns the constant data of the characteristic.
     fn definition(&self) -> &'static Definition;
@@ -38,9 +38,8 @@ pub trait KindCharacteristic {
         1.0
     }
 
-    /// Returns the lower bound, in the unit of the key, that stored curves prove for a part without a measured value. A
-    /// margin for effects that the curves are not corrected for is subtracted. `_rated_v`: nominal voltage of the part,
-    /// V.
+    /// Returns the lower bound, in the unit of the key, that stored curves prove for a part without a measured value,
+    /// less a margin for effects that the curves are not corrected for. `_rated_v`: nominal voltage of the part, V.
     fn lower_bound(&self, _curves: &[Curve], _rated_v: Option<f64>) -> Option<f64> {
         None
     }

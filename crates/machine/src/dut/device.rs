@@ -27,7 +27,7 @@ pub struct Made {
     pub simulated: bool,
 }
 
-/// What a kind may need to know of the rig.
+/// Data of the rig that a kind of device may use.
 #[derive(Debug, Clone, Copy)]
 pub struct Rig<'a> {
     /// Points, modules and lines.
@@ -55,7 +55,7 @@ pub struct TestOrder<'a> {
 /// Why the rig cannot be calibrated, or disagrees with a certificate.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CalibrationFault {
-    /// A reference on the interface board does not read as it must.
+    /// A reference on the interface board has a wrong reading.
     #[error(transparent)]
     Reference(#[from] em_relay::reference::ReferenceFault),
     /// A reference part cannot be used, or disagrees with its certificate or with the other parts.
@@ -102,7 +102,7 @@ pub trait DeviceUnderTest {
     /// Computes the factors from the readings of [`Self::reference_acts`].
     ///
     /// # Errors
-    /// Fails with the channel or the reference that does not read as it must.
+    /// Fails with the channel or the reference whose reading is wrong.
     fn conclude_references(
         &mut self,
         _readings: &Readings,
@@ -147,7 +147,8 @@ pub trait DeviceUnderTest {
         panic!("{NO_REFERENCE_PARTS}: {serial}")
     }
 
-    /// Returns the promises of `rig.toml` and the recipe found broken since the last call.
+    /// Returns the accuracies promised by `rig.toml` and the recipe that measurements have disproved since the last
+    /// call.
     fn broken_promises(&mut self) -> Vec<Broken> {
         Vec::new()
     }

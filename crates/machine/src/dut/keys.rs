@@ -44,7 +44,7 @@ pub const REFERENCE_TEMPERATURE: Key = key(
     "temperature that results are converted to",
 );
 
-/// Form of a limit: `low` and `high`, each from 0 to the second argument in this unit, and either may be left out.
+/// Form of a limit: `low` and `high`, each from 0 to `$high` in `$unit`; a recipe may leave out either.
 macro_rules! limit {
     ($unit:literal, $high:literal) => {
         crate::form::Form::Table(&[

@@ -32,13 +32,13 @@ impl Promise {
 pub struct Broken {
     /// Promise that does not hold.
     pub promise: Promise,
-    /// Value of the file.
+    /// Value that the file promises.
     pub promised: f64,
     /// Value that the residuals show.
     pub seen: f64,
-    /// Ends of its 95 % interval.
+    /// Ends of the 95 % interval of `seen`.
     pub interval: (f64, f64),
-    /// Degrees of freedom.
+    /// Degrees of freedom of `seen`.
     pub freedom: f64,
     /// Value that budgets use from now on: `seen`, widened by Student's t.
     pub used: f64,

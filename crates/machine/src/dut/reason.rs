@@ -157,7 +157,7 @@ impl Reason {
         ]
     }
 
-    /// Returns the reason with the detail with which it prints as this text; none when no detail does.
+    /// Returns the reason with the detail that makes it print as `text`; none when no detail does.
     fn read(self, text: &str) -> Option<Self> {
         const PLACE: &str = "\0";
         let detailed = |detail: &str| Self {

@@ -96,7 +96,8 @@ pub trait KindRecipe {
     /// Returns the data that parts of every kind have.
     fn part(&self) -> PartFacts;
 
-    /// Puts `recipe`, which contains these sections, on a rig with its `stored` calibration, if there is one.
+    /// Makes the device: `recipe`, which contains these sections, on a rig, with the `stored` calibration if there is
+    /// one.
     ///
     /// # Errors
     /// Fails with the first point of the kind that the rig does not have.
@@ -207,8 +208,7 @@ impl Recipe {
         self.device.check()
     }
 
-    /// Returns every reason why a rig cannot perform the recipe or has nothing to judge by it, each with its key; none
-    /// for a feasible recipe.
+    /// Returns every reason why a rig cannot perform the recipe, each with its key; empty for a feasible recipe.
     pub fn infeasible(&self, rig: &Rig) -> Vec<Fault> {
         self.device.infeasible(&self.limits, rig)
     }

@@ -48,7 +48,7 @@ impl Residuals {
 /// Evidence about one promised standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Evidence {
-    /// Sum of squares, each in its promised variance.
+    /// Sum of the squared residuals, each divided by its promised variance.
     squares: f64,
     freedom: f64,
     /// Sum of the term's share of the promised variance, over the degrees of freedom.
@@ -60,9 +60,9 @@ pub struct Evidence {
 /// A standard deviation that residuals show, as multiples of the promised one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seen {
-    /// Estimate; 0 when the other terms explain all.
+    /// Estimate; 0 when the other terms explain all of the scatter.
     pub value: f64,
-    /// Ends of its 95 % interval.
+    /// Ends of the 95 % interval of `value`.
     pub interval: (f64, f64),
     /// Degrees of freedom.
     pub freedom: f64,
@@ -104,7 +104,8 @@ impl Evidence {
         })
     }
 
-    /// Returns the multiple of the promised standard deviation that covers like a known one, by Student's t; at least 1.
+    /// Returns the standard deviation for budgets as a multiple of the promised one: widened by Student's t, at least
+    /// 1.
     pub fn covering(&self) -> f64 {
         if self.freedom < 1.0 {
             return 1.0;
@@ -113,7 +114,8 @@ impl Evidence {
         self.multiple(widened).max(1.0)
     }
 
-    /// Returns the multiple of the promised standard deviation that makes the whole variance `ratio` of the promised one.
+    /// Returns the multiple of the promised standard deviation at which the whole variance is `ratio` times the
+    /// promised one.
     fn multiple(&self, ratio: f64) -> f64 {
         let share = self.shares / self.freedom;
         (1.0 + (ratio - 1.0) / share).max(0.0).sqrt()

@@ -8,7 +8,7 @@ use super::rules::Rules;
 use super::scene::Scene;
 use super::settings::{GuardSettings, Policy};
 
-/// Checks and resolves the settings.
+/// Checks the settings and returns the scene that they describe.
 pub(super) fn scene_of(settings: &GuardSettings) -> Result<Scene, GuardError> {
     if let Some(unit) = settings.units.as_ref().filter(|unit| *unit != "mm") {
         return Err(GuardError::Unit {

@@ -5,8 +5,8 @@
 //!   an obstacle for all other bodies, but the pusher cannot hit the part that it leaves.
 //! - The gripper takes its part wherever its carriers go. A closed gripper that is down at the nest takes the part in
 //!   the nest along, even if the ledger places it in the nest.
-//! - A released escapement lets a part run from the mouth into the pocket. Until it holds again a part may be anywhere
-//!   on that way.
+//! - A released escapement lets a part run from the magazine's mouth into the pocket. Until it holds again a part may
+//!   be anywhere between the two.
 //! - Bodies on the same moving actuator are one tool and are not tested against each other.
 
 use super::actuator::Actuator;

@@ -35,7 +35,7 @@ impl Offsets {
         }
     }
 
-    /// Returns the box of all sums of an offset of each.
+    /// Returns the box of the sums of one offset from `self` and one from `other`.
     pub fn plus(self, other: Offsets) -> Offsets {
         Offsets {
             low: sum(self.low, other.low),

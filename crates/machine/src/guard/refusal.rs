@@ -112,7 +112,7 @@ impl Blocked {
     }
 }
 
-/// Returns the shop-floor words for an id.
+/// Returns the shop-floor words for the body with this id.
 pub(super) fn words(id: &str) -> String {
     match id {
         "part_feed" => "the part coming from the magazine".to_owned(),

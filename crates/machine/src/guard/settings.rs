@@ -6,7 +6,7 @@
 use super::actuator::Actuator;
 use serde::Deserialize;
 
-/// The whole file. Other modules read and check `movers` and `mate`.
+/// Contents of `config/scene.toml`; other modules read and check its tables `movers` and `mate`.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GuardSettings {
@@ -74,7 +74,7 @@ pub struct Element {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Piece {
-    /// Form of the body.
+    /// Form of the piece.
     pub kind: ShapeKind,
     /// Half extents of a block, mm.
     pub half: Option<[f64; 3]>,

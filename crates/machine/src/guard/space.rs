@@ -28,7 +28,7 @@ pub(super) struct Space {
 }
 
 impl Space {
-    /// Makes a space with the fixed elements only; the first situation adds the rest.
+    /// Makes a space with the fixed elements only; the first situation adds tooling and parts.
     pub fn of(scene: &Scene) -> Result<Space, Flaw> {
         let mut space = Space {
             model: Model::new(),
@@ -58,14 +58,14 @@ impl Space {
         numbered.filter_map(|(number, occupant)| occupant.as_ref().map(|o| (number, o.key)))
     }
 
-    /// Returns the body of a key; `None` when the core names no element.
+    /// Returns the number of the body with this key; `None` when the core names no element.
     pub fn number_of(&self, key: ElementKey) -> Option<usize> {
         self.occupants()
             .find(|(_, known)| *known == key)
             .map(|(number, _)| number)
     }
 
-    /// Moves tooling and parts to the positions of `situation` and `present`.
+    /// Moves tooling and the parts that are `present` to their positions in `situation`.
     pub fn follow(
         &mut self,
         scene: &Scene,

@@ -36,10 +36,10 @@ pub(super) struct FirstContact {
 struct Travel<'a> {
     number: usize,
     shape: Cow<'a, Shape>,
-    /// The shape decomposed in advance, if its offset from the other actuators is known.
+    /// The shape decomposed in advance; `None` when other actuators leave the body's offset uncertain.
     ready: Option<&'a Mover>,
     pose: Pose,
-    /// Offsets that the resting actuators allow.
+    /// Offsets of the body that the uncertain positions of other actuators allow.
     unsure: Offsets,
     from: [f64; 3],
     to: [f64; 3],

@@ -51,7 +51,7 @@ impl Feeder {
         }
     }
 
-    /// Steps once; returns true when a nest has received a new part.
+    /// Steps the feeder once; returns true when a nest has received a new part.
     pub fn step(
         &mut self,
         turn: &mut Turn,

@@ -1,6 +1,6 @@
 //! The part ledger: the place of every part, from the magazine or an operator's hand to a bin.
 //!
-//! Places hand parts over and never copy them. `in = out + inside + lost` holds at every instant.
+//! A part moves from place to place and is never copied. `in = out + inside + lost` holds at every instant.
 //!
 //! The fingers may stay closed although their opening was driven, when the output module has tripped. So a released
 //! part counts as lost only after the sensor shows empty fingers; a part that the sensor still shows is back in the

@@ -58,7 +58,7 @@ pub struct Nest {
 /// Conditions of a test.
 #[derive(Debug, Clone, Copy)]
 pub struct TestTerms<'a> {
-    /// PartRole under test: recipe, calibration and the values learned from parts.
+    /// Device under test: recipe, calibration and the values learned from parts.
     pub device: &'a Device,
     /// True when every result gets confirmation measurements.
     pub thorough: bool,
@@ -77,7 +77,7 @@ impl TestTerms<'_> {
     }
 }
 
-/// Inputs of a nest besides the turn.
+/// Inputs of a nest's step in addition to [`Turn`].
 pub struct NestContext<'a> {
     /// Completion of the nest's job, once.
     pub done: Option<JobDone>,
@@ -151,7 +151,8 @@ impl Nest {
     }
 }
 
-/// Starts the test. An interrupted part goes to retest without one; a row records it, unless it has a row already.
+/// Starts the test of a clamped part. An interrupted part goes to retest without one; a row records it, unless it has a
+/// row already.
 fn clamped(id: NestId, turn: &mut Turn) -> NestState {
     let part = turn.ledger.part_mut(Place::Nest(id));
     let interrupted = part.as_ref().and_then(|part| part.interrupted.clone());

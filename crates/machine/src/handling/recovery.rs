@@ -66,7 +66,8 @@ impl Default for Recovery {
 }
 
 impl Recovery {
-    /// Steps once; returns true when everything is home. `releasing`: the escapement may have let a part through.
+    /// Steps homing once; returns true when everything is home. `releasing`: the escapement may have let a part
+    /// through.
     pub fn step(&mut self, turn: &mut Turn, releasing: bool) -> bool {
         match self.stage {
             HomingStep::Looking => {
@@ -173,8 +174,8 @@ impl SensedParts {
     }
 }
 
-/// Moves to the nest, in the ledger, the part that the pusher delivered before the cut-off: the part in the nest is
-/// this one, not one that slid from the fingers.
+/// Moves the part that the pusher delivered before the cut-off to the nest in the ledger: the nest sensor then shows
+/// this part, not one that slid from the fingers.
 fn pushed(turn: &mut Turn, seen: &SensedParts) {
     let gone = turn.ledger.holds(Place::Pocket) && !seen.pocket;
     if gone && !turn.ledger.holds(Place::NEST) && seen.nest {

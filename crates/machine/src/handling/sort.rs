@@ -27,7 +27,7 @@ const FALL: Span = Span::ms(1500);
 /// Time after the opening of the fingers at which a part that they still show counts as sticking.
 const STICKS: Span = Span::ms(500);
 
-/// Longest time between a part and a second body that clings to it, at the beam.
+/// Longest time between the counts of a part and of a second body that clings to it, at the beam.
 const SECOND_BODY: Span = Span::ms(80);
 
 /// State of the sorter.
@@ -177,7 +177,7 @@ pub fn confirm(turn: &mut Turn, table: &AxisTable) {
         .filter(|count| count.origin.at > since)
         .map(|count| (count.origin.at, count.count));
     match count.map(|(at, count)| (at, count.wrapping_sub(before) & 0xFFFF)) {
-        // A count older than the first one carries no information about a second body.
+        // A count of 1 excludes a second body only when it was read this long after the first one.
         Some((at, 1)) if at.since(*falling.seen.get_or_insert(at)) >= SECOND_BODY => {
             landed(turn, bin);
         }

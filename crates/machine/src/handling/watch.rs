@@ -1,8 +1,8 @@
 //! Watches resting actuators: each must keep showing its end, and never both ends at once.
 //!
-//! A deviation shorter than [`DEBOUNCE`] is a bounce, which only its counter shows. While a deviation is undecided, no
-//! motion begins. An unread sensor is no trouble here; its line reports it. The alarm of the axis drive is watched too,
-//! once the drive has been reset.
+//! A deviation shorter than [`DEBOUNCE`] is a bounce, which only raises the count of bounces. While a deviation is
+//! undecided, no motion begins. An unread sensor is no trouble here; its line reports it. The alarm of the axis drive
+//! is watched too, once the drive has been reset.
 
 use super::mechanism::{DEBOUNCE, SENSOR_AGE};
 use super::moves::Move;

@@ -10,9 +10,9 @@ use crate::rig::point::{AnalogInput, AnalogOutput, DigitalInput, DigitalOutput, 
 use std::sync::Arc;
 use units::{RigTime, Span, Volt};
 
-/// Longest normal time from the last poll without an awaited event to the end of the write after it: a poll, a
-/// reading, the write. When a retry or a slow line delays the ramp, the ramp ends later by that delay; a ramp that
-/// reverses has run on meanwhile, and needs as long again to return.
+/// Longest normal time from the last poll before an awaited event to the end of the write that answers the event: a
+/// poll, a reading, the write. When a retry or a slow line delays the ramp, the ramp ends later by that delay; a ramp
+/// that reverses has run on meanwhile, and needs as long again to return.
 const PROMPT: Span = Span::ms(13);
 
 /// Digital inputs read together and kept as one signal: bit n is input n.
@@ -74,7 +74,7 @@ pub enum Act {
     Mask(Vec<AnalogInput>),
     /// Stores the current time for [`Act::WaitSinceMark`].
     Mark,
-    /// Waits until this time has passed since the mark.
+    /// Waits until this time has passed since the last [`Act::Mark`].
     WaitSinceMark(Span),
     /// Waits as [`Act::WaitSinceMark`] does, for a ramp started after the mark; longer if the ramp started late.
     RampSinceMark(Span),

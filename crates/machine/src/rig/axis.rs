@@ -21,7 +21,7 @@ pub enum AxisStation {
 }
 
 impl AxisStation {
-    /// Returns the key in `config/rig.toml`: `axis.park`, `bin.pass`.
+    /// Returns the key in `config/rig.toml`, for example `axis.park` or `bin.pass`.
     pub fn key(self) -> String {
         match self {
             Self::Nest => "axis.nest".to_owned(),

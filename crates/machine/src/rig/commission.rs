@@ -1,5 +1,5 @@
-//! Checks that the modules on the lines are those of the file: the requests to every module at start, and the required
-//! answers.
+//! Checks that the modules on the lines are those of `config/rig.toml`: the requests to every module at start, and the
+//! required answers.
 //!
 //! All requests are reads. A difference is a [`Mismatch`] that names line, address, module, found and expected value.
 //! Its [`Mismatch::remedy`] writes to the module's EEPROM; set-up and `calibrate` use it, a lot never does.
@@ -45,7 +45,7 @@ pub struct Mismatch {
     pub what: &'static str,
     /// Value from the module.
     pub found: String,
-    /// Value of the wiring.
+    /// Value required by the wiring.
     pub expected: String,
     /// Command that corrects the setting, if there is one; it writes the module's EEPROM.
     pub remedy: Option<Command>,

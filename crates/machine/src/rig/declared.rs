@@ -1,5 +1,5 @@
-//! The points of this rig: those of the machine, those that kinds of device declare and the file wires, and the beams
-//! that bins name. Their order here is their index in the tables of the wiring.
+//! The points of this rig: those of the machine, those that a kind of device declares and `rig.toml` wires, and the
+//! beams that bins name. Their order here is their index in the tables of the wiring.
 
 use super::fault::Fault;
 use super::point::{DigitalIn, DigitalInput, DigitalOut, Fixture, Quantity, Switch};
@@ -37,7 +37,7 @@ impl InputNames {
         (at >= self.before_beams).then_some(DigitalInput::at(at))
     }
 
-    /// Checks that the file wires no digital input with another name.
+    /// Checks that `rig.toml` wires no digital input of an unknown name.
     pub(super) fn check(&self, settings: &RigSettings) -> Result<(), Fault> {
         let mut others = settings.digital_in.keys();
         let Some(name) = others.find(|name| !self.names.contains(name)) else {
@@ -49,7 +49,7 @@ impl InputNames {
     }
 }
 
-/// Adds those names of `more` that the file wires, each once.
+/// Adds those names of `more` that `rig.toml` wires, each once.
 fn add_wired<'a>(
     names: &mut Vec<String>,
     settings: &RigSettings,

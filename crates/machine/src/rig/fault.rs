@@ -3,7 +3,7 @@
 use serde::Serialize;
 use thiserror::Error;
 
-/// What a value must be, for readers of other languages; `expected` says the same in English.
+/// Requirement on a value, in a form that every language can word; `expected` says the same in English.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[serde(tag = "code", content = "value", rename_all = "snake_case")]
 pub enum Requirement {

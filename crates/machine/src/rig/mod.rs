@@ -4,9 +4,9 @@
 //! - [`point`]: the points to sense, switch, set, measure and count: a closed list for the machine, and a list
 //!   declared by each kind of device.
 //! - [`settings`], [`model`] and [`wiring`]: the wiring of each point. [`resolve`], `declared`, `modules`, [`axis`]
-//!   (with each [`bin`]) and [`reaction`] resolve and check the file; a [`fault::Fault`] names a setting that does not
-//!   fit.
-//! - [`commission`]: checks that the modules on the lines are the modules of the file.
+//!   (with each [`bin`]) and [`reaction`] resolve and check `rig.toml`; a [`fault::Fault`] names a setting that does
+//!   not fit.
+//! - [`commission`]: checks that the modules on the lines are those of `rig.toml`.
 //! - [`query`], [`sample`], [`image`]: commands that read points, and the values read, with their times.
 //! - [`drive`], [`level`], [`supply`]: output values, and the ranges of their amplifier; a motion only after the guard's
 //!   clearance.

@@ -3,19 +3,19 @@
 //! Every second transaction of the contact's line reads its module, whatever writes and beam counts wait. In the worst
 //! case the contact opens just after a read. The bound then adds up:
 //!
-//! - the rest of that poll: the answer, its repetition and the answer to a request for the module's name, each at the
-//!   last moment. A line asks for all three after a module was silent, because its late reply could pass for the
+//! - the remainder of that poll: the answer, its repetition and the answer to a request for the module's name, each at
+//!   the last moment. A line asks for all three after a module was silent, because its late reply could pass for the
 //!   contact's,
 //! - one other transaction, the longest of that line, which fails: a first answer at the last moment, which the line
 //!   does not trust yet and therefore asks for again, a time-out, the request for the silent module's name, also
 //!   unanswered, and a wait for silence that a late reply breaks once,
-//! - the poll that reads the open contact, as long as the first. If it gets no answer it occupies the line longer,
-//!   with the same result: a contact older than [`Wiring::emergency_stop_max_age`] counts as open, and the rest of
-//!   that poll passes before the first write,
+//! - the poll that reads the open contact, as long as the first. If it gets no answer it occupies the line longer, with
+//!   the same result: a contact older than [`Wiring::emergency_stop_max_age`] counts as open, and the remainder of that
+//!   poll passes before the first write,
 //! - one write to each module of the line that has outputs, answered at the last moment,
 //!
-//! and a rest of two characters after each. A line without the contact begins its writes after the longest of its own
-//! transactions. A late reply begins at most one allowance after the time-out. Commands on this line have one try
+//! and a turnaround of two characters after each. A line without the contact begins its writes after the longest of its
+//! own transactions. A late reply begins at most one allowance after the time-out. Commands on this line have one try
 //! ([`Wiring::tries_on`]). Wire times are those of 8N1, ten bits a character; no frame of a running lot is longer than
 //! the frames assumed here.
 
@@ -29,10 +29,12 @@ const LONGEST_REQUEST: u64 = 13;
 /// Characters of the longest reply of a module without analog inputs: a counter or a level, with lead, checksum and
 /// CR.
 const LONGEST_DIGITAL_REPLY: u64 = 12;
-/// Rest after a reply, characters.
+/// Silence between a reply and the next request, characters.
 const TURNAROUND: u64 = 2;
 /// Characters of the longest reply of any module: eight readings of seven characters, with lead, checksum and CR.
 const LONGEST_ANALOG_REPLY: u64 = 60;
+/// Share of the digital allowance from which on lateness of the computer explains a missing reply.
+const EXPLAINS: f64 = 0.5;
 
 impl Wiring {
     /// Returns the line with the emergency-stop contact.
@@ -46,6 +48,18 @@ impl Wiring {
         let lines = moved.map(|point| self.module(self.digital_out(*point).module).line);
         let made_safe = lines.map(|line| self.longest_writing(line)).max();
         self.emergency_stop_max_age() + made_safe.unwrap_or_default()
+    }
+
+    /// Returns the time that is left between [`Wiring::longest_reaction`] and the reaction that the plant accepts. A wait
+    /// that ends late during the reaction lengthens it by at most its lateness.
+    pub fn reaction_slack(&self) -> Span {
+        let accepted = Span::seconds(self.safety.estop_reaction_ms / 1000.0);
+        Span(accepted.0.saturating_sub(self.longest_reaction().0))
+    }
+
+    /// Returns the lateness of the computer that explains a missing reply: half of what a digital module may take.
+    pub fn explaining_lateness(&self) -> Span {
+        Span::seconds(EXPLAINS * self.bus.digital_allowance_ms / 1000.0)
     }
 
     /// Returns the longest time from the decision to make the outputs safe until the last write on a line.
@@ -80,8 +94,8 @@ impl Wiring {
         read + read + read
     }
 
-    /// Returns the time of a transaction with a digital module, including writes and requests for its name: no reply is
-    /// longer than a count.
+    /// Returns the time of a transaction with a digital module, including writes and requests for its name: no reply of
+    /// such a module is longer than a count.
     fn short_exchange(&self, line: LineId) -> Span {
         self.answered(line, LONGEST_DIGITAL_REPLY, self.digital_allowance())
     }
@@ -100,7 +114,7 @@ impl Wiring {
         failed + failed + self.short_exchange(line) + silence
     }
 
-    /// Returns the time of a transaction answered at the last moment, with the rest after it.
+    /// Returns the time of a transaction answered at the last moment, with the turnaround after it.
     fn answered(&self, line: LineId, reply: u64, allowance: Span) -> Span {
         self.wire(line, LONGEST_REQUEST + reply + TURNAROUND) + allowance
     }

@@ -23,8 +23,8 @@ use dcon::Channel;
 use std::collections::BTreeMap;
 
 impl Wiring {
-    /// Resolves all names, checks the whole and returns the first fault. `fixtures`: points that the kinds of device
-    /// declare; the rig may lack any of them.
+    /// Resolves all names, checks the whole wiring and returns the first fault. `fixtures`: points that the kinds of
+    /// device declare; the rig may lack any of them.
     pub fn resolve(settings: &RigSettings, fixtures: &[Fixture]) -> Result<Self, Fault> {
         let lines: Vec<Line> = settings
             .line

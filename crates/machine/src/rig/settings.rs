@@ -5,7 +5,7 @@
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// The sections of the file that describe lines, modules, points and mechanism.
+/// Sections of `config/rig.toml` that describe lines, modules, points and mechanism.
 #[derive(Debug, Clone, Deserialize)]
 pub struct RigSettings {
     /// Bus lines by name.
@@ -67,18 +67,18 @@ pub struct BusSettings {
     pub heartbeat_ms: f64,
     /// Time-out of the output modules' host watchdog, ms; the modules count tenths of a second.
     pub host_watchdog_ms: f64,
-    /// Pause between two scans of the motion line, ms; 0 polls without rest.
+    /// Pause between two scans of the motion line, ms; 0 polls without a pause.
     pub scan_period_ms: f64,
 }
 
 /// Demands of the plant on the emergency stop.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct SafetySettings {
-    /// Longest accepted time from the opening of the contact to the last write, ms.
+    /// Longest accepted time from the opening of the emergency-stop contact to the last write, ms.
     pub estop_reaction_ms: f64,
 }
 
-/// One module of the file.
+/// One module of `config/rig.toml`.
 #[derive(Debug, Clone, Deserialize)]
 pub struct ModuleSettings {
     /// Name of the line.

@@ -22,7 +22,7 @@ pub const SWITCHING_TIMEOUT: Span = Span::ms(500);
 /// One range of the supply.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SupplyRange {
-    /// Name in the file; on a rig without ranges the name of the module of its strongest source.
+    /// Name in `rig.toml`; on a rig without ranges the name of the module of its strongest source.
     pub name: String,
     /// Bits that select the range and read it back.
     pub code: u8,
@@ -30,7 +30,7 @@ pub struct SupplyRange {
     pub factor: f64,
     /// Highest voltage of the supply.
     pub max: Volt,
-    /// Largest current of the supply; `None` on a rig without ranges, whose file states none.
+    /// Largest current of the supply; `None` on a rig without ranges, whose `rig.toml` states none.
     pub max_current: Option<Ampere>,
 }
 
@@ -47,7 +47,7 @@ pub struct SupplyDemand {
     pub current_key: &'static str,
 }
 
-/// A supply in another range than the one selected, by their names.
+/// A supply in another range than the one selected, with the names of both ranges.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RangeMismatch {
     /// The range that the outputs select.
@@ -104,7 +104,7 @@ pub fn code_of(states: [bool; 2]) -> u8 {
 }
 
 impl SupplyRange {
-    /// Returns true for a range of the file, which two outputs select.
+    /// Returns true for a range of `rig.toml`, which two outputs select; false on a rig without ranges.
     pub fn is_selected(&self) -> bool {
         self.max_current.is_some()
     }
@@ -192,7 +192,7 @@ impl Wiring {
     }
 }
 
-/// Resolves the ranges of the file, smallest first; without any, the range of the strongest source at factor 1.
+/// Resolves the ranges of `rig.toml`, smallest first; without any, the range of the strongest source at factor 1.
 pub(super) fn resolve_ranges(
     settings: &RigSettings,
     modules: &[Module],
@@ -277,7 +277,7 @@ fn check_codes(ranges: &[SupplyRange]) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Checks that the points which select a range and read it back are wired exactly where the file has ranges.
+/// Checks that the points which select a range and read it back are wired exactly where `rig.toml` has ranges.
 fn check_points(settings: &RigSettings) -> Result<(), Fault> {
     let has_ranges = !settings.supply_range.is_empty();
     let out = |name: &&str| settings.digital_out.contains_key(*name);

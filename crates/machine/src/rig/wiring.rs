@@ -26,7 +26,7 @@ pub struct ModuleId(pub usize);
 /// One RS-485 line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Line {
-    /// Name in the file.
+    /// Name in `config/rig.toml`.
     pub name: String,
     /// Path of the serial port.
     pub port: String,
@@ -39,7 +39,7 @@ pub struct Line {
 /// One module, with the configuration that it must have at start.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Module {
-    /// Name in the file.
+    /// Name in `config/rig.toml`.
     pub name: String,
     /// Line of the module.
     pub line: LineId,
@@ -117,7 +117,7 @@ pub struct Wiring {
     pub axis: AxisTable,
     /// Ranges of the supply, smallest first; empty without a source.
     pub supply_ranges: Vec<SupplyRange>,
-    /// Range for which the gains hold; `None` for the gains of the file, at factor 1.
+    /// Range for which the gains hold; `None` for the gains of `config/rig.toml`, at factor 1.
     pub supply_range: Option<SupplyRange>,
     /// Inputs of the machine, then of the fixtures, then beams.
     pub(super) digital_in: Vec<(String, Terminal)>,
@@ -274,7 +274,7 @@ impl Wiring {
         named(self.counter.iter().map(|it| it.0), name).map(GatedCounter::at)
     }
 
-    /// Yields every digital input with its name, in the order of the page: fixtures, machine, beams.
+    /// Yields every digital input with its name, in the order in which pages show them: fixtures, machine, beams.
     pub fn digital_inputs(&self) -> impl Iterator<Item = (&str, DigitalInput)> {
         let (machine, all) = (DigitalIn::COUNT, self.digital_in.len());
         (machine..self.before_beams)
@@ -283,7 +283,7 @@ impl Wiring {
             .map(|at| (self.digital_in[at].0.as_str(), DigitalInput::at(at)))
     }
 
-    /// Yields every digital output with its name, in the order of the page: fixtures, machine.
+    /// Yields every digital output with its name, in the order in which pages show them: fixtures, machine.
     pub fn digital_outputs(&self) -> impl Iterator<Item = (&'static str, DigitalOutput)> {
         let machine = DigitalOut::COUNT;
         (machine..self.digital_out.len())

@@ -2,7 +2,7 @@
 
 use super::packml::State;
 
-/// Activity of the station; each line says what the station does.
+/// Activity of the station; each variant says what the station does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Activity {
     /// The run is over.

@@ -134,7 +134,7 @@ impl Annunciator {
         again || PER_PART.contains(&known.alarm.code)
     }
 
-    /// Clears the alarms that a sensor clears, except those whose code is in `there`.
+    /// Clears the alarms that a sensor clears, except those whose code `there` contains: their cause remains.
     pub fn sensed(&mut self, there: &[Alarm]) {
         self.gone(|one| {
             let by_sensor = one.entry().cleared_by == ClearedBy::Sensor;
@@ -168,7 +168,7 @@ impl Annunciator {
         assert!(!active, "an alarm without cause is active");
     }
 
-    /// Acknowledges the alarm with this code, or all alarms without a code; returns false when there is none.
+    /// Acknowledges the alarm with this code, or every alarm when `code` is `None`; returns false when there is none.
     pub fn acknowledge(&mut self, code: Option<&str>) -> bool {
         let mut found = false;
         for one in &mut self.listed {

@@ -239,7 +239,7 @@ impl Station {
     }
 }
 
-/// Fails with the alarm whose cause remains, if there is one.
+/// Fails with the alarm whose cause has not gone, if there is one.
 fn gone(cause: Option<&ListedAlarm>) -> Result<(), Refused> {
     match cause {
         Some(cause) => Err(Refused::CauseRemains(Box::new(cause.alarm.clone()))),

@@ -8,7 +8,7 @@ use crate::rig::stroke::ActuatorKey;
 use std::fmt;
 use texts::{Args, Lang, Message};
 
-/// Reaction of the machine to an alarm; each line says what the machine does.
+/// Reaction of the machine to an alarm; each variant says what the machine does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reaction {
     /// Makes the outputs safe at once.
@@ -21,7 +21,7 @@ pub enum Reaction {
     Nothing,
 }
 
-/// What ends the cause of an alarm.
+/// What clears an alarm, that is, ends its cause.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ClearedBy {
     /// The sensor that has shown the cause, or the history once it is written again.
@@ -37,7 +37,7 @@ pub enum ClearedBy {
 pub struct Entry {
     /// Reaction of the machine.
     pub reaction: Reaction,
-    /// What ends the cause.
+    /// What clears the alarm.
     pub cleared_by: ClearedBy,
 }
 
@@ -168,7 +168,7 @@ codes! {
     ProbeContact = "probe_contact", Nothing, Operator;
     /// The use count of the probes or the jaws has reached its limit.
     Worn of Wearing = "worn", Nothing, Operator;
-    /// A promise of the rig's file does not hold.
+    /// The rig scatters more than `rig.toml` or the recipe promises.
     PromiseBroken of Promise = "promise_broken", Nothing, Operator;
     /// The stored calibration is not valid for a lot.
     CalibrationInvalid = "calibration_invalid", Abort, Operator;
@@ -194,7 +194,7 @@ impl AlarmCode {
         subject.map_or(id.to_owned(), |subject| format!("{subject}_{id}"))
     }
 
-    /// Returns the text with these arguments.
+    /// Returns the message of this code with these arguments.
     pub fn message(self, args: Args) -> Message {
         Message::of("alarm", self.text_id(), args)
     }

@@ -22,9 +22,9 @@ pub(super) struct Machine {
     pub ended: bool,
     /// True when an order caused the suspension, so that only an order ends it.
     pub suspended_by_order: bool,
-    /// True once this clearing has requested the verification of the modules.
+    /// True once the present `Clearing` has requested the verification of the modules.
     pub verify_requested: bool,
-    /// Time at which the modules were verified in this clearing.
+    /// Time at which the modules were verified in the present `Clearing`.
     pub verified: Option<RigTime>,
 }
 

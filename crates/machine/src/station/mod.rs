@@ -3,8 +3,8 @@
 //! `Station::step(now, inputs) -> TurnOutput` is a function of its state and arguments: no clock, no I/O, no `async`.
 //! The caller may call it at any time; the states hold the deadlines.
 //!
-//! The state machine of the whole rig, around those of feed, nest and sorter, is [`packml`]: names of ISA-TR88.00.02
-//! (PackML). `states` performs its states, `answers` answers orders.
+//! The state machine of the whole rig, around those of feed, nest and sorter, is [`packml`], with names of
+//! ISA-TR88.00.02 (PackML). `states` performs its states, `answers` answers orders.
 //! 1. `Resetting`: [`crate::handling::recovery`] brings every actuator to its rest end and discharges the parts found
 //!    inside;
 //! 2. `Starting`: without a valid calibration the probes rise in the empty nest and the station measures the

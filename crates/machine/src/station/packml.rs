@@ -1,4 +1,4 @@
-//! State machine of the whole rig, around those of feed, nest and sorter: names of ISA-TR88.00.02 (PackML).
+//! State machine of the whole rig, around those of feed, nest and sorter, with names of ISA-TR88.00.02 (PackML).
 //!
 //! [`TRANSITIONS`] alone defines the order of states: station, screen buttons and `golden/packml.dot` derive from it.
 //! `Execute` feeds, clamps, measures and sorts parts; `Completing`, `Stopping` and `Holding` finish them.
@@ -6,10 +6,10 @@
 //! - *Held*: the cause is inside the machine, and a person ends it. *Suspended*: the cause is outside (no parts, a
 //!   full bin), and the machine resumes by itself.
 //! - A reset starts and acknowledges nothing; an acknowledgement resets nothing.
-//! - Files hold the names, never numbers.
+//! - Files hold the names of states, never numbers.
 
 named! {
-    /// State of the rig; each line says what the rig does, or in which condition it is.
+    /// State of the rig; each variant says what the rig does, or in which condition it is.
     State {
         /// Powered, outputs safe, every position unknown.
         Stopped = "Stopped",
@@ -35,7 +35,7 @@ named! {
         Suspending = "Suspending",
         /// At rest; the cause is outside the machine.
         Suspended = "Suspended",
-        /// Resumes after the cause outside has gone.
+        /// Resumes after the cause outside the machine has gone.
         Unsuspending = "Unsuspending",
         /// Finishes the parts inside, then makes the outputs safe.
         Stopping = "Stopping",
@@ -49,7 +49,7 @@ named! {
 }
 
 named! {
-    /// Commands that a person or another machine may give; each line says what the rig then does.
+    /// Commands that a person or another machine may give; each variant says what the rig then does.
     Command {
         /// Homes and empties the machine.
         Reset = "reset",
@@ -61,9 +61,9 @@ named! {
         Hold = "hold",
         /// Resumes after a hold.
         Unhold = "unhold",
-        /// Brings the line to rest for a cause outside.
+        /// Brings the line to rest for a cause outside the machine.
         Suspend = "suspend",
-        /// Resumes after the cause outside has gone.
+        /// Resumes after the cause outside the machine has gone.
         Unsuspend = "unsuspend",
         /// Makes the outputs safe at once.
         Abort = "abort",
@@ -75,7 +75,7 @@ named! {
 }
 
 named! {
-    /// Mode of the rig; each line says what an operator may have it do.
+    /// Mode of the rig; each variant says what an operator may have it do.
     Mode {
         /// Runs lots.
         Production = "production",
@@ -95,7 +95,7 @@ pub enum On {
     Done,
 }
 
-/// One row of the table.
+/// One row of [`TRANSITIONS`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Transition {
     /// State that the machine leaves.

@@ -4,7 +4,7 @@
 //! | button | order |
 //! |---|---|
 //! | start | `unhold` in Held, `unsuspend` in Suspended, else `start` |
-//! | stop | `stop`; an unattended run ends after the parts inside |
+//! | stop | `stop`; an unattended run ends once the parts inside are finished |
 //! | reset | `clear` after an abort, else `reset` |
 //!
 //! A button gives one order when it has been down for [`SETTLED`] after being up for as long: a bounce or a held
@@ -56,7 +56,7 @@ impl Default for Panel {
 }
 
 impl Panel {
-    /// Returns the orders of a machine in `state`, and the stuck buttons.
+    /// Returns the orders of the pressed buttons, for a machine in `state`, and the stuck buttons.
     pub(super) fn look(
         &mut self,
         now: RigTime,
@@ -79,7 +79,7 @@ impl Panel {
 }
 
 impl Button {
-    /// Returns true once per press.
+    /// Returns true when the button gives its order: once per press.
     fn orders(&mut self, now: RigTime, image: &Image) -> bool {
         let sample = image.input(self.point, now, SENSOR_AGE);
         let (Some(down), Some(at)) = (sample, image.input_at(self.point)) else {

@@ -10,8 +10,8 @@
 //! | sorter on its way | strokes and the axis | 8 s |
 //! | over the bin | rows of the part durable, beam read, the part before landed | 15 s |
 //!
-//! The other steps wait for a neighbour with a timeout, or for parts, without one. A full bin stops the clock over the
-//! bin; in maintenance, and while an unattended run waits for its history, no timeout applies.
+//! The other steps have no timeout: they wait for a neighbour that has one, or for parts. A full bin stops the clock
+//! over the bin; in maintenance, and while an unattended run waits for its history, no timeout applies.
 
 use super::catalogue::AlarmCode;
 use super::packml::{Mode, State};
@@ -51,7 +51,7 @@ impl Timeouts {
         self.since.clear();
     }
 
-    /// Returns the alarm of a step that has exceeded its timeout; of several, that of the last one.
+    /// Returns the alarm of a step that has exceeded its timeout; of several steps, that of the last one.
     pub fn look(
         &mut self,
         now: RigTime,

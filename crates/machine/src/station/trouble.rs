@@ -61,7 +61,7 @@ impl Alarm {
         said.unwrap_or_else(|| cause.to_owned())
     }
 
-    /// Returns the message of a refusal that this alarm causes; the arguments name the alarm.
+    /// Returns the message of the refusal named `refusal`, with this alarm inside it as arguments.
     pub fn inside(&self, refusal: &'static str) -> Message {
         let args = self.args.clone().with("alarm", self.code.text_id());
         Message::of("refusal", refusal, args)
@@ -202,7 +202,7 @@ impl Alarm {
             .with("limit", limit)
     }
 
-    /// Returns the alarm that the rig scatters more than its file or the recipe promises.
+    /// Returns the alarm that the rig scatters more than `rig.toml` or the recipe promises.
     pub fn promise_broken(broken: &Broken) -> Self {
         Self::from(AlarmCode::PromiseBroken(broken.promise))
             .with("promise", broken.promise.name())

@@ -25,7 +25,7 @@ pub struct Inputs<'a> {
     pub bus: Option<Alarm>,
     /// Lateness of this computer in the last seconds, when it explains an input that was not read.
     pub host_late: Option<Span>,
-    /// True when the operator ends the lot after the parts inside (one Ctrl-C).
+    /// True when the operator ends the lot once the parts inside are finished (one Ctrl-C).
     pub stop: bool,
     /// True when the operator ends the lot at once (two Ctrl-C).
     pub abort: bool,
@@ -75,7 +75,7 @@ pub struct Checked {
 }
 
 impl Inputs<'_> {
-    /// Returns true when the run ends after the parts inside.
+    /// Returns true when the run ends once the parts inside are finished.
     pub(super) const fn stops(&self) -> bool {
         self.stop || self.history.is_given_up()
     }
@@ -86,7 +86,7 @@ named! {
     Ending {
         /// Every part was judged and binned.
         Complete = "complete",
-        /// The operator stopped the run, which ended after the parts inside.
+        /// The operator stopped the run, which ended once the parts inside were finished.
         Stopped = "stopped",
         /// An alarm stopped the run.
         Alarm = "alarm",

@@ -44,7 +44,7 @@ pub enum AccessError {
     /// The password is shorter or longer than allowed.
     #[error("a password has {found} characters: expected {least} to {most}")]
     Password {
-        /// Its length, characters.
+        /// Length of the password, characters.
         found: usize,
         /// Least length, characters.
         least: usize,

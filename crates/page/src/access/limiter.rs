@@ -1,20 +1,21 @@
 //! Limits how often a wrong password may be tried.
 //!
 //! A name may fail five times within five minutes, all names together thirty times. Then the next try must wait until
-//! the oldest of these failures is five minutes old. A right password clears the failures of its name. Thirty failures
-//! bound the memory.
+//! the oldest of these failures is five minutes old. A right password clears the failures of its name. At most thirty
+//! failures are kept.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 /// Time for which a failure counts.
 const WINDOW: Duration = Duration::from_secs(300);
-/// Most failures of one name within [`WINDOW`].
+/// Largest number of failures of one name within [`WINDOW`].
 const PER_NAME: usize = 5;
-/// Most failures of all names within [`WINDOW`]: above the typing errors of a shift, far below what guessing needs.
+/// Largest number of failures of all names within [`WINDOW`]: above the typing errors of a shift, far below what
+/// guessing needs.
 const IN_ALL: usize = 30;
 
-/// The failures that still count, oldest first.
+/// Limits tries by the failures that still count, oldest first.
 #[derive(Debug, Default)]
 pub(crate) struct Limiter {
     failures: VecDeque<(Instant, String)>,
@@ -37,7 +38,7 @@ impl Limiter {
         self.failures.push_back((now, name.to_owned()));
     }
 
-    /// Forgets the failures of `name`.
+    /// Forgets the failures of `name` after a right password.
     pub fn succeeded(&mut self, name: &str) {
         self.failures.retain(|(_, it)| it != name);
     }

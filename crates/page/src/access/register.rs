@@ -191,7 +191,7 @@ impl Register {
         Ok(Some((person, token)))
     }
 
-    /// Returns the person of the session `token`; `None` for an unknown or expired one.
+    /// Returns the person who holds the session `token`; `None` for an unknown or expired one.
     pub fn holder(&self, token: &str, now_us: i64) -> Result<Option<Person>> {
         let sql = "SELECT name, role FROM session JOIN person ON person = name
                    WHERE token_sha256 = ?1 AND until_us > ?2";
@@ -210,8 +210,8 @@ impl Register {
     }
 }
 
-/// Creates the file, if it is missing, so that only this user can read and write it: it holds hashes of passwords.
-/// Ignores a failure, because opening the file afterwards reports it.
+/// Creates the file, if it is missing, as this user's own: no other user can read or write it, because it holds hashes
+/// of passwords. Ignores a failure, because opening the file afterwards reports it.
 fn own(path: &Path) {
     let mut options = OpenOptions::new();
     options.write(true).create_new(true);

@@ -139,7 +139,7 @@ fn read() -> Vec<Route> {
     ]
 }
 
-/// Reports for printing, and exports.
+/// Returns the routes of printed reports and of exports.
 fn printed() -> Vec<Route> {
     let cycle = may("ideal_cycle_s", "Shortest cycle the line can keep, s.");
     vec![

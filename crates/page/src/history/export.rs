@@ -15,7 +15,7 @@ use history::csv::BYTE_ORDER_MARK;
 use history::inquiry::{InquiryError, checks, export, paper};
 use std::io::{self, Write};
 
-/// Most parts of a spreadsheet, about 15 MB; the command `history export` makes larger ones.
+/// Largest number of parts in a spreadsheet, about 15 MB; the command `history export` makes larger ones.
 const SHEET_PARTS: u64 = 100_000;
 
 type Saved = [(HeaderName, &'static str); 2];

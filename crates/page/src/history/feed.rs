@@ -16,12 +16,13 @@ use tokio::time::timeout;
 
 /// Longest time for which a client may take no piece.
 const CLIENT_TIMEOUT: Duration = Duration::from_secs(10);
-/// Number of collected bytes from which they are sent as a piece.
+/// Number of bytes that are collected before they are sent as a piece.
 const PIECE: usize = 32 * 1024;
 
 type Piece = io::Result<Bytes>;
 
-/// Streams what `write` writes, on a blocking thread that keeps the archive and its permit until the end.
+/// Streams what `write` writes, on a blocking thread that keeps the archive and `place`, the permit to read it, until
+/// the end.
 pub(super) fn streamed(
     (archive, place): (Archive, impl Send + 'static),
     write: impl FnOnce(&Archive, &mut Pieces) -> io::Result<()> + Send + 'static,

@@ -14,10 +14,10 @@ use history::{Archive, Filter};
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; \
     form-action 'none'; frame-ancestors 'none'";
 
-/// Answer with a page for A4 and the policy in its header.
+/// Answer with a page for A4, and [`POLICY`] in its header.
 pub(crate) type Page = ([(HeaderName, &'static str); 1], Html<String>);
 
-/// Adds the policy to `page`.
+/// Adds a header with [`POLICY`] to `page`.
 pub(crate) fn with_policy(page: String) -> Page {
     ([(CONTENT_SECURITY_POLICY, POLICY)], Html(page))
 }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
-/// Most readers at the same time; further ones wait.
+/// Largest number of readers at the same time; further ones wait.
 const AT_ONCE: usize = 4;
 
 /// The history file and the permits to read it.

@@ -7,7 +7,7 @@ use axum::response::{IntoResponse, Response};
 use flate2::{Compression, write::GzEncoder};
 use std::io::Write;
 
-/// One body in both forms.
+/// One body, plain and compressed.
 #[derive(Debug)]
 pub(super) struct CompressedBody {
     media_type: &'static str,

@@ -1,11 +1,12 @@
-//! Data of the first answer, as JSON: texts of the pages, and every characteristic of a device with its unit and names.
+//! Data of the page (`GET /`), as JSON: texts of the pages, and every characteristic of a device with its unit and
+//! names.
 
 use machine::dut::Characteristic;
 use serde_json::{Value, json};
 use texts::Lang;
 
-/// Families of texts that the first answer omits: they reach the page inside alarms, reasons and refusals, or appear in
-/// print only.
+/// Families of texts that the answer to `GET /` omits: they reach the page inside alarms, reasons and refusals, or
+/// appear in print only.
 const ELSEWHERE: [&str; 13] = [
     "alarm",
     "card",

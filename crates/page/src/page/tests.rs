@@ -19,12 +19,12 @@ fn first() -> &'static str {
     std::str::from_utf8(&PAGE.plain).unwrap()
 }
 
-/// Markup of the first answer and of all pages.
+/// Markup of the answer to `GET /` and of the pages fetched later.
 static MARKUP: LazyLock<String> = LazyLock::new(|| {
     let pages = page_scripts::SOURCES.iter().map(|[_, markup, _]| *markup);
     std::iter::once(FRAME).chain(pages).collect()
 });
-/// Code of the first answer and of all pages.
+/// Code of the answer to `GET /` and of the pages fetched later.
 static CODE: LazyLock<String> = LazyLock::new(|| {
     let pages = page_scripts::SOURCES.iter().map(|[_, _, code]| *code);
     std::iter::once(SCRIPT).chain(pages).collect()
@@ -190,7 +190,7 @@ fn every_body_of_the_scene_has_a_text() {
     }
 }
 
-/// A fetched script sees the names of the first answer; a second definition would hide the first silently.
+/// A script fetched later sees the names of the answer to `GET /`; a second definition would hide the first silently.
 #[test]
 fn every_top_level_name_of_the_scripts_is_unique() {
     let mut seen = std::collections::BTreeSet::new();
@@ -207,7 +207,7 @@ fn every_top_level_name_of_the_scripts_is_unique() {
     assert!(seen.len() > 100, "{}", seen.len());
 }
 
-/// Largest first answer as sent, bytes.
+/// Largest answer to `GET /` when compressed, bytes.
 const FIRST_BYTES: usize = 60_000;
 
 #[test]

@@ -4,7 +4,7 @@ use super::*;
 use ::history::{Archive, Filter, LotRecord, MeasurementRecord, PartRecord, Row, Store};
 use serde_json::{Value, json};
 
-/// Values of a good part without its operate voltage.
+/// Values of a good part, all but the operate voltage.
 const OTHERS: [(&str, f64); 8] = [
     ("coil_resistance_ohm", 400.0),
     ("release_voltage_v", 2.3),

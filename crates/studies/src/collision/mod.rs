@@ -45,7 +45,7 @@ const SEED: u64 = 1;
 const SMALL_WORLD: i64 = 3;
 /// Name of the method to which bars and ratios refer.
 const OURS: &str = "swept exact";
-/// Error of rounding in the truth, mm: an answer is late only when it is late by more than this.
+/// Error of rounding in the truth, mm: an answer counts as late only beyond this.
 const ROUNDING_MM: f64 = 1e-12;
 
 /// Compares ways to check a move with the exact truth; returns the report, and the plot of speed against error as SVG.

@@ -33,7 +33,7 @@ struct Layer {
     cells: Vec<Vec<u32>>,
 }
 
-/// The model of the paper over one scene, and a mover.
+/// The paper's method, which steps a mover through one scene.
 #[derive(Debug)]
 pub struct Stepping {
     elements: Vec<Prepared>,
@@ -96,8 +96,8 @@ impl Stepping {
         found
     }
 
-    /// Returns the numbers of the elements in the layers and cells that the box reaches; some numbers come more than
-    /// once.
+    /// Returns the numbers of the elements in the layers and cells that the box from `low` to `high` reaches; some come
+    /// more than once.
     fn numbers(&self, low: [f64; 3], high: [f64; 3]) -> impl Iterator<Item = usize> + '_ {
         let cell = |place: f64| ((place / PITCH_MM).max(0.0) as usize).min(self.columns - 1);
         let (xs, ys) = (cell(low[0])..=cell(high[0]), cell(low[1])..=cell(high[1]));

@@ -3,7 +3,7 @@
 //! Scene and mover are one compound each. A move of length zero is an intersection test, because the cast reports no
 //! contact for it. The axis of a parry3d cylinder is y: the peer rotates it to z.
 
-/// Defines the peer for one precision of the library.
+/// Defines a module with a `Peer` for one precision of parry3d.
 macro_rules! peer {
     ($name:ident, $library:ident, $real:ty) => {
         pub mod $name {
@@ -13,7 +13,7 @@ macro_rules! peer {
             use $library::query::{ShapeCastOptions, cast_shapes, intersection_test};
             use $library::shape::{Compound, SharedShape};
 
-            /// Scene and mover.
+            /// Scene and mover as compound shapes of parry3d.
             pub struct Peer {
                 scene: Compound,
                 mover: Compound,

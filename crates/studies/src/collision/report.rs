@@ -69,7 +69,7 @@ fn ours(scored: &[Scored]) -> Option<&Scored> {
     scored.iter().find(|it| it.name == OURS)
 }
 
-/// Returns the wall time of one move, and its ratio to the time of [`OURS`].
+/// Returns, for each method, the wall time of one move and its ratio to the time of [`OURS`].
 pub(super) fn speeds(scored: &[Scored]) -> Vec<Figure> {
     let row = |it: &Scored| {
         let ratio = |of: &dyn Fn(&Scored) -> Option<f64>| Some(of(it)? / of(ours(scored)?)?);

@@ -1,9 +1,9 @@
 //! The bodies of the study: scene and mover.
 //!
-//! The scene is a plate with stacks of one to five bodies at a pitch of 60 mm, heights in steps of 5 mm. Of twenty bodies
-//! eight are cylinders, one is a rotated block, two are sheets of 0.1 to 0.5 mm, one is a wire of 0.5 to 2 mm, the others
-//! are upright blocks. The mover is a gripper: two fingers, a palm, a round spindle, and a probe needle of half a
-//! millimetre that reaches beyond the fingers.
+//! The scene is a plate with stacks of one to five bodies at a pitch of 60 mm, heights in steps of 5 mm. Of twenty
+//! bodies eight are cylinders, one is a rotated block, two are sheets of 0.1 to 0.5 mm, one is a wire of 0.5 to 2 mm,
+//! the others are upright blocks. The mover is a gripper: two fingers, a palm, a round spindle, and a probe needle of
+//! half a millimetre that reaches beyond the fingers.
 
 use super::world::{MM, UNIT_MM};
 use crate::dice::Dice;

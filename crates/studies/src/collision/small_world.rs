@@ -1,6 +1,6 @@
-//! All moves of a small world: every block with whole corners from 0 to 3 in each axis moves past every other one by every
-//! whole displacement from -3 to 3. These are 16,003,008 moves; the study compares verdict and time of each with the exact
-//! truth.
+//! All moves of a small world: every block with whole corners from 0 to 3 in each axis moves past every other one by
+//! every whole displacement from -3 to 3. These are 16,003,008 moves; the study compares verdict and time of each with
+//! the exact truth.
 
 use crate::pool;
 use lpm::exact::{Body, first_contact};

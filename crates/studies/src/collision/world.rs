@@ -29,7 +29,7 @@ pub struct TestMove {
     pub truth: Option<f64>,
     /// Whether a mover thinner by one unit has a contact too.
     pub deep: bool,
-    /// Number of elements whose box the swept box of a part of the mover meets.
+    /// Number of elements near the move: their box meets the swept box of a part of the mover.
     pub near: usize,
 }
 
@@ -44,7 +44,7 @@ impl TestMove {
             * UNIT_MM
     }
 
-    /// Returns the move as a query of the collision core.
+    /// Returns the move in the form that the collision core takes.
     pub fn order(&self) -> Move<'static> {
         let mm = |place: [i64; 3]| Pose::at(place.map(|it| it as f64 * UNIT_MM));
         Move {

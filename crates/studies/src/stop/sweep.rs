@@ -49,8 +49,8 @@ impl Sweep {
         }
     }
 
-    /// Returns the instants at which a lot is stopped, seconds from the start of the interval; other lots have those
-    /// between.
+    /// Returns the instants at which a lot is stopped, seconds from the start of the swept interval; other lots have
+    /// instants between these.
     pub fn instants(self, order: &Order, lot: u64) -> Vec<f64> {
         let all = (order.lots * order.parts) as f64;
         let instant = |stop: u64| self.span_s() * (stop * order.lots + lot) as f64 / all;

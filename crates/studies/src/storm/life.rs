@@ -1,5 +1,5 @@
-//! One life of the controller: the program as `run` starts it, in virtual time, in this process, on a rig that keeps its
-//! state from life to life. A kill drops the program with all its tasks in the middle of a turn.
+//! One life of the controller: the program as `run` starts it, in virtual time, in this process, on a rig that keeps
+//! its state from life to life. A kill drops the program with all its tasks in the middle of a turn.
 
 use super::operator::{Answered, Operator};
 use super::scenario::Life;
@@ -23,7 +23,7 @@ use units::RigTime;
 
 /// Wall clock at rig time zero, microseconds since 1970 UTC: 2027-01-15. The same for every seed.
 pub const EPOCH_US: i64 = 1_800_000_000_000_000;
-/// Longest life of a few parts, with all waits of operator and station, microseconds.
+/// Longest life of the controller over a lot of a few parts, with all waits of operator and station, microseconds.
 const LONGEST_US: u64 = 300_000_000;
 
 /// End of a life.
@@ -42,13 +42,13 @@ pub enum End {
 /// Record of a life of the controller that has ended.
 #[derive(Debug, Clone)]
 pub struct EndedLife {
-    /// Name of its lot.
+    /// Name of the lot that the life ran.
     pub lot: String,
-    /// Rig time at its start, microseconds.
+    /// Rig time at the start of the life, microseconds.
     pub began_us: u64,
-    /// Rig time at its end, microseconds.
+    /// Rig time at the end of the life, microseconds.
     pub ended_us: u64,
-    /// Reason of the end.
+    /// How the life ended.
     pub end: End,
     /// Orders of the operator with their answers.
     pub answers: Vec<Answered>,

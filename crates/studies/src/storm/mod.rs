@@ -36,12 +36,12 @@ use tempfile::TempDir;
 use tracing::subscriber::{NoSubscriber, with_default};
 use units::Span;
 
-/// Most lives after the faults; one of them must complete its lot. The first may have to discharge parts.
+/// Largest number of lives after the faults; one of them must complete its lot. The first may have to discharge parts.
 const CALM: u64 = 3;
 /// Number of parts of a lot without faults.
 const CALM_PARTS: u64 = 2;
 
-/// Inputs of all seeds.
+/// A storm: the inputs that all seeds share.
 struct Storm<'a> {
     order: &'a Order,
     plant: Plant,
@@ -104,7 +104,7 @@ impl<'a> Storm<'a> {
         })
     }
 
-    /// Runs all lives of a seed.
+    /// Runs all lives of a seed and returns the case for `judge`.
     fn case(&self, seed: u64, db: &Path) -> anyhow::Result<Case> {
         let scenario = Scenario::of(seed, self.order.parts, &self.plant.wiring);
         let rig = self.rig(scenario.rig, scenario.uncalibrated, &scenario.faults)?;

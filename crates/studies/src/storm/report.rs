@@ -9,7 +9,7 @@ use crate::order::Order;
 use crate::output::Report;
 use app::exit::Exit;
 
-/// Most seeds that the report shows; the figures count all of them.
+/// Largest number of seeds that the report shows; the figures count all of them.
 const SHOWN: usize = 10;
 
 /// Result of one seed: counts, and the trace only of a seed that breaks a rule, since a case is large.

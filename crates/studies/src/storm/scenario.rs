@@ -38,7 +38,7 @@ const OF_A_REPLY: [&str; 8] = [
 /// Plan of one life of the controller, that is, of its program from start to end.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Life {
-    /// Parts of its lot.
+    /// Parts of the lot that the life runs.
     pub count: u64,
     /// Whether an operator gives random orders.
     pub attended: bool,
@@ -143,7 +143,7 @@ fn lives(dice: &mut Dice, uncalibrated: bool, parts: u64) -> Vec<Life> {
         .collect()
 }
 
-/// Draws a fault of a line or a module with its window.
+/// Draws a fault of a line or a module, with the interval in which it acts.
 fn line_fault(dice: &mut Dice, wiring: &Wiring) -> String {
     let seconds = |us: u64| us as f64 * 1e-6;
     let from = dice.below(CEASES_US - 1_000_000);

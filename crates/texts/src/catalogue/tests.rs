@@ -11,7 +11,7 @@ fn both_languages_have_equal_ids_in_order() {
 fn both_languages_have_the_same_attributes_and_arguments() {
     for id in ids(Lang::En) {
         let english = attributes(Lang::En, id);
-        // The string of rows and files is a format, not a text: it is English for everybody.
+        // Attribute `row` is the form of a message in rows and files, which is English in every language.
         let read = english.iter().filter(|it| **it != "row").copied();
         assert_eq!(
             read.clone().collect::<BTreeSet<_>>(),

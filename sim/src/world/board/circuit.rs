@@ -46,8 +46,8 @@ impl Board {
         })
     }
 
-    /// Returns the supply voltage that reaches the pins of a coil. The film acts on the divider only; the model
-    /// ignores its effect on L/R, one percent at 4 ohm.
+    /// Returns the supply voltage that reaches the pins of a coil, behind the film on its probes. The model ignores the
+    /// effect of the film on L/R, one percent at 4 ohm.
     pub(super) fn coil_input_v(&self, coil_ohm: f64) -> f64 {
         let share = 1.0 / (1.0 + self.film_ohm / coil_ohm);
         self.supply.limited_v(coil_ohm + self.film_ohm) * share

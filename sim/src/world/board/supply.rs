@@ -1,8 +1,8 @@
 //! The coil supply of the interface board: three sources behind an amplifier with ranges.
 //!
-//! The range relays follow the command only while the drive is off and all sources are at zero, and they need both
-//! for a few milliseconds; otherwise the supply keeps its range. The factor of the range multiplies the gains of
-//! the sources and the movement that starts a ramp.
+//! The range relays follow the command only when the drive has been off and all sources at zero for a few milliseconds;
+//! otherwise the supply keeps its range. The factor of the range multiplies the gains of the sources and the movement
+//! that starts a ramp.
 
 use serde::Deserialize;
 
@@ -35,7 +35,7 @@ pub struct CoilSupply {
     zero_mv: f64,
     /// Voltage at the terminal of each source, V.
     volts: [f64; 3],
-    /// Volts of the supply per volt at the terminal of each source, in a range with factor 1.
+    /// Volts that the supply gives per volt at the terminal of each source, in a range with factor 1.
     gain: [f64; 3],
     ramp_start_mv: f64,
     arm_level_v: f64,
@@ -46,8 +46,8 @@ pub struct CoilSupply {
 }
 
 impl CoilSupply {
-    /// Creates the supply in its lowest code, with all sources at zero; without `ranges` it has one range with
-    /// factor 1 and the limits of `table`.
+    /// Creates the supply in the range with the lowest code, with all sources at zero; without `ranges` it has one
+    /// range with factor 1 and the limits of `table`.
     pub fn new(table: &BoardTable, wiring: &Wiring, mut ranges: Vec<SupplyRange>) -> Self {
         ranges.sort_by_key(|range| range.code);
         let only = SupplyRange {
@@ -109,7 +109,7 @@ impl CoilSupply {
 
     /// Records an overdrive when it begins; `on_coil` means that the drive reaches a coil.
     pub fn watch(&mut self, now_us: f64, commands: Commands, on_coil: bool) {
-        // The drive may outlast its command by the lead of the contact source; that is no new drive.
+        // The drive may outlast its command while the contact source switches off first; that is no new drive.
         let excess = self
             .commanded(commands)
             .filter(|_| on_coil && commands.is_on(Out::CoilDrive))
@@ -172,7 +172,7 @@ impl CoilSupply {
     }
 }
 
-/// Returns the volts of supply per volt of each source; 0 for a source without a wire.
+/// Returns the volts that the supply gives per volt at each source's terminal; 0 for a source without a wire.
 fn gains(wiring: &Wiring) -> [f64; 3] {
     let mut gains = [0.0; 3];
     for (_, wire) in wiring.sources.values().flatten() {

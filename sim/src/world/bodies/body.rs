@@ -21,7 +21,7 @@ pub struct Body {
     /// Name in the scene.
     pub name: String,
     solids: Vec<Solid>,
-    /// Travel per mm of each actuator.
+    /// Displacement of the body per mm of travel of each actuator.
     pub moves: [Vector; 8],
     rest_box: Aabb,
 }
@@ -90,8 +90,8 @@ pub fn element(scene: &Scene, element: &Element) -> Body {
     Body::new(element.id.clone(), solids, moves)
 }
 
-/// Builds a part in each of its places. The part between the fingers rests where they grip it: z down, axis at the
-/// nest.
+/// Builds a part in each of its places. The part in the gripper coincides with that in the nest while sort z is down
+/// and the axis at the nest, where the fingers grip it.
 pub fn parts(scene: &Scene, size: &Size) -> Vec<Body> {
     let places = &scene.guard;
     let lowered = Vector::new(0.0, 0.0, scene.stroke_mm(ACTUATORS[SORT_Z]));

@@ -13,7 +13,7 @@ pub struct PairLimits {
     by: [bool; 8],
     /// Permitted depth for any actuator, mm.
     depth_mm: f64,
-    /// Permitted depth for these actuators, mm.
+    /// Depth permitted unless another actuator moves the pair, mm, and the actuators that may press it so deep.
     deeper: Option<(f64, [bool; 8])>,
 }
 
@@ -23,13 +23,14 @@ impl PairLimits {
         (0..ACTUATORS.len()).any(|n| self.by[n] && moved[n])
     }
 
-    /// Returns the permitted depth while these actuators move, mm; `slack`: only springs pull them apart.
+    /// Returns the permitted depth while these actuators move, mm; with `slack`, a grip of the pair yields without
+    /// damage.
     pub fn allowed(&self, moved: &[bool; 8], slack: bool) -> f64 {
         let Some((deeper_mm, by)) = &self.deeper else {
             return self.depth_mm;
         };
         let foreign = (0..ACTUATORS.len()).any(|n| moved[n] && self.by[n] && !by[n]);
-        // A grip slides without damage when only springs pull it apart.
+        // A grip that yields slides without damage, whichever actuator pulls it apart.
         if foreign && !slack {
             self.depth_mm
         } else {

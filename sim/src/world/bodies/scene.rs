@@ -102,7 +102,7 @@ pub enum Rule {
     Ignore,
 }
 
-/// Places of a part (middle of the lower rear edge of its body), and permitted depths.
+/// Places of a part (middle of the lower rear edge of its body), its contact depth and the inset of its pins.
 #[derive(Debug, Clone, Deserialize)]
 pub struct PartPlaces {
     /// Depth up to which a contact does not count, mm.
@@ -118,7 +118,7 @@ pub struct PartPlaces {
 /// Content of `scene.toml`.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Scene {
-    /// Places of a part.
+    /// Places of a part, from the table `[guard]`.
     pub guard: PartPlaces,
     /// All actuators.
     pub actuator: Vec<Actuator>,

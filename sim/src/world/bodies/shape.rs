@@ -36,7 +36,7 @@ impl Solid {
         self.rest_box
     }
 
-    /// Returns the pose after a travel.
+    /// Returns the pose after the displacement `way`.
     pub fn placed(&self, way: Vector) -> Pose {
         Pose::from_parts(self.rest.translation + way, self.rest.rotation)
     }
@@ -85,7 +85,7 @@ pub fn part(size: &Size, inset_mm: f64, place: [f64; 3], more: Vector) -> Vec<So
     ]
 }
 
-/// Converts a quaternion with w first.
+/// Converts a rotation, given as a quaternion with w first.
 fn turn([w, x, y, z]: [f64; 4]) -> Rot3 {
     Rot3::from_xyzw(x, y, z, w).normalize()
 }

@@ -6,7 +6,7 @@ use super::{CylinderId, Mechanism};
 use crate::world::bodies::Bodies;
 use crate::world::posture::Posture;
 
-/// The bodies, with the instant up to which they have been checked.
+/// Watch for crashes: the bodies, and the instant up to which they have been checked.
 #[derive(Debug, Clone)]
 pub(super) struct CrashWatch {
     bodies: Bodies,

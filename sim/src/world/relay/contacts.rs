@@ -9,7 +9,7 @@ use super::{Relay, SETTLING_US};
 use crate::world::probes::{Change, Contact};
 
 impl Relay {
-    /// Handles a change of mode in the motion.
+    /// Handles a contact that the motion has touched or left.
     pub(super) fn touched(&mut self, event: &Event) -> Option<Change> {
         let contact = match event.kind {
             Element::No => Contact::No,
@@ -35,7 +35,7 @@ impl Relay {
         self.set(change.t_us, change.contact, change.closed)
     }
 
-    /// Matches the contact to the motion after its closure has settled.
+    /// Sets the contact as the motion has it, once its closure has settled.
     pub(super) fn synchronised(&mut self, t_us: f64) -> Option<Change> {
         if t_us < self.settled_us || !self.bounce.is_empty() {
             return None;

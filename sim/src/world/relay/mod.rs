@@ -123,7 +123,7 @@ impl Relay {
         &self.drawn
     }
 
-    /// Returns the rig time that the motion has spent on each level, held and moving.
+    /// Returns the rig time that the motion has spent at each level of detail, held and moving.
     pub fn levels(&self) -> Levels {
         self.motion.levels()
     }
@@ -197,7 +197,7 @@ impl Relay {
         self.since_us = t_us;
     }
 
-    /// Passes the present supply and copper temperature to the motion.
+    /// Restarts the motion with the present supply and copper temperature.
     fn restart(&mut self) {
         let drive = match self.supply {
             Supply::Volts(_) if self.drawn.coil_ohm.is_infinite() => Drive::still(0.0),

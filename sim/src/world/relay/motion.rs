@@ -1,6 +1,6 @@
 //! Motion of the armature: held on a stop in equilibrium, integrated while it moves.
 //!
-//! The motion selects one of two levels:
+//! The motion selects one of two levels of detail:
 //!
 //! - *held*: the armature is pressed on backstop or seat. Only the flux is integrated, travel and leaf follow it
 //!   in equilibrium; a constant flux costs nothing.
@@ -33,7 +33,7 @@ const FLUX_STEP_SHARE: f64 = 0.25;
 /// Rate of the flux below which it counts as constant, V: a microvolt of the source.
 const STILL_V: f64 = 1e-6;
 
-/// Rig time spent on each level of the motion, s.
+/// Rig time spent at each level of detail of the motion, s.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Levels {
     /// Armature pressed on a stop.
@@ -42,7 +42,7 @@ pub struct Levels {
     pub moving_s: f64,
 }
 
-/// State of a relay's motion on one of the two levels.
+/// State of a relay's motion, at one of the two levels of detail.
 #[derive(Debug, Clone)]
 pub struct Motion {
     model: Model,
@@ -73,7 +73,7 @@ impl Motion {
         }
     }
 
-    /// Returns the rig time spent on each level.
+    /// Returns the rig time spent at each level of detail.
     pub fn levels(&self) -> Levels {
         self.levels
     }

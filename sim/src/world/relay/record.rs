@@ -68,7 +68,7 @@ impl RelayRecord {
         timing.time_ms.map(|_| timing.bounce_us / 1000.0)
     }
 
-    /// Returns the mean over the closures with source current, milliohm.
+    /// Returns the mean resistance over the closures with source current, milliohm.
     pub fn mean_mohm(&self, contact: Contact) -> Option<f64> {
         let c = &self.closures[contact as usize];
         (c.count > 0).then(|| c.sum_mohm / f64::from(c.count))

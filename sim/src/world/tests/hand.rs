@@ -14,7 +14,7 @@ pub(super) struct Hand {
 }
 
 impl Hand {
-    /// Builds a rig; one with ranges of the supply is in the range of factor 1.
+    /// Builds a rig; selects the supply range of factor 1 if the rig has ranges.
     pub(super) fn new(options: WorldOptions) -> Self {
         let rig = read_rig(&options.files).unwrap();
         let ranged = !rig.supply_ranges.is_empty();

@@ -1,4 +1,4 @@
-//! Keys of serial lines and modules, and of what holds for every line.
+//! Keys of serial lines and modules, and of the settings that every line shares.
 
 use machine::form::{Form, Key, above_zero, from_to, key, optional, whole};
 use machine::rig::model::Model;

@@ -5,16 +5,16 @@ use crate::instrument::act;
 use crate::rig::point::Point;
 use units::{Span, Volt};
 
-/// Inputs of one reading.
+/// Points that one [`Act::Read`] reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Read {
     /// All inputs of the interface board.
     Board,
-    /// The enabled channels of the coil converter, one scan.
+    /// One scan of the enabled channels of the coil converter.
     Coil,
     /// One channel of the coil converter, in about half the time of a scan.
     Current(AnalogIn),
-    /// The contact drop.
+    /// The drop across the contact under test.
     Drop,
     /// Both gate counters.
     Gates,
@@ -26,7 +26,7 @@ pub enum Read {
     Resets,
 }
 
-/// One step of a stage; waits and marks as in [`act::Act`].
+/// One step of a stage; waits and marks work as in [`act::Act`].
 #[derive(Debug, Clone, PartialEq)]
 pub enum Act {
     /// Sets outputs of the interface board in one write.
@@ -68,8 +68,8 @@ pub enum Act {
 }
 
 impl Points {
-    /// Translates acts into those of a rig, whose points are these; `scanned` lists the enabled channels of the coil
-    /// converter.
+    /// Translates acts of a relay test into acts on the rig that has these points; `scanned` lists the enabled channels
+    /// of the coil converter.
     pub fn wired(&self, acts: Vec<Act>, scanned: &[AnalogIn]) -> Vec<act::Act> {
         let acts = acts.into_iter();
         acts.map(|act| self.wired_act(act, scanned)).collect()

@@ -73,7 +73,7 @@ pub struct Overshoot {
     /// Model of coarse minus fine indication: places the fine ramp, and gives results where a recipe allows it.
     #[serde(default = "assumed_model")]
     pub coarse: OvershootModel,
-    /// True when enough parts of the lot have taught the model that it may give results.
+    /// True when a coarse ramp alone may give results: enough parts of the lot have taught the model.
     #[serde(default)]
     pub judges: bool,
 }
@@ -97,9 +97,9 @@ impl Overshoot {
 
     /// Returns the fine overshoot of this part beyond that of the reference parts, volts (1 sd).
     ///
-    /// A rising ramp waits for the armature at both rates, so the fine overshoot grows in proportion to the coarse
-    /// one. A falling ramp waits for the flux, which predicts no fine overshoot and only adds uncertainty. Without a
-    /// coarse ramp the overshoot of the reference parts is the uncertainty.
+    /// A rising ramp waits for the armature at both rates, so the fine overshoot grows in proportion to the coarse one.
+    /// A falling ramp waits for the flux, which predicts no fine overshoot and only adds uncertainty. Without a coarse
+    /// ramp the overshoot of the reference parts counts as uncertainty.
     pub fn own_v(&self, coarse_minus_fine_v: f64, direction: Direction) -> Factor {
         let further = self.fine_v.value * (coarse_minus_fine_v / self.at_coarse_v - 1.0);
         match direction {
@@ -175,7 +175,7 @@ pub struct Calibration {
     /// contains it. 0 when unknown.
     #[serde(default)]
     pub probe_contact_ohm: f64,
-    /// Promises of the rig's file that the calibration has disproved.
+    /// Accuracies promised in `rig.toml` that the calibration has disproved.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub broken: Vec<Broken>,
 }

@@ -38,8 +38,8 @@ impl Closure {
         })
     }
 
-    /// Returns the standard uncertainty of the drop, volts; the zero has the same. `reading_v`: standard uncertainty of
-    /// one reading.
+    /// Returns the standard uncertainty of the drop, and likewise of the zero, volts. `reading_v`: standard uncertainty
+    /// of one reading.
     pub fn u_v(&self, reading_v: f64) -> f64 {
         reading_v / (self.readings as f64).sqrt()
     }

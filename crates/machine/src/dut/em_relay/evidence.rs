@@ -38,7 +38,7 @@ enum Event {
     Command(usize, f64),
     /// Drive on or off.
     Drive(bool),
-    /// Contacts closed.
+    /// Contacts NO and NC, true when closed.
     Contacts { no: bool, nc: bool },
 }
 

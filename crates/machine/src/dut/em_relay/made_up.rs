@@ -47,7 +47,7 @@ fn of(relay: &RelayRecipe, parameter: Parameter) -> Scatter {
     }
 }
 
-/// Returns the recorded signals: 30 polls of a contact, 120 samples of a voltage.
+/// Returns how the recorded signals look: 30 polls of a contact, 120 samples of a voltage.
 fn looks() -> Vec<Looks> {
     vec![
         Looks {

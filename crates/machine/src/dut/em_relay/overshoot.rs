@@ -10,8 +10,8 @@
 //! conjugate prior (normal with inverse gamma), so it gives an uncertainty from the first part on; a result that has
 //! varied little widens it. The weight of the prior falls with every part.
 //!
-//! The line is valid only among the parts that taught it. For a part far outside it may place the ramp but gives no
-//! result ([`Predicted::alike`]); the uncertainty grows with the square of the distance.
+//! The line is valid only among the parts that taught it. For a part far outside, it may still place the ramp but gives
+//! no result ([`Predicted::alike`]); the uncertainty grows with the square of the distance.
 
 use serde::{Deserialize, Serialize};
 use units::Volt;
@@ -33,9 +33,9 @@ const ELASTICITY_SD: f64 = 0.25;
 /// Largest residual that counts, in standard uncertainties; a larger one counts as this. So one outlier does not bend
 /// the line, whereas residuals that persist widen the uncertainty until the line bends.
 const OUTLIER: f64 = 3.0;
-/// Greatest squared distance from the parts learned, in squared standard deviations, and how much wider it is after few
-/// parts: one similar part in two thousand lies further away (Hotelling's T2 of five variates, within a tenth from ten
-/// parts on).
+/// Greatest squared distance of a similar part from the parts learned, in squared standard deviations: one in two
+/// thousand lies further away. `WIDER` raises it after few parts (Hotelling's T2 of five variates, accurate to a tenth
+/// from ten parts on).
 const MAX_DISTANCE2: f64 = 20.0;
 const WIDER: f64 = 20.0;
 const RESULTS: usize = 5;
@@ -193,7 +193,8 @@ impl OvershootModel {
         (0..TERMS).map(of_term).sum()
     }
 
-    /// Returns the squared distance from the parts learned, relative to the limit for similar parts; `None` at first.
+    /// Returns the squared distance from the parts learned, relative to the limit for similar parts; `None` after too
+    /// few parts.
     fn beyond(&self, spread: f64) -> Option<f64> {
         let parts = f64::from(self.parts);
         let more = parts - RESULTS as f64;

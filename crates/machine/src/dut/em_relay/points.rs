@@ -193,7 +193,7 @@ pub struct Points {
     analog: [Option<(AnalogInput, f64)>; AnalogIn::COUNT],
     sources: [AnalogOutput; AnalogOut::COUNT],
     counters: [GatedCounter; Counter::COUNT],
-    /// Temperature of the part.
+    /// Thermometer of the magazine track, whose temperature counts as that of the part.
     pub track: Thermometer,
     /// Inputs of the board that one reading samples together.
     pub board: Arc<Word>,

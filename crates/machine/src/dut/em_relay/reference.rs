@@ -63,7 +63,7 @@ const DROPS: usize = 8;
 /// Number of gate pulses: their sum is uncertain by one count, their mean by 1/25 of a count.
 const PULSES: u32 = 25;
 
-/// Returns the inputs that [`acts`] scans; none on a rig that lacks a point of the kind.
+/// Returns the inputs that [`acts`] scans; none on a rig that lacks a point of the relay test.
 pub fn inputs(wiring: &Wiring) -> Vec<AnalogInput> {
     let points = Points::resolve(wiring).ok();
     let inputs = points.map(|points| {
@@ -211,7 +211,7 @@ fn pulses(acts: &mut Vec<Act>) {
 /// Computes the factors from the readings of [`acts`]. `made_at_us`: microseconds since 1970 UTC.
 ///
 /// # Errors
-/// Fails with the range, the channel or the reference that does not read as it must.
+/// Fails with the range, the channel or the reference whose reading is wrong.
 pub fn conclude(
     context: &Context,
     readings: &ByPoint,

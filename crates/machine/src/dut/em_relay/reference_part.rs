@@ -56,7 +56,7 @@ pub enum Misfit {
     },
     /// Too few reference parts were measured.
     TooFew {
-        /// Number measured.
+        /// Number of reference parts measured.
         measured: usize,
     },
     /// One part is an outlier.

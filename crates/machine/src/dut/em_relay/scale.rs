@@ -1,8 +1,8 @@
 //! Scales the voltages of the procedure to the coil and to the range of the supply.
 //!
 //! The constants of this kind are those of a 12 V coil in the range of factor 1. Voltages of the relay (thresholds,
-//! their scatter) scale with the nominal voltage. Voltages of the supply (the window of the board, the way of a ramp in
-//! a given time) scale with the factor of the range.
+//! their scatter) scale with the nominal voltage. Voltages of the supply (the window of the board, the distance of a
+//! ramp in a given time) scale with the factor of the range.
 
 use units::Volt;
 

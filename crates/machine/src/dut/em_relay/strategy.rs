@@ -100,7 +100,7 @@ pub fn from_two_rates(seen_v: [f64; 2], rates: [f64; 2], growth_s: f64) -> f64 {
     (rates[0] * two - rates[1] * one) / (rates[0] - rates[1])
 }
 
-/// Returns the growth time L in seconds from the overshoots at two rates on parts of known threshold; both positive.
+/// Returns the growth time L in seconds from the overshoots at two rates on parts of known threshold, both above zero.
 pub fn growth_s(overshoots_v: [f64; 2], rates: [f64; 2]) -> f64 {
     let each = |place: usize| overshoots_v[place] / rates[place];
     (each(1) - each(0)) / (rates[0].ln() - rates[1].ln())

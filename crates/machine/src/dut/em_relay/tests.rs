@@ -59,7 +59,7 @@ pub fn device_of(context: Context) -> dut::Device {
     dut::Device::EmRelay(Box::new(Device::of(context, reference_parts())))
 }
 
-/// The reference parts of 12 V.
+/// The reference parts for 12 V coils.
 pub fn reference_parts() -> Vec<ReferencePart> {
     let set: ReferenceSet =
         toml::from_str(include_str!("../../../../../config/golden.toml")).unwrap();

@@ -1,10 +1,10 @@
 //! Operate and release voltage from a ramp and a gated counter.
 //!
-//! The window opens when the supply has moved [`WINDOW`] from its level at ARM, and the latch closes it at the
-//! contact event, so the indicated voltage is `start +- (WINDOW + slope x gate)`. A ramp overshoots the quasi-static
-//! threshold. Reference parts give the overshoot of the fine ramp; it also contains the tolerance of the 50 mV, the
-//! error of the level, the contact of the probes and the mean heating of the coil. The operate current does not depend
-//! on temperature, so the voltage scales like the coil (IEC 61810-7).
+//! The window opens when the supply has moved [`WINDOW`] from its level at ARM, and the latch closes it at the contact
+//! event, so the indicated voltage is `start +- (WINDOW + slope x gate)`. A ramp overshoots the quasi-static threshold.
+//! Reference parts give the overshoot of the fine ramp; it also contains the tolerance of [`WINDOW`], the error of the
+//! level, the contact of the probes and the mean heating of the coil. The operate current does not depend on
+//! temperature, so the voltage scales like the coil (IEC 61810-7).
 
 use super::calibration::Overshoot;
 use super::coil::{relative_per_kelvin, to_reference};

@@ -3,7 +3,7 @@
 use crate::dut::keys::{BODY, PIN_LENGTH, REFERENCE_TEMPERATURE, Sections, limit, table};
 use crate::form::{Key, above_zero, from_to, key, whole};
 
-/// The sections of the recipe.
+/// Keys of the sections `[part]`, `[limits]` and `[test]`.
 pub const SECTIONS: Sections = Sections {
     part: PART,
     limits: LIMITS,

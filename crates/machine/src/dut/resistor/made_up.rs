@@ -5,10 +5,11 @@ use crate::dut::made_up::{MadeUp, Scatter};
 use crate::dut::recipe::Limits;
 use crate::gauge::Budget;
 
-/// Resistance for a recipe without both limits, ohm.
+/// Resistance for a recipe without any limit, ohm.
 const USUAL_OHM: f64 = 390.0;
 
-/// Returns values around the middle of the limits, with a tenth of their distance as standard deviation.
+/// Returns the scatter of the resistance: around the middle of the limits, with a tenth of their distance as standard
+/// deviation.
 pub fn made_up(limits: &Limits) -> MadeUp {
     let limit = limits.of(Parameter::Resistance);
     let (mean, sd) = match (limit.low, limit.high) {

@@ -25,7 +25,7 @@ fn one(square: f64, own: f64, others: f64) -> Residuals {
     }
 }
 
-/// Residual at which a lot of at most `parts` disproves a promise of 1, when the term is `factor` as large.
+/// Number of residuals, of at most `parts`, that disprove a promise of 1 when the term is `factor` times as large.
 fn noticed(seed: u64, factor: f64, others: f64, parts: usize, rate: f64) -> Option<usize> {
     let (mut normal, mut evidence) = (Normal::new(seed), Evidence::default());
     (1..=parts).find(|_| {

@@ -60,7 +60,7 @@ fn the_probes_rise_to_the_clamped_part() {
     );
 }
 
-/// The middle of a test: nest closed, probes up, the pocket filling behind it.
+/// The middle of a test: nest closed, probes up, pocket empty.
 fn under_test() -> Situation {
     rest()
         .clamped()

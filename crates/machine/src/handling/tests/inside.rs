@@ -27,8 +27,8 @@ fn seen(places: u8) -> SensedParts {
     }
 }
 
-/// Returns the greatest number of parts accounted for, over all assignments of sensed parts to left ones: one from the
-/// pocket may be anywhere, one from nest or gripper in either.
+/// Returns the greatest number of parts accounted for, over all assignments of sensed parts to parts left inside: one
+/// from the pocket may be anywhere, one from nest or gripper in either.
 fn accounted(left: u8, seen: u8) -> usize {
     let may = |part: usize, place: usize| part == 0 || place > 0;
     let of = |places: u8| (0..3).filter(move |bit| places & (1 << bit) != 0);

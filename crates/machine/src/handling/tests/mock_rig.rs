@@ -19,7 +19,7 @@ use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 use units::{RigTime, Span};
 
-/// Longest stroke of every actuator in these tests.
+/// Longest time of a stroke of any actuator in these tests.
 pub const TIMEOUT: Span = Span::ms(900);
 
 /// Sensors that are on with every actuator at rest, no part, and safety intact.
@@ -270,7 +270,7 @@ fn opposite(movement: Move) -> &'static [(DigitalIn, bool)] {
     }
 }
 
-/// Returns the strokes in the order of the actuators; the axis has its table.
+/// Lengths of the strokes in the order of the actuators; the axis has a point table instead.
 pub const LENGTH_MM: [f64; 8] = [12.0, 60.0, 8.0, 8.0, 12.0, 0.0, 40.0, 6.0];
 
 /// Makes a mechanism without motions.

@@ -73,7 +73,7 @@ impl Nest {
         self.step(state, None)
     }
 
-    /// Fails a job 40 ms after the start of the test.
+    /// Fails the first job of the test 40 ms after its start, so that the part is judged void.
     fn judged(&mut self) -> NestState {
         let state = self.testing();
         self.fails(state)
@@ -85,7 +85,7 @@ impl Nest {
             at: self.mock.now,
             trouble: Some("measure 05: silent".into()),
         };
-        // The first failure ends the stage, the second the switching off after it.
+        // The first failure ends the stage, the second ends the switching off after it.
         let state = self.step(state, Some(failed.clone()));
         assert!(matches!(state, NestState::Testing(_)));
         self.step(state, Some(failed))

@@ -1,4 +1,4 @@
-//! Compares the modules on the lines with the modules of the file.
+//! Compares the modules on the lines with those of `rig.toml`.
 
 use super::{text, wiring};
 use crate::rig::commission::{judge, verification};

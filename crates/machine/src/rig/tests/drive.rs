@@ -21,7 +21,7 @@ fn at_rest() -> Situation {
     })
 }
 
-/// Clears the motion from rest, drives it, and returns the writes to the motion line.
+/// Clears the motion in `situation`, drives it, and returns the requests of its writes.
 fn driven(outputs: &mut Outputs, motion: &Motion, situation: &Situation) -> Vec<String> {
     let cleared = guard().clear(motion, situation).unwrap();
     outputs.apply(cleared).unwrap();

@@ -23,7 +23,7 @@ fn counter(wiring: &Wiring, name: &str) -> GatedCounter {
     wiring.gated_counter(name).unwrap()
 }
 
-/// Returns the commands that read one analog input and one counter.
+/// Returns the command that reads this point.
 fn reads(wiring: &Wiring, point: Point) -> Command {
     wiring.reads(&[point])[0].1
 }

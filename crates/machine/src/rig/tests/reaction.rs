@@ -34,3 +34,21 @@ fn slow_lines_and_analog_modules_lengthen_the_reaction() {
     let fault = Wiring::resolve(&shared, crate::dut::FIXTURES).unwrap_err();
     assert_eq!(fault.key, "safety.estop_reaction_ms");
 }
+
+#[test]
+fn tolerated_lateness_follows_allowance_and_accepted_reaction() {
+    // Allowance and accepted reaction of the file, ms; lateness that explains a missing reply, and slack.
+    let table = [
+        (30.0, 420.0, Span::ms(15), Span(2_132)),
+        (30.0, 500.0, Span::ms(15), Span(82_132)),
+        (20.0, 420.0, Span::ms(10), Span(132_132)),
+    ];
+    for (allowance_ms, accepted_ms, explaining, slack) in table {
+        let mut settings = settings();
+        settings.bus.digital_allowance_ms = allowance_ms;
+        settings.safety.estop_reaction_ms = accepted_ms;
+        let wiring = Wiring::resolve(&settings, crate::dut::FIXTURES).unwrap();
+        assert_eq!(wiring.explaining_lateness(), explaining);
+        assert_eq!(wiring.reaction_slack(), slack);
+    }
+}

@@ -1,4 +1,4 @@
-//! Ranges of the supply: what the file may say, which one serves a demand, and what a range changes.
+//! Ranges of the supply: what `rig.toml` may say, which one serves a demand, and what a range changes.
 
 use crate::rig::settings::RigSettings;
 use crate::rig::supply::{READ_BACK, RangeMismatch, SELECT, SupplyDemand, code_of};

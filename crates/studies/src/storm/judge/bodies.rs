@@ -1,7 +1,7 @@
-//! Checks that every body lies in the one bin that its row names, or that an alarm declares it lost; that no row lacks a
-//! body, and no body has two rows. The truth of the rig assigns rows to bodies: by the body in the nest at the verdict, and
-//! by the body that came to rest in the bin at the confirmation. A body that clung to another one has no row, because it
-//! was never judged; the alarm of the beam that counted it names its bin.
+//! Checks that every body lies in the one bin that its row names, or that an alarm declares it lost; that no row lacks
+//! a body, and no body has two rows. The truth of the rig assigns rows to bodies: by the body in the nest at the
+//! verdict, and by the body that came to rest in the bin at the confirmation. A body that clung to another one has no
+//! row, because it was never judged; the alarm of the beam that counted it names its bin.
 
 use super::{Case, rig_us, seconds};
 use crate::storm::life::{End, EndedLife};
@@ -10,7 +10,7 @@ use rigsim::truth::{BodyTruth, Place};
 
 /// Longest time from a body at rest to its confirmation by the beam, microseconds: fall, second body, repeated polls.
 const CONFIRMED_US: u64 = 3_000_000;
-/// Time in which the fingers open, microseconds: a run that ends meanwhile declares the part before it falls.
+/// Time in which the fingers open, microseconds: a run that ends meanwhile declares the part lost before it falls.
 const OPENING_US: u64 = 300_000;
 /// Longest time until the reset that detects a lost part, microseconds: the operator may take this long.
 const NOTICED_US: u64 = 60_000_000;
@@ -41,8 +41,8 @@ pub fn violations(case: &Case) -> Vec<String> {
     violations
 }
 
-/// Returns each row with the number of its body, and a description of each row without a body. The bin identifies the
-/// body of a landed part, the place at the verdict any other body.
+/// Returns each row with its owner, the number of the body, and a description of each row without a body. The bin
+/// identifies the body of a landed part, the place at the verdict any other body.
 pub fn owners(case: &Case) -> (Vec<(&Part, usize)>, Vec<String>) {
     let (mut owners, mut violations) = (Vec::new(), Vec::new());
     let (landed, other): (Vec<&Part>, Vec<&Part>) =
@@ -61,7 +61,8 @@ pub fn owners(case: &Case) -> (Vec<(&Part, usize)>, Vec<String>) {
     (owners, violations)
 }
 
-/// Returns the body that came to rest in the bin just before the confirmation and was inside at the verdict.
+/// Returns the body that came to rest in the row's bin just before the beam confirmed it, and was inside at the
+/// verdict.
 fn body_by_bin(case: &Case, row: &Part) -> Option<usize> {
     let (bin, seen_us) = (row.landed_bin.as_deref()?, rig_us(row.landed_at?));
     let judged_us = rig_us(row.time);
@@ -140,8 +141,8 @@ fn misplaced(case: &Case, body: &BodyTruth, rows: &[&Part]) -> Option<String> {
     }
 }
 
-/// Returns the instant at which the body began to fall, microseconds: the life that released it must declare it lost, not
-/// a life that began during the fall.
+/// Returns the instant at which the body began to fall, microseconds: the life that released it must declare it lost,
+/// not a life that began during the fall.
 fn let_go_us(body: &BodyTruth) -> u64 {
     let mut falls = body.path.iter().rev();
     let fell = falls.find(|(_, place)| *place == Place::Air);
@@ -180,14 +181,14 @@ fn in_a_bin(
     }
 }
 
-/// Returns true when an alarm declares the loss: one of the life at that instant, or of a later life up to the first
-/// that homed.
+/// Returns true when an alarm declares a loss at `at_us`: an alarm of the life at that instant, or of a later life up
+/// to the first that homed.
 fn is_declared(case: &Case, at_us: u64) -> bool {
     has_alarm(case, at_us, |alarm| DECLARED.contains(&alarm.code.as_str()))
 }
 
-/// Returns true when an alarm counts a second body in the bin. A killed life may have confirmed the first body and not yet
-/// counted the second.
+/// Returns true when an alarm counts a second body in `bin`, or when a kill came first: a killed life may have
+/// confirmed the first body and not yet counted the second.
 fn is_counted(case: &Case, at_us: u64, bin: &str) -> bool {
     let confirmed_us = at_us + CONFIRMED_US;
     let cut_off = case

@@ -22,7 +22,7 @@ use history::{Alarm, Moment, Part};
 use rigsim::truth::{BodyTruth, Overdrive};
 use units::Span;
 
-/// Everything that the rules need. All times are microseconds of rig time, over all lives.
+/// A case to judge: everything that the rules need. All times are microseconds of rig time, over all lives.
 #[derive(Debug, Clone)]
 pub struct Case {
     /// Lives of the controller, in order of time.

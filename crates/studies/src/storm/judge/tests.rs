@@ -102,8 +102,8 @@ fn alarm(lot: &str, code: &str, raised_s: u64) -> Alarm {
     }
 }
 
-/// Returns a case of two lives. The first tests a good part, drops another one and declares it; the operator aborts and the
-/// program ends. The second life completes.
+/// Returns a case of two lives that breaks no rule. The first tests a good part, drops another one and declares it; the
+/// operator aborts and the program ends. The second life completes.
 fn sound() -> Case {
     let mut first = life("one", 0, 20, End::Exit(Exit::Trouble(Cause::aborted())));
     first.answers = vec![answers("abort", 18)];

@@ -1,5 +1,5 @@
-//! Checks that every value belongs to the body of its row and that the verdict agrees with the truth. Only complete tests
-//! count: an interrupted one has no verdict.
+//! Checks that every value belongs to the body of its row and that the verdict agrees with the truth. Only complete
+//! tests count: an interrupted one has no verdict.
 
 use super::Case;
 use super::bodies::owners;
@@ -9,7 +9,7 @@ use machine::dut::em_relay::Parameter;
 use rigsim::truth::PartTruth;
 use serde_json::Value;
 
-/// Least distance from its truth, in expanded uncertainties (k = 2), at which a value must belong to another body: eight
+/// A value this many expanded uncertainties (k = 2) or more from the truth must belong to another body: these are eight
 /// standard deviations, which a normal error exceeds once in 8 * 10^14 values.
 const FOREIGN_K: f64 = 4.0;
 /// Distance from a limit, in expanded uncertainties, from which a true value is clearly inside or outside.

@@ -7,7 +7,7 @@
 //!
 //! Rel    = Rr + Rc0 / (1 - |phi| / phis) + g / (mu0 A + Pf g)     phi = lambda / N, g = X - x
 //! lambda'= (u - R i_s) / (1 + R k_ec / N^2)                       i_s = lambda Rel / N^2
-//! off    : the same with -Vc for u while current flows, then eddy currents alone: -i_s N^2 / k_ec
+//! off    : lambda' has -Vc for u while current flows, then eddy currents alone: -i_s N^2 / k_ec
 //! m_a v' = phi^2 mu0 A / 2 (mu0 A + Pf g)^2 - F_r0 - k_r x - c_a v - leaf + backstop - seat
 //! m_c w' = leaf + NC - NO                                          leaf = k_l (x + d0 - y) + c_l (v - w)
 //! ```

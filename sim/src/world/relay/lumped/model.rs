@@ -65,7 +65,7 @@ impl Model {
         self.eddy = 1.0 / (1.0 + ohm * self.p.k_ec * self.per_turns2);
     }
 
-    /// Returns the permeance of the gap in units of pole area: `mu0 A + Pf g`.
+    /// Returns the pole area, times `mu0`, as fringing spreads it at this gap: `mu0 A + Pf g`.
     #[inline]
     pub(super) fn spread(&self, gap: f64) -> f64 {
         self.mu_a + self.p.Pf * gap
@@ -180,7 +180,7 @@ impl Model {
         [flux, v, armature * per_armature, w, tip * per_tip]
     }
 
-    /// Returns the gap function of a kind; a value above zero sets its flag.
+    /// Returns the gap function of an element; a value above zero sets the flag of the element.
     #[inline]
     pub fn gap(&self, kind: Element, s: &State, drive: &Drive) -> f64 {
         match (kind, drive) {

@@ -1,7 +1,7 @@
 //! Modes of the unilateral elements: a flag for each, and the gap function that sets it.
 //!
-//! The right-hand side uses the flag, never the sign of the gap function. An event occurs when that sign no
-//! longer matches the flag, so rounding near a root cannot cause chatter.
+//! The equations use the flag, never the sign of the gap function. An event occurs when that sign no longer matches the
+//! flag, so rounding near a root cannot cause chatter.
 
 use super::{State, V, W, X, Y};
 
@@ -36,18 +36,18 @@ impl Element {
     }
 }
 
-/// A flag for each kind.
+/// A flag for each element: engaged, or free.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Modes([bool; 5]);
 
 impl Modes {
-    /// Checks whether a kind is engaged.
+    /// Checks whether an element is engaged.
     #[inline]
     pub fn is_engaged(self, kind: Element) -> bool {
         self.0[kind as usize]
     }
 
-    /// Sets or clears the flag of a kind.
+    /// Sets or clears the flag of an element.
     pub fn set(&mut self, kind: Element, on: bool) {
         self.0[kind as usize] = on;
     }

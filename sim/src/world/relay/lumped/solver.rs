@@ -230,8 +230,8 @@ impl Solver {
         first
     }
 
-    /// Returns the step length, at most `h`, at which the gap function of the element `kind` is zero, and the state there.
-    /// The gap function must have changed its sign by `h`.
+    /// Returns the step length, at most `h`, at which the gap function of the element `kind` is zero, and the state
+    /// there. The gap function must have changed its sign by `h`.
     fn locate(
         &mut self,
         model: &Model,

@@ -242,8 +242,8 @@ impl Model {
     }
 }
 
-/// Returns the root of a falling function that is positive at 0, between 0 and `high`, searched on a logarithmic
-/// scale; 0 if it is never positive.
+/// Returns the root between 0 and `high` of a falling function that is positive at 0; searches on a logarithmic scale.
+/// Returns 0 if the function is never positive.
 fn root(high: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (high * 1e-18, high);
     if f(low) <= 0.0 {

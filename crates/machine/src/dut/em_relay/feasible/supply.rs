@@ -11,13 +11,13 @@ use crate::rig::supply::SupplyDemand;
 use crate::rig::wiring::Wiring;
 use units::{Ampere, Volt};
 
-/// Lowest voltage at a terminal that a test can distinguish from the one without current.
+/// Lowest voltage at the terminal of a current channel that a test can distinguish from no current.
 const LEAST_CURRENT_V: f64 = 0.3;
 /// Share by which a good coil may differ from its nominal resistance where the recipe sets no limit.
 const USUAL_SPREAD: f64 = 0.1;
 
-/// Returns the demand of a test on the supply: the nominal voltage or the top of the coarse ramp, with the tolerance of
-/// the sources, and the current of the lowest accepted coil at nominal voltage.
+/// Returns the demand of a test on the supply: the greater of the nominal voltage and the top of the coarse ramp, with
+/// the tolerance of the sources, and the current of the lowest accepted coil at nominal voltage.
 pub fn demand(recipe: &RelayRecipe, limits: &Limits, accuracy: &AccuracySettings) -> SupplyDemand {
     let (part, test) = (&recipe.part, &recipe.test);
     let tolerance = 1.0 + accuracy.ao_gain_pct / 100.0;
@@ -51,7 +51,7 @@ fn accepted_ohm(recipe: &RelayRecipe, limits: &Limits) -> (f64, f64) {
     )
 }
 
-/// Returns a fault for each demand of the recipe that the outputs or the channels of the range cannot meet.
+/// Returns a fault for each demand of the recipe that the outputs or the channels of the supply range cannot meet.
 pub(super) fn faults(recipe: &RelayRecipe, limits: &Limits, reach: &Reach) -> Vec<Fault> {
     let Reach { wiring, points } = reach;
     let mut faults = Vec::from_iter(output_faults(recipe, wiring, points));

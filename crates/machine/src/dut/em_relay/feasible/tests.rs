@@ -88,7 +88,7 @@ fn module<'a>(wiring: &'a mut Wiring, name: &str) -> &'a mut Module {
     modules.find(|module| module.name == name).unwrap()
 }
 
-/// Key, found and expected of the fault of a changed plant.
+/// Key, found and expected value of the fault that `change` causes on the default plant.
 fn refused(strategy: Strategy, change: impl Fn(&mut Wiring)) -> [String; 3] {
     let (mut wiring, accuracy) = plant();
     change(&mut wiring);

@@ -1,6 +1,6 @@
 //! State of interface board, coil supply and armature between two stages of a test.
 //!
-//! Each stage builds its acts on the state that the stage before left, and returns the state that they leave. Its
+//! Each stage builds its acts on the state that the stage before left, and returns the state that these acts leave. Its
 //! conclusion corrects that state when the part has not moved as planned. "The mark" is the last instant marked by any
 //! stage.
 
@@ -25,7 +25,7 @@ pub struct BoardState {
     pub armature: Armature,
     /// The ramp that the present stage sends.
     pub ramp: Option<SentRamp>,
-    /// Time from the mark to the end of the last ramp, if no stage has waited for that end yet.
+    /// Time from the last `Act::Mark` to the end of the last ramp, if no stage has waited for that end yet.
     pub still_ramping: Span,
 }
 
@@ -39,9 +39,9 @@ pub enum Armature {
     ReadyForTiming,
     /// At rest on the pre-bias, armed in ramp mode: the coarse operate ramp may begin.
     ReadyForRamp,
-    /// Operated after the mark, and driven.
+    /// Operated after the last `Act::Mark`, and driven.
     Operated,
-    /// Released: the drive went off at the mark or before it.
+    /// Released: the drive went off at the last `Act::Mark` or before it.
     Released,
     /// Released, and the supply at the start level of the next part: the last stage only checks the coil current.
     Rested,
@@ -50,16 +50,16 @@ pub enum Armature {
 /// Ramp from ARM to its end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SentRamp {
-    /// Supply when the board was armed.
+    /// Supply voltage when the board was armed.
     pub start: Volt,
     /// Distance that the supply moves from `start`, positive.
     pub span: Volt,
-    /// Longest time until the output arrives.
+    /// Longest time until the output arrives at the end of the ramp.
     pub takes: Span,
 }
 
 impl Armature {
-    /// Returns true when the drive went off at the mark or before it.
+    /// Returns true when the drive went off at the last `Act::Mark` or before it.
     pub fn is_released(self) -> bool {
         match self {
             Self::ReadyForTiming | Self::Released | Self::Rested => true,

@@ -20,13 +20,13 @@ use units::{Ohm, Span, Volt};
 
 /// Number of channels of the coil converter that a recipe enables.
 const CHANNELS: usize = 2;
-/// Fraction of the pre-bias below which the supply or the probe-up chain is faulty, not the coil.
+/// Coil voltage, as a fraction of the pre-bias, below which the supply or the probe-up chain is faulty, not the coil.
 const LEAST_PREBIAS: f64 = 0.5;
 /// Terminal voltage of the fine current channel (0.25 mA) below which the coil counts as open.
 const NO_CURRENT: Volt = Volt(0.15);
 /// Coil current below which the board can switch the suppression and the probes may leave, ampere.
 const OFF_CURRENT_A: f64 = 0.001;
-/// Time from the mark until the drive is off and the coil current has decayed.
+/// Time from the mark at switch-off until the drive is off and the coil current has decayed.
 const FREED: Span = Span::ms(6);
 /// [`FREED`] with the diode, after a sealed armature at nominal voltage.
 const FREED_BY_DIODE: Span = Span::ms(60);
@@ -42,8 +42,8 @@ const IDLE: [(DigitalOut, bool); 8] = [
     (KelvinTest, true),
 ];
 
-/// Reads the coil and meanwhile prepares the board for the operate ramp: the supply stays still between ARM and ramp. A
-/// repeated stage first releases the relay and takes the ramps down.
+/// Reads the coil, with the board already armed for the operate ramp, because the supply must stay still between ARM
+/// and ramp. A repeated stage first releases the relay and takes the ramps down.
 pub(super) fn acts(context: &Context, board: BoardState, repeated: bool) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let prebias = Volt(context.relay.test.prebias_v);
@@ -103,7 +103,7 @@ pub(super) fn acts_off(
     acts.extend(select_diode(context, false));
     if board.armature != Armature::Rested {
         acts.extend((!board.armature.is_released()).then_some(Act::Mark));
-        // The line skips unchanged values; this change of level reveals a module that ignores writes.
+        // An unchanged value is not written; this change of level reveals a module that ignores writes.
         acts.extend(stopped.then(|| board.supply.step_to(Volt(0.0))));
         acts.extend(rest(context, &mut board.supply));
     }

@@ -16,7 +16,7 @@ use units::{Celsius, Span, Volt};
 
 /// Smallest resistance of any contact of the 10 A class, milliohms; with the source off the drop reads about 0.
 const LEAST_MOHM: f64 = 0.5;
-/// Change of the thermal EMF between two closures (30 uV), volts at the terminal behind the gain of 50.
+/// Change of the thermal EMF between two closures (30 uV), volts at the terminal, behind the amplifier with gain 50.
 const EMF_MOVES_V: f64 = 30e-6 * 50.0;
 /// Settling time of source and amplifier.
 pub(super) const SOURCE_SETTLES: Span = Span::ms(1);
@@ -134,7 +134,8 @@ pub(super) fn conclude_nc(
     None
 }
 
-/// Ends the test for a resistance below any real contact: the source was off, or the reply belongs to another request.
+/// Returns true for a resistance below any real contact, and ends the test: the source was off, or the reply belongs to
+/// another request.
 pub(super) fn is_implausible(contact: Contact, mohm: f64, record: &mut TestRecord) -> bool {
     let implausible = mohm.is_nan() || mohm < LEAST_MOHM;
     if implausible {

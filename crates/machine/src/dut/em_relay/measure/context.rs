@@ -55,8 +55,8 @@ pub struct Context {
 }
 
 impl Context {
-    /// Returns the time until each of `channels` holds a conversion begun from now on: one round, one conversion, and
-    /// 3 % for the tolerance of the converter's clock.
+    /// Returns the time until each of `channels` channels holds a fresh conversion, that is, one begun from now on: one
+    /// round, one conversion, and 3 % for the tolerance of the converter's clock.
     pub fn fresh(&self, channels: usize) -> Span {
         Span::seconds(1.03 * (channels + 1) as f64 / self.accuracy.conversions_per_s)
     }

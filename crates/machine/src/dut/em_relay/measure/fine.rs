@@ -16,7 +16,7 @@ use units::{Second, Span, Volt};
 const ATTEMPTS: u8 = 5;
 
 enum Outcome {
-    /// Indicated voltage at the contact event, and length of the gate.
+    /// Indicated voltage at the contact event, and the time for which gate 0 was open.
     Found(Volt, Second),
     /// Event missed; the plan holds the interval for the next ramp.
     Repeat,
@@ -53,7 +53,7 @@ pub(super) fn conclude(
     None
 }
 
-/// Compares a fine ramp with the contact event; returns `None` when that ends the test.
+/// Evaluates a fine ramp: the event found, or a repeat; `None` when the test ends.
 fn evaluate(
     context: &Context,
     readings: &Readings,

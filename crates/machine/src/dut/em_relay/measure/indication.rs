@@ -13,7 +13,7 @@ use crate::dut::em_relay::timing::counts;
 use crate::gauge::budget::Reading;
 use units::{Celsius, Second, Volt};
 
-/// Returns the length of gate 0 between the last two readings.
+/// Returns the time for which gate 0 was open between the last two readings.
 pub(super) fn gate0(context: &Context, readings: &Readings) -> Option<Second> {
     let [.., before, after] = readings.gates.as_slice() else {
         return None;

@@ -18,8 +18,8 @@ use units::Span;
 const PINS: [&str; 5] = ["coil A", "coil B", "COM", "NO", "NC"];
 const COM: usize = 2;
 
-/// Returns the acts of the check. They also select the supply range, which the safe outputs had deselected with all
-/// sources at zero.
+/// Returns the acts of the check. They also select the supply range: after safe outputs no range is selected and all
+/// sources are at zero.
 pub(super) fn acts(context: &Context) -> Vec<Act> {
     let (code, within) = (context.range_code(), SWITCHING_TIMEOUT);
     let read = match code {

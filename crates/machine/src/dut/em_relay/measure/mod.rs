@@ -193,17 +193,23 @@ impl Test {
         self.stages.push_front(Stage::TimedOperate);
     }
 
-    /// Plans the repeats of stages with results inside the guard band (in a thorough test: of all), once per test.
+    /// Plans the repeats of stages, once per test: of those with results inside the guard band, in a thorough test of all,
+    /// and of the fine ramps of a reference part under calibration, whose scatter shows that of operations.
     fn add_slow_repeats(&mut self) {
         if self.slow_done || self.state.record.stopped() {
             return;
         }
         self.slow_done = true;
         let conditional = |judgement: &Judgement| matches!(judgement, Judgement::Conditional(_));
+        let is_calibrating = self.context.teaching.is_some();
         let again: Vec<Stage> = verdict::judged(&self.context, &self.state.record)
             .iter()
-            .filter(|(_, judgement)| self.context.thorough || conditional(judgement))
-            .map(|(parameter, _)| parameter.facts().stage)
+            .map(|(parameter, judgement)| (parameter.facts().stage, judgement))
+            .filter(|(stage, judgement)| {
+                let is_fine_of_reference = is_calibrating && stage.is_fine().is_some();
+                self.context.thorough || is_fine_of_reference || conditional(judgement)
+            })
+            .map(|(stage, _)| stage)
             .collect();
         // In the order of the test: a fine release ramp right after the timed operation would start from another flux
         // than the ramps that taught its overshoot.
@@ -281,7 +287,7 @@ impl TestProcedure for Test {
         std::mem::take(&mut self.state.record).of_any_kind(Own::EmRelay)
     }
 
-    /// Returns the longest time of the stages that measure and of the conditioning.
+    /// Returns the longest time that the measuring stages and the conditioning take together.
     fn longest(&self) -> Span {
         MEASURING + conditioning::longest(self.context.relay.test.conditioning_operations)
     }

@@ -1,7 +1,7 @@
 //! Operate voltage on the fine ramp, around the estimate of the coarse ramp.
 //!
-//! The relay releases between the two. The approach has two steps (0.93 of the start, then the start): after a single
-//! step from zero the armature swings over some 30 mV below the quasi-static threshold.
+//! The relay releases between the two ramps. The approach has two steps (0.93 of the start, then the start): after a
+//! single step from zero the armature swings and operates some 30 mV below the quasi-static threshold.
 
 use super::board::{Armature, BoardState, SentRamp, drive_off};
 use super::operate::LATE;
@@ -21,9 +21,9 @@ pub(super) const APPROACH: f64 = 0.93;
 /// Highest voltage of the fine output that the stage leaves standing instead of taking it to 0.
 const LEFT: Volt = Volt(0.02);
 /// Least voltage that the level output contributes to the first step of the approach; the coarse output contributes at
-/// most the rest.
+/// most the remainder.
 const ROOM: Volt = Volt(0.3);
-/// How far the coarse output may exceed that rest before the stage lowers it.
+/// How far the coarse output may exceed its share of the first step before the stage lowers it.
 const CLOSE: Volt = Volt(0.05);
 
 pub(super) fn acts(
@@ -86,7 +86,8 @@ pub(super) fn acts(
     (acts, left)
 }
 
-/// Returns how long after the mark the previous ramp falls; 0 for a rising one, which this stage reverses at once.
+/// Returns how long after the last mark the previous ramp still falls; 0 for a rising one, which this stage reverses at
+/// once.
 fn falling(board: BoardState) -> Span {
     match board.armature.is_released() {
         true => board.still_ramping,
@@ -94,8 +95,8 @@ fn falling(board: BoardState) -> Span {
     }
 }
 
-/// Lowers the coarse output to what the approach leaves room for, and the fine output to 0. The previous ramp falls
-/// until `falls` after the mark.
+/// Lowers the coarse output to what the approach leaves room for, and the fine output to 0. The previous ramp still
+/// falls until `falls` after the last mark.
 fn make_room(context: &Context, supply: &mut Supply, falls: Span, start: Volt) -> Vec<Act> {
     let (mut acts, scale) = (Vec::new(), context.scale());
     let mut wait = Span(0);

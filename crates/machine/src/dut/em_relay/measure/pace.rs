@@ -2,8 +2,8 @@
 //!
 //! A relay that is late on a step (mass, drag, slow pull) also swings longer after an approach and leaves its rest
 //! position later. Every wait for a free armature is therefore a multiple of the operate time at nominal voltage that
-//! the test measures before any ramp. Of two thousand simulated relays (five states, after [`super::OFF`] without
-//! drive) none operates early when the approach ends 45 mV before the threshold, and seven heavy ones do at 30 mV.
+//! the test measures before any ramp. Of two thousand simulated relays, after [`super::OFF`] without drive, none
+//! operates early when the approach ends 45 mV before the threshold, and seven heavy ones do at 30 mV.
 
 use super::TestRecord;
 use crate::dut::em_relay::Parameter;
@@ -16,7 +16,7 @@ const SHORTEST_MS: f64 = 2.5;
 /// Longest operate time to which the waits adapt, ms; a longer one counts as this.
 const LONGEST_MS: f64 = 20.0;
 
-/// Operate time of a part, limited to the two times above.
+/// Operate time of a part, limited to `SHORTEST_MS` and `LONGEST_MS`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Pace {
     operate_ms: f64,
@@ -41,7 +41,8 @@ impl Pace {
         self.times(2.5)
     }
 
-    /// Returns the wait from the second, smaller step to the fine ramp; reference parts have the same remaining swing.
+    /// Returns the wait from the second, smaller step to the fine ramp; the overshoot of reference parts contains the
+    /// swing that then remains.
     pub fn settles(self) -> Span {
         self.times(4.2)
     }

@@ -15,11 +15,11 @@ use units::{Celsius, Volt};
 
 // Voltages are those of a 12 V coil in the range of factor 1; see `scale`.
 
-/// Step of the level between ARM and ramp: the window opens after [`WINDOW`], which the fine ramp alone reaches in
-/// 33 ms. The difference covers the comparator's tolerance. Flux and armature settle after the step.
+/// Step of the level between ARM and ramp, because the fine ramp alone takes 33 ms to move by [`WINDOW`] and open the
+/// window. The 5 mV that this step leaves cover the comparator's tolerance. Flux and armature settle after the step.
 pub(super) const JUMP: Volt = Volt(0.045);
-/// Distance of a falling ramp before the interval that it searches: the flux of a sealed armature follows at 6 to 9 ms
-/// and still decays from the seal.
+/// Distance of a falling ramp before the interval that it searches: the flux of a sealed armature follows with a delay
+/// of 6 to 9 ms and still decays from the seal.
 const RUN_DOWN: Volt = Volt(0.085);
 /// Distance of a falling ramp after which 1 mV of the seal's effect remains: a later event belongs to the ramp.
 pub(super) const SETTLED_DOWN: Volt = Volt(0.068);
@@ -35,8 +35,8 @@ const WIDEST_SD: Volt = Volt(0.02);
 const WIDEST: Volt = Volt(0.2);
 /// Standard uncertainty of the assumed overshoot of a fine ramp, volts.
 const FINE_GUESS_SD: Volt = Volt(0.020);
-/// Scatter between two operations, volts (1 sd), then that from 0.25 K between reference parts, as a share of the
-/// threshold.
+/// Standard deviation of the difference between two operations, volts; `TWO_TEMPERATURES` is that from 0.25 K between
+/// reference parts, as a share of the threshold.
 const TWO_OPERATIONS: Volt = Volt(0.004);
 const TWO_TEMPERATURES: f64 = 0.001;
 /// Width of the next interval, as a multiple of that of the missed one.
@@ -119,7 +119,7 @@ impl Expected {
     }
 
     /// Returns the next interval, three times as wide: beyond the far end when the contact has not changed. When it
-    /// changed too early the far end stays: the event lies before the near end, or the approach came too near.
+    /// changed too early the far end stays: the event lies before the near end, or the approach came too near to it.
     pub fn next(&self, direction: Direction, changed_early: bool) -> Self {
         let further = if changed_early {
             1.0 - WIDER

@@ -21,7 +21,8 @@ use units::{Span, Volt};
 
 /// Fraction of nominal at which the armature is sealed.
 pub const SEAL: f64 = 0.95;
-/// Last part of the ramp, in refreshes, in which the output may have stopped already: an event there gives no estimate.
+/// Last part of a ramp, in refresh intervals, in which the output may have stopped already: an event there gives no
+/// estimate.
 const LAST_REFRESHES: f64 = 1.5;
 /// Time for operation, bounce and flux to settle.
 const SEAL_TIME: Span = Span::ms(25);
@@ -31,8 +32,8 @@ const FINE_SETTLES: Span = Span::ms(35);
 /// Time after the end of a ramp up to which a break still counts.
 const LATE: Span = Span::ms(12);
 
-/// Seals the armature, steps to the start of the falling ramp and arms. An operated armature is sealed from where it
-/// is, once the running ramp has ended.
+/// Seals the armature, steps to the start of the falling ramp and arms. An operated armature does not release first:
+/// its seal lasts until the running ramp has ended.
 fn seal(context: &Context, board: BoardState, start: Volt) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let seal = supply.step_to(Volt(SEAL * context.relay.part.nominal_v));
@@ -77,8 +78,8 @@ fn seal(context: &Context, board: BoardState, start: Volt) -> (Vec<Act>, BoardSt
     (acts, sealed)
 }
 
-/// Waits for flux and armature to settle after the step, reading the counters meanwhile. ARM falls again so that it
-/// can rise at the break.
+/// Waits for flux and armature to settle after the step, reading the counters meanwhile. ARM falls, so that the next
+/// stage can raise it again.
 fn settled(within: Span) -> [Act; 3] {
     [
         Act::Read(Read::Gates),

@@ -94,7 +94,8 @@ const PULLED: BoardInputs = BoardInputs {
     ..RESTING
 };
 
-/// Readings of a stage that waited for the latch: whether it came, the board afterwards, the length of gate 0.
+/// Readings of a stage that waited for the latch: whether the latch came, the board afterwards, the open time of gate
+/// 0.
 fn watched(seen: bool, board: BoardInputs, gate_ms: f64) -> Readings {
     let counts = (gate_ms * 50.0).round() as u32;
     Readings {

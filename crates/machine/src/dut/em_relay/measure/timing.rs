@@ -30,8 +30,8 @@ const GATE_SKEW: u32 = 4;
 /// the source requires 5 ms of closed contact.
 const SOURCE_FLOWS: Span = Span::ms(11);
 
-/// Operates at nominal voltage. Reads the counters after ARM unless the NC stage has read them: a window that an early
-/// end left open closes at ARM.
+/// Operates at nominal voltage. Reads the counters after ARM unless the NC stage has read them: a window that an
+/// interrupted test left open closes at ARM.
 pub(super) fn acts_operate(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
     let mut acts = drive_off(board.armature);

@@ -174,7 +174,7 @@ fn persistent_disagreement_bends_the_line() {
     let (shown, fine) = part(60);
     let now = law.of(&shown);
     let error_v = now.volts - (shown.indicated - fine).0 - 0.2;
-    // The first twelve parts, learned without the 0.2 V, still have a fifth of the weight.
+    // The first twelve parts, whose overshoot lacked the 0.2 V, still have a fifth of the weight.
     assert!(
         error_v.abs() < 0.06 && error_v.abs() < 2.0 * now.u_v,
         "{error_v} {now:?}"

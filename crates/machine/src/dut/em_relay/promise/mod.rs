@@ -1,12 +1,12 @@
-//! Promises that this kind observes: residuals of its measurements against `[accuracy]` of the rig and the recipe.
+//! Tests the promises of `rig.toml` (`[accuracy]`) and of the recipe on residuals of this kind's measurements.
 //!
 //! | promise | residuals |
 //! |---|---|
 //! | noise of the analog inputs | repeated conversions of constant references during the calibration ([`super::reference::noise`]) |
-//! | scatter of operations | repeated fine ramps of one part, and what the overshoot model leaves unexplained ([`operation`]) |
+//! | scatter of operations | repeated fine ramps of one part: each reference part of a calibration, and parts near a limit ([`operation`]) |
 //! | scatter of closures | closures of one part's NC contact ([`closure`]) |
 //!
-//! From the alarm on, budgets use the larger value; parts judged before keep theirs.
+//! From the alarm on, budgets use the observed value; parts judged before keep the promised one.
 
 mod closure;
 mod operation;
@@ -41,7 +41,7 @@ struct Watched {
 }
 
 impl Promises {
-    /// Starts from the promises of rig and recipe, and what a stored calibration has disproved of them.
+    /// Makes the promises of rig and recipe; those that a stored calibration has disproved are broken.
     pub fn new(context: &Context) -> Self {
         let stored = &context.calibration.broken;
         let watched = Promise::ALL.iter().map(|&promise| {
@@ -51,7 +51,7 @@ impl Promises {
                 promise,
                 promised,
                 evidence: Evidence::default(),
-                // The file may promise less by now.
+                // Not broken when `rig.toml` by now promises as large a value itself.
                 broken: stored.find(|it| it.used > promised).copied(),
             }
         });
@@ -138,7 +138,7 @@ impl Watched {
     }
 }
 
-/// Returns the value in force in `context`, in the unit of its key.
+/// Returns the promised value that the budgets of `context` use, in the unit of its key.
 fn promised(context: &Context, promise: Promise) -> f64 {
     match promise {
         Promise::AiNoise => context.accuracy.ai_noise_lsb,

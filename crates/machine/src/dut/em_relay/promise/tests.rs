@@ -35,7 +35,7 @@ fn a_disproved_promise_is_announced_once_and_used() {
     assert!(promises.announce().is_empty(), "announced before");
 }
 
-/// Promises on a stored calibration that has disproved the noise, in a world of this promise.
+/// Promises of a rig whose file promises this noise, with a stored calibration that has disproved [`NOISE_LSB`].
 fn stored(ai_noise_lsb: f64) -> Promises {
     let mut promises = Promises::new(&context());
     promises.observe(Promise::AiNoise, [residuals(4.0, 100)]);

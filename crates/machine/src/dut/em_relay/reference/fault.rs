@@ -26,11 +26,11 @@ pub enum ReferenceFault {
         /// Name of the channel.
         name: &'static str,
     },
-    /// The number of scans differs from that of the act.
+    /// The number of scans differs from the number that the acts request.
     Scans {
         /// Scans read.
         found: usize,
-        /// Scans of the act.
+        /// Scans that the acts request.
         expected: usize,
     },
     /// The gain error exceeds 1.5 times the maker's accuracy.

@@ -6,12 +6,11 @@ use crate::dut::em_relay::measure::Context;
 use std::ops::Range;
 use units::Volt;
 
-/// The higher level at the coil in the range of factor 1; at 400 ohm the fine channels can read it.
+/// Higher supply level at the reference coil, in the range of factor 1; at 400 ohm the fine channels can read it.
 const HIGH: Volt = Volt(5.7);
-/// The lower level as a share of the higher one.
+/// Lower supply level at the reference coil, as a share of [`HIGH`].
 const LOW: f64 = 1.5 / 5.7;
-/// Distance from both ends of the fine ramp within which readings are excluded from the slope, as a share of the higher
-/// level.
+/// Distance from both ends of the fine ramp within which readings are excluded from the slope, as a share of [`HIGH`].
 const SLOPE_MARGIN: f64 = 0.3 / 5.7;
 /// Share of the limits of a supply range that a level uses.
 const USED: f64 = 0.9;

@@ -9,7 +9,7 @@ use crate::dut::em_relay::tests::context;
 use crate::gauge::Factor;
 use units::{Span, Volt};
 
-/// Outputs at the limits of their accuracy, each with another error.
+/// Outputs at the limits of their accuracy, each with a different error.
 fn crooked() -> Calibration {
     let line = |gain, offset_v| OutputLine {
         gain: Factor::new(gain, 0.0),

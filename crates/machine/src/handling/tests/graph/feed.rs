@@ -37,7 +37,7 @@ fn states(mock: &MockRig, ago: Span) -> Vec<Feed> {
     states
 }
 
-/// Returns the ledger content that a state requires: a part in the pocket while the feed has one.
+/// Returns true for a state that requires a part in the pocket.
 fn holds(feed: Feed) -> bool {
     matches!(feed, Feed::Holding | Feed::Ready | Feed::Pushing)
 }
@@ -92,7 +92,7 @@ fn the_feed_is_the_drawing() {
     graph.assert_tests(FACTS, include_str!("../feed.rs"));
 }
 
-/// From, to, and the test of this edge.
+/// Each edge of the graph: from, to, and the test that covers it.
 const FACTS: &[(&str, &str, &str)] = &[
     ("Empty", "Releasing1", "a_part_gets_its_number_in_the_nest"),
     (

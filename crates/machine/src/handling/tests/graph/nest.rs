@@ -76,7 +76,8 @@ fn name(state: &NestState) -> &'static str {
     }
 }
 
-/// A part is in the nest in every state except the first, where it may be; it has its verdict before it is gripped.
+/// Makes the ledger of a state: a part is in the nest in every state but the first, where it may be, and has its
+/// verdict before the fingers close on it.
 fn ledger(from: &str, part: bool, interrupted: bool, judged: bool) -> Ledger {
     let mut ledger = Ledger::default();
     if part || from != "Empty" {
@@ -152,7 +153,7 @@ fn the_nest_is_the_drawing() {
     graph.assert_tests(FACTS, include_str!("../nest.rs"));
 }
 
-/// From, to, and the test of this edge.
+/// Each edge of the graph: from, to, and the test that covers it.
 const FACTS: &[(&str, &str, &str)] = &[
     (
         "Empty",

@@ -43,7 +43,8 @@ fn states(mock: &MockRig) -> [(Sort, AxisStation); 9] {
     ]
 }
 
-/// A part is in the gripper from `Loaded` to `LettingGo`; a released one may be falling, for a short or a long time.
+/// Makes the ledger of a state: a part is in the gripper from `Loaded` to `LettingGo`, and a released one may be
+/// falling since `since`.
 fn ledger(sort: Sort, falling: bool, since: RigTime) -> Ledger {
     let mut ledger = Ledger::default();
     let mut lift = || {
@@ -120,7 +121,7 @@ fn the_sorter_is_the_drawing() {
     graph.assert_tests(FACTS, include_str!("../sort.rs"));
 }
 
-/// From, to, and the test of this edge.
+/// Each edge of the graph: from, to, and the test that covers it.
 const FACTS: &[(&str, &str, &str)] = &[
     ("Returning", "OverNest", "z_comes_down_only_during_a_test"),
     ("OverNest", "Lowering", "z_comes_down_only_during_a_test"),

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Least step from 0 V that operates the default relay, V.
+/// Least voltage that operates the default relay when it is applied as a step from 0 V, V.
 const DYNAMIC_V: f64 = 7.855922331955684;
 
 #[test]

@@ -32,7 +32,7 @@ const MOST_OVERSHOOT: f64 = 3.5;
 const LEAST_OVERSHOOT: f64 = 0.3;
 /// Lowest level of a search, as a fraction of nominal.
 const LOWEST: f64 = 0.02;
-/// Number of the attempt that a fine ramp placed by a search counts as.
+/// Attempt number of a fine ramp that a search has placed.
 pub(super) const AFTER_SEARCH: u8 = 2;
 
 /// A search under way.
@@ -52,7 +52,7 @@ pub struct Search {
     pub trials: u32,
     /// Height of a step of a staircase.
     pub step: Volt,
-    /// True where a trial has confirmed the end of the interval: `[untouched, changed]`.
+    /// For each end of the interval, `[untouched, changed]`, true when a trial has confirmed it.
     pub seen: [bool; 2],
 }
 

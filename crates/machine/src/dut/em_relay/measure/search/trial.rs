@@ -64,8 +64,8 @@ fn from_rest(board: BoardState, pace: Pace, at: Volt) -> (Vec<Act>, BoardState) 
     (acts, driven(board, supply))
 }
 
-/// Operates and seals at 0.95 of nominal, then steps to the near end of the interval. Takes the coarse output down
-/// first when `ramped`.
+/// Operates the armature, seals it at 0.95 of nominal, then steps to the near end of the interval. Takes the coarse
+/// output down first when `ramped`.
 fn from_sealed(context: &Context, board: BoardState, ramped: bool) -> (Vec<Act>, BoardState) {
     let (mut supply, test) = (board.supply, &context.relay.test);
     let near = Volt(test.expected_release_v + REACH * test.expected_release_sd_v);

@@ -1,4 +1,4 @@
-//! Conclusions before the armature moves: pins, resting contacts, NC resistance, coil, and off.
+//! Conclusions before the armature moves: pins, resting contacts, NC resistance, coil; and those of the stage `off`.
 
 use super::super::{coil, contact, kelvin};
 use super::{PULLED, RESTING, assert_ends, at_23_c, context, drop_of, ended, good, scan};

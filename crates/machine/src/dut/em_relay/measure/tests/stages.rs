@@ -201,7 +201,7 @@ fn a_low_coarse_release_counts_until_the_last_refresh() {
     assert!((coarse.0 - 0.11).abs() < 1e-9);
 }
 
-/// A timed stage: gate 0 and 1 in counts of 20 us, drops of both polarities.
+/// Readings of a timed stage: gates 0 and 1 in counts of 20 us, drops of both polarities.
 fn timed(seen: bool, counts: [u32; 2]) -> Readings {
     Readings {
         seen: vec![seen],
@@ -307,7 +307,7 @@ fn on_the_ramp() -> Context {
     context
 }
 
-/// Concludes a coarse ramp on a part whose operate time is `counts` long.
+/// Concludes a coarse ramp on a part whose operate time is this number of counts.
 fn coarse_after(context: &Context, counts: u32) -> (TestState, Option<Stage>) {
     let mut state = ramp_from(5.0, 6.0);
     state.plan.drop_zero = Some(Volt(0.0));

@@ -1,0 +1,147 @@
+//! State of the computer as far as it matters to the rig, and the readers of the kernel's texts about it.
+
+use super::cpu_time::CpuTime;
+use std::path::{Path, PathBuf};
+
+/// What a look at the computer found.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Facts {
+    /// Path of this program.
+    pub program: PathBuf,
+    /// True when the rig's thread runs under SCHED_FIFO.
+    pub is_fifo: bool,
+    /// True when the memory of the program is locked.
+    pub memory_locked: bool,
+    /// Limit of locked memory, bytes; `None` without a limit.
+    pub memory_limit: Option<u64>,
+    /// Governor of each CPU with frequency scaling.
+    pub governors: Vec<String>,
+    /// Preemption of the kernel; `None` when unknown.
+    pub preemption: Option<Preemption>,
+    /// Share of each period that threads under SCHED_FIFO may run; `None` when unknown.
+    pub real_time_share: Option<RealTimeShare>,
+    /// True on a virtual machine that says so.
+    pub is_virtual: bool,
+    /// Time of the CPUs during the test.
+    pub cpu_time: CpuTime,
+    /// Ports of the lines.
+    pub ports: Vec<PortFacts>,
+}
+
+/// How far a kernel lets a thread interrupt its own work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Preemption {
+    /// Nearly everywhere (PREEMPT_RT).
+    RealTime,
+    /// Outside sections under a lock.
+    Full,
+    /// Only at chosen places.
+    Absent,
+}
+
+impl Preemption {
+    /// Reads `/proc/version` and `/proc/cmdline`.
+    pub fn parse(version: &str, command_line: &str) -> Self {
+        let mut words = command_line.split_whitespace();
+        let is_switched_off = words.any(|it| ["preempt=none", "preempt=voluntary"].contains(&it));
+        match (version.contains("PREEMPT_RT"), version.contains("PREEMPT")) {
+            (true, _) => Self::RealTime,
+            (false, true) if !is_switched_off => Self::Full,
+            (false, _) => Self::Absent,
+        }
+    }
+}
+
+/// Time that threads under SCHED_FIFO may run in each period.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RealTimeShare {
+    /// `kernel.sched_rt_runtime_us`; negative without a limit.
+    pub runtime_us: i64,
+    /// `kernel.sched_rt_period_us`.
+    pub period_us: i64,
+}
+
+impl RealTimeShare {
+    /// Returns true when it is at least the 95 % of a usual kernel.
+    pub fn is_enough(self) -> bool {
+        self.runtime_us < 0 || 100 * self.runtime_us >= 95 * self.period_us
+    }
+}
+
+/// Permission to open a port.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Access {
+    /// To read and to write.
+    Granted,
+    /// Not both.
+    Denied,
+    /// There is no such port.
+    Missing,
+}
+
+/// State of the port of a line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PortFacts {
+    /// Name of the line.
+    pub line: String,
+    /// Path in `rig.toml`.
+    pub port: String,
+    /// Permission of this user.
+    pub access: Access,
+    /// Latency timer of a USB converter: its file, and its value in ms. `None` when the port has none.
+    pub latency_timer: Option<(PathBuf, u32)>,
+}
+
+/// Returns the file with the latency timer of this port, links resolved; `None` when the port is no USB converter.
+pub fn latency_timer_file(device: &Path) -> Option<PathBuf> {
+    let name = device.file_name()?.to_str()?;
+    let devices = Path::new("/sys/bus/usb-serial/devices");
+    let is_usb = name.starts_with("ttyUSB");
+    is_usb.then(|| devices.join(name).join("latency_timer"))
+}
+
+/// Returns true when `/proc/cpuinfo` names a hypervisor among the flags of a CPU.
+pub fn is_virtual(cpu_info: &str) -> bool {
+    let mut flags = cpu_info.lines().filter(|line| line.starts_with("flags"));
+    flags.any(|line| line.split_whitespace().any(|flag| flag == "hypervisor"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn preemption_follows_version_and_command_line() {
+        let table = [
+            ("#1 SMP PREEMPT_RT Debian", "quiet", Preemption::RealTime),
+            ("#1 SMP PREEMPT_DYNAMIC", "quiet", Preemption::Full),
+            (
+                "#1 SMP PREEMPT_DYNAMIC",
+                "quiet preempt=voluntary",
+                Preemption::Absent,
+            ),
+            ("#1 SMP PREEMPT_DYNAMIC", "preempt=full", Preemption::Full),
+            ("#60-Ubuntu SMP", "quiet", Preemption::Absent),
+        ];
+        for (version, command_line, expected) in table {
+            let found = Preemption::parse(version, command_line);
+            assert_eq!(found, expected, "{version} {command_line}");
+        }
+    }
+
+    #[test]
+    fn only_usb_converters_have_a_latency_timer() {
+        let file = latency_timer_file(Path::new("/dev/ttyUSB3"));
+        let expected = "/sys/bus/usb-serial/devices/ttyUSB3/latency_timer";
+        assert_eq!(file.as_deref(), Some(Path::new(expected)));
+        assert_eq!(latency_timer_file(Path::new("/dev/ttyS0")), None);
+        assert_eq!(latency_timer_file(Path::new("/")), None);
+    }
+
+    #[test]
+    fn a_hypervisor_is_a_flag_of_its_own() {
+        assert!(is_virtual("model : 1\nflags\t: fpu hypervisor lahf_lm\n"));
+        assert!(!is_virtual("model : hypervisor\nflags\t: fpu lahf_lm\n"));
+        assert!(!is_virtual(""));
+    }
+}

@@ -1,0 +1,109 @@
+//! Whether this computer keeps the rig's time: a latency test as cyclictest makes it, on the thread and the timer of the
+//! rig, first with the computer as it is, then under load.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`phase`] | the waits of one phase |
+//! | [`load`] | the load that the test makes |
+//! | [`verdict`] | what `rig.toml` tolerates |
+//! | [`cpu_time`] | time that a hypervisor has stolen |
+//! | [`facts`], [`survey`] | state of the computer, and its files |
+//! | [`advice`] | what to change |
+//! | [`histogram`], [`plot`] | the waits as text and as a picture |
+
+pub mod advice;
+pub mod cpu_time;
+pub mod facts;
+pub mod histogram;
+pub mod load;
+pub mod phase;
+pub mod plot;
+pub mod survey;
+pub mod verdict;
+
+use crate::block_on;
+use crate::controls::Interrupts;
+use crate::real_time::RigThread;
+use crate::source::RigSource;
+use advice::{Advice, advise};
+use anyhow::Context;
+use bus::Pace;
+use cpu_time::CpuTime;
+use load::{Load, scratch_file};
+use machine::rig::wiring::Wiring;
+use phase::{Phase, PhaseResult, measure};
+use std::fs::File;
+use std::path::Path;
+use units::Span;
+use verdict::Verdict;
+
+/// Answer of the test.
+#[derive(Debug)]
+pub struct Report {
+    /// As the computer is, then under load.
+    pub phases: Vec<PhaseResult>,
+    /// Whether the worst lateness is tolerated.
+    pub verdict: Verdict,
+    /// What to change; empty when everything is as expected.
+    pub advice: Vec<Advice>,
+}
+
+/// Tests this computer for `span`, half of it per phase, against the needs of `wiring`. The load writes an unnamed file
+/// in `folder`. Calls `ended` after each phase. Returns `None` after Ctrl-C. Opens no port.
+///
+/// # Errors
+/// Fails when `folder` takes no file, when the system refuses a thread, or as `ended` does.
+pub fn run(
+    wiring: &Wiring,
+    folder: &Path,
+    span: Span,
+    ended: &mut dyn FnMut(&PhaseResult) -> anyhow::Result<()>,
+) -> anyhow::Result<Option<Report>> {
+    let mut scratch = Some(scratch_file(folder)?);
+    let thread = RigThread::start(Pace::real())?;
+    block_on(&RigSource::Serial(Vec::new()), async {
+        let mut interrupts = Interrupts::listen().context("catching Ctrl-C")?;
+        let mut phases = Vec::new();
+        for phase in Phase::ALL {
+            let file = scratch.take_if(|_| phase == Phase::Loaded);
+            let result = tokio::select! {
+                biased;
+                () = interrupts.next() => return Ok(None),
+                result = test(phase, Span(span.0 / 2), &thread, file) => result?,
+            };
+            ended(&result)?;
+            phases.push(result);
+        }
+        Ok(Some(report(wiring, &thread, phases)))
+    })
+}
+
+/// Measures one phase, under load when there is a file for it.
+async fn test(
+    phase: Phase,
+    span: Span,
+    thread: &RigThread,
+    file: Option<File>,
+) -> anyhow::Result<PhaseResult> {
+    let before = survey::cpu_time();
+    let load = file.map(Load::start).transpose()?;
+    let lateness = thread.handle.spawn(measure(span)).await;
+    load.map_or(Ok(()), Load::end)?;
+    Ok(PhaseResult {
+        phase,
+        lateness: lateness.context("measuring on the rig's thread")?.view(),
+        cpu_time: CpuTime::between(before, survey::cpu_time()),
+    })
+}
+
+fn report(wiring: &Wiring, thread: &RigThread, phases: Vec<PhaseResult>) -> Report {
+    let worst_ms = phases.iter().map(|it| it.lateness.worst_ms);
+    let verdict = Verdict::of(wiring, worst_ms.fold(0.0, f64::max));
+    let spent = phases.iter().map(|it| it.cpu_time);
+    let facts = survey::facts(wiring, &thread.rights, spent.sum());
+    Report {
+        advice: advise(&facts, &verdict),
+        phases,
+        verdict,
+    }
+}

@@ -1,0 +1,59 @@
+//! One phase of the test: waits of one millisecond on the rig's timer.
+
+use super::cpu_time::CpuTime;
+use crate::real_time::INTERVAL;
+use bus::{Pace, Timer};
+use cycle::Lateness;
+use machine::view::LatenessView;
+use serde::Serialize;
+use units::Span;
+
+/// A phase of the test.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Phase {
+    /// The computer with what else runs on it.
+    AsItIs,
+    /// The same under the load of the test.
+    Loaded,
+}
+
+impl Phase {
+    /// Both, in order.
+    pub const ALL: [Self; 2] = [Self::AsItIs, Self::Loaded];
+
+    /// Returns the name for people.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::AsItIs => "as it is",
+            Self::Loaded => "under load",
+        }
+    }
+}
+
+/// Result of a phase.
+#[derive(Debug, Clone, Serialize)]
+pub struct PhaseResult {
+    /// The phase.
+    pub phase: Phase,
+    /// Lateness of its waits.
+    pub lateness: LatenessView,
+    /// Time of all CPUs during the phase.
+    #[serde(flatten)]
+    pub cpu_time: CpuTime,
+}
+
+/// Waits again and again for `span` and returns how late the waits ended. Runs on the rig's thread.
+pub(super) async fn measure(span: Span) -> Lateness {
+    let pace = Pace::real();
+    let timer = Timer::new(pace);
+    let mut lateness = Lateness::default();
+    let (mut next, end) = (pace.now() + INTERVAL, pace.now() + span);
+    while next < end {
+        timer.until(next).await;
+        let now = pace.now();
+        lateness.count(next, now);
+        next = next.max(now) + INTERVAL;
+    }
+    lateness
+}
