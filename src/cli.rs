@@ -9,6 +9,7 @@ pub mod config;
 #[cfg(feature = "sim")]
 pub mod demo;
 pub mod history;
+mod installed;
 pub mod lot;
 mod output;
 pub mod rig;
@@ -26,7 +27,6 @@ pub mod user;
 pub mod wear;
 
 use app::exit::Exit;
-use app::order::Files;
 use clap::{Parser, Subcommand};
 use machine::view::By;
 use std::path::PathBuf;
@@ -46,10 +46,12 @@ use std::path::PathBuf;
 Exit status: 0 done, 1 done and the answer is no, 2 bad input, 3 the rig has trouble, 4 stopped by the operator."
 )]
 pub struct Cli {
-    /// Directory with rig.toml, scene.toml, golden.toml, sim.toml and recipes/
-    #[arg(long, global = true, default_value = "config", value_name = "DIR")]
-    pub config: PathBuf,
-    /// History file of one rig, real or simulated [default: relayrig.db, or relayrig-demo.db for demo]
+    /// Directory with rig.toml, scene.toml, golden.toml, sim.toml and recipes/ [default: config; /etc/relayrig of an
+    /// installed rig where the working folder has neither config nor relayrig.db]
+    #[arg(long, global = true, value_name = "DIR")]
+    pub config: Option<PathBuf>,
+    /// History file of one rig, real or simulated [default: relayrig.db; relayrig-demo.db for demo;
+    /// /var/lib/relayrig/relayrig.db with --config /etc/relayrig by default]
     #[arg(long, global = true, value_name = "FILE")]
     pub db: Option<PathBuf>,
     /// Level of the log on stderr: error, warn, info, debug, or a filter per module
@@ -104,12 +106,12 @@ pub enum Command {
 }
 
 impl Command {
-    /// Returns the name of the history file without `--db`.
-    const fn own_history(&self) -> &'static str {
+    /// Returns the history file of a command that has its own; `None` for the history of the rig.
+    const fn own_history(&self) -> Option<&'static str> {
         match self {
             #[cfg(feature = "sim")]
-            Self::Demo(_) => "relayrig-demo.db",
-            _ => "relayrig.db",
+            Self::Demo(_) => Some("relayrig-demo.db"),
+            _ => None,
         }
     }
 }
@@ -117,11 +119,8 @@ impl Command {
 impl Cli {
     /// Runs the command. An error is bad input; the caller prints it once.
     pub fn execute(self) -> anyhow::Result<Exit> {
-        let own = self.command.own_history();
-        let files = Files {
-            config: self.config,
-            db: self.db.unwrap_or_else(|| own.into()),
-        };
+        let own = self.command.own_history().map(PathBuf::from);
+        let files = installed::files(self.config, self.db.or(own));
         let (config, db) = (&files.config, &files.db);
         match self.command {
             #[cfg(feature = "sim")]

@@ -10,6 +10,7 @@
 //! - `interruptions`: rows of stopped and killed lots.
 //! - `killed`: outputs become safe in time after a kill.
 //! - [`lots`]: whole lots on the simulated rig in virtual time, compared with the truth of its world.
+//! - `notify`: notifications of the service to systemd.
 //! - `paper`: printing, export, rejudging, retention.
 //! - [`picture`]: the drawing in README.md matches `config/scene.toml`.
 //! - `protocol`: every command of every module, written, answered and read; settings, INIT*.
@@ -42,6 +43,8 @@ mod killed;
 mod layout;
 #[cfg(feature = "sim")]
 mod lots;
+#[cfg(all(feature = "sim", unix))]
+mod notify;
 #[cfg(feature = "sim")]
 mod paper;
 mod picture;

@@ -4,6 +4,7 @@ use super::traces::Traces;
 use machine::view::{LineTraffic, View};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::sync::watch;
 
 /// Controls of a run; clones share the same flags and view.
@@ -64,20 +65,43 @@ impl Controls {
 /// Sets the first flag at the first Ctrl-C or SIGTERM (the run then finishes the parts inside), and the second flag at
 /// the next one (the run then ends at once). A signal that arrives while this function logs is not lost.
 async fn watch_signals(flags: [Arc<AtomicBool>; 2]) -> std::io::Result<()> {
-    use tokio::signal::unix::{SignalKind, signal};
-    let mut pressed = signal(SignalKind::interrupt())?;
-    let mut terminate = signal(SignalKind::terminate())?;
+    let mut interrupts = Interrupts::listen()?;
     let said = [
         "stopping when the parts inside are finished; once more stops at once",
         "stopping at once, outputs safe",
     ];
     for (flag, said) in flags.into_iter().zip(said) {
-        tokio::select! {
-            _ = pressed.recv() => {}
-            _ = terminate.recv() => {}
-        }
+        interrupts.next().await;
         flag.store(true, Ordering::Release);
         tracing::warn!("{said}");
     }
     Ok(())
+}
+
+/// Ctrl-C and SIGTERM, which end every command in the same way.
+#[derive(Debug)]
+pub struct Interrupts {
+    pressed: Signal,
+    terminated: Signal,
+}
+
+impl Interrupts {
+    /// Listens from now on; a signal that arrives later is not lost. Panics outside a runtime.
+    ///
+    /// # Errors
+    /// Fails when the operating system refuses the handlers.
+    pub fn listen() -> std::io::Result<Self> {
+        Ok(Self {
+            pressed: signal(SignalKind::interrupt())?,
+            terminated: signal(SignalKind::terminate())?,
+        })
+    }
+
+    /// Waits for the next of the two signals.
+    pub async fn next(&mut self) {
+        tokio::select! {
+            _ = self.pressed.recv() => {}
+            _ = self.terminated.recv() => {}
+        }
+    }
 }
