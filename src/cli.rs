@@ -8,6 +8,7 @@ pub mod check;
 pub mod config;
 #[cfg(feature = "sim")]
 pub mod demo;
+pub mod doctor;
 pub mod history;
 mod installed;
 pub mod lot;
@@ -85,6 +86,8 @@ pub enum Command {
     /// Check the configuration, or print the schema of a file
     #[command(subcommand)]
     Config(config::Args),
+    /// What is wrong with this installation, and what to do
+    Doctor(doctor::DoctorArgs),
     /// Find modules, send one command, watch a line
     Bus(bus::BusArgs),
     /// Collision answers for a scene, no rig
@@ -134,6 +137,7 @@ impl Cli {
             Command::Story(args) => story::run(&files, &args),
             Command::Study(args) => study::run(config, &args),
             Command::Config(args) => config::run(config, &args),
+            Command::Doctor(args) => doctor::run(&files, &args),
             Command::Bus(args) => bus::run(&args),
             Command::Check(args) => check::run(args),
             Command::History(args) => history::run(config, db, args),

@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 pub const CONFIG: &str = "/etc/relayrig";
 /// History of the installed service.
 pub const HISTORY: &str = "/var/lib/relayrig/relayrig.db";
+/// Folder into which the installed timer makes its backups.
+pub const BACKUPS: &str = "/var/backups/relayrig";
 
 /// Name of the configuration in the working folder.
 const LOCAL_CONFIG: &str = "config";

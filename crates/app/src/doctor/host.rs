@@ -1,0 +1,162 @@
+//! Checks of the computer: clock, and the rights to run before other programs and to stay in memory.
+
+use super::finding::{Check, Finding, Subject};
+use std::fs;
+use std::process::Command;
+
+/// Name of the service in systemd.
+const SERVICE: &str = "relayrig.service";
+/// Number of the capability `CAP_IPC_LOCK`.
+const IPC_LOCK: u32 = 14;
+/// Number of the capability `CAP_SYS_NICE`.
+const SYS_NICE: u32 = 23;
+/// Least memory that the program may keep locked, bytes; it uses a fraction of it.
+const LOCKED: u64 = 1 << 30;
+
+/// Checks that a time service keeps the wall clock.
+pub(super) fn check_clock() -> Finding {
+    let subject = Subject::new(Check::Clock, "wall clock", "kept by a time service (NTP)");
+    let remedy = "apt install systemd-timesyncd or chrony, and let it reach a time server";
+    let asked = ["show", "--property=NTPSynchronized", "--value"];
+    match output("timedatectl", &asked).as_deref().map(str::trim) {
+        Some("yes") => subject.ok("synchronised"),
+        Some("no") => subject.warning("not synchronised", remedy),
+        Some(_) | None => subject.unknown("no answer of timedatectl", remedy),
+    }
+}
+
+/// Returns what the command prints; `None` when it is missing or fails.
+fn output(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    output.status.success().then_some(text)
+}
+
+/// Rights of the program that runs the rig.
+#[derive(Debug, PartialEq, Eq)]
+struct Privileges {
+    /// Whose rights these are.
+    of: &'static str,
+    /// Highest real-time priority, 0 for none.
+    priority: u64,
+    /// Most memory that may be locked, bytes.
+    locked: u64,
+}
+
+/// Checks the rights of the installed service, or of this process where none is installed.
+pub(super) fn check_privileges() -> Vec<Finding> {
+    match of_service().or_else(of_process) {
+        Some(privileges) => privileges.findings().into(),
+        None => Vec::new(),
+    }
+}
+
+impl Privileges {
+    fn findings(&self) -> [Finding; 2] {
+        let subject = |check, expected: &str| Subject::new(check, self.of, expected);
+        let real_time = subject(Check::RealTime, "priority 1 or more");
+        let memory = subject(Check::LockedMemory, "1 GiB or more");
+        let remedy =
+            "start the rig as the service, or give it CAP_SYS_NICE, LimitRTPRIO and LimitMEMLOCK";
+        let locked = match self.locked {
+            u64::MAX => "no limit".to_owned(),
+            bytes => format!("{} KiB", bytes >> 10),
+        };
+        [
+            match self.priority {
+                0 => real_time.warning("no right", remedy),
+                priority => real_time.ok(format!("priority up to {priority}")),
+            },
+            match self.locked < LOCKED {
+                true => memory.warning(locked, remedy),
+                false => memory.ok(locked),
+            },
+        ]
+    }
+
+    /// Returns rights from limits and capabilities; each capability lifts a limit.
+    fn new(of: &'static str, limits: [Option<u64>; 2], lifted: [bool; 2]) -> Self {
+        let [priority, locked] = limits.map(Option::unwrap_or_default);
+        Self {
+            of,
+            priority: if lifted[0] { 99 } else { priority },
+            locked: if lifted[1] { u64::MAX } else { locked },
+        }
+    }
+}
+
+fn of_service() -> Option<Privileges> {
+    let wanted = "--property=LoadState,AmbientCapabilities,LimitRTPRIO,LimitMEMLOCK";
+    parse_service(&output("systemctl", &["show", SERVICE, wanted])?)
+}
+
+/// Reads the answer of `systemctl show`; `None` when the service is not installed.
+fn parse_service(text: &str) -> Option<Privileges> {
+    let value = |key: &str| {
+        text.lines()
+            .find_map(|line| line.strip_prefix(key)?.strip_prefix('='))
+    };
+    if value("LoadState") != Some("loaded") {
+        return None;
+    }
+    let limits = ["LimitRTPRIO", "LimitMEMLOCK"].map(|key| value(key).and_then(limit));
+    let given = value("AmbientCapabilities").unwrap_or_default();
+    let lifted = ["cap_sys_nice", "cap_ipc_lock"].map(|name| given.contains(name));
+    Some(Privileges::new(SERVICE, limits, lifted))
+}
+
+fn of_process() -> Option<Privileges> {
+    let limits = fs::read_to_string("/proc/self/limits").ok()?;
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    parse_process(&limits, &status)
+}
+
+/// Reads the files `limits` and `status` of a process.
+fn parse_process(limits: &str, status: &str) -> Option<Privileges> {
+    let soft = |name: &str| {
+        let line = limits.lines().find_map(|line| line.strip_prefix(name))?;
+        limit(line.split_whitespace().next()?)
+    };
+    let effective = status
+        .lines()
+        .find_map(|line| line.strip_prefix("CapEff:"))?;
+    let effective = u64::from_str_radix(effective.trim(), 16).ok()?;
+    let limits = ["Max realtime priority", "Max locked memory"].map(soft);
+    let lifted = [SYS_NICE, IPC_LOCK].map(|bit| effective & (1 << bit) != 0);
+    Some(Privileges::new("this process", limits, lifted))
+}
+
+fn limit(text: &str) -> Option<u64> {
+    match text {
+        "infinity" | "unlimited" => Some(u64::MAX),
+        number => number.parse().ok(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::finding::Health;
+    use super::*;
+
+    #[test]
+    fn the_rights_of_a_service_are_read() {
+        let installed = "LoadState=loaded\nAmbientCapabilities=cap_sys_nice\nLimitRTPRIO=0\nLimitMEMLOCK=infinity\n";
+        let found = parse_service(installed).unwrap();
+        assert_eq!((found.priority, found.locked), (99, u64::MAX));
+        assert_eq!(found.findings().map(|it| it.health), [Health::Ok; 2]);
+        assert_eq!(parse_service("LoadState=not-found\n"), None);
+    }
+
+    #[test]
+    fn the_rights_of_a_process_are_read() {
+        let limits = "Limit                     Soft Limit           Hard Limit           Units\n\
+                      Max locked memory         8388608              8388608              bytes\n\
+                      Max realtime priority     0                    0                    \n";
+        let found = parse_process(limits, "CapEff:\t0000000000000000\n").unwrap();
+        assert_eq!((found.priority, found.locked), (0, 8_388_608));
+        assert_eq!(found.findings().map(|it| it.health), [Health::Warning; 2]);
+        let root = parse_process(limits, "CapEff:\t0000000000804000\n").unwrap();
+        assert_eq!((root.priority, root.locked), (99, u64::MAX));
+    }
+}
