@@ -1,9 +1,11 @@
 //! Tests of the built program, and rules about the source tree.
 //!
 //! - [`layout`]: rules about imports, pure modules, places of files, and references in documents.
+//! - `backup`: a backup of the whole rig, and its restoration.
 //! - `bus`: the bus tools on the modules of a bench file, and traces of alarms.
 //! - `calibrate`: storing and verifying factors, and refusing lots without them.
 //! - [`commands`]: wrong files and simple orders.
+//! - `doctor`: a fresh folder, and spoiled ones.
 //! - `full_disk`: a history file that reaches its size limit.
 //! - `gates`: reference checks, suspect parts, reject-rate limit, first articles, retests, wear.
 //! - `history_taken`: histories of other or newer programs, and one that another process locks.
@@ -11,6 +13,7 @@
 //! - `killed`: outputs become safe in time after a kill.
 //! - [`lots`]: whole lots on the simulated rig in virtual time, compared with the truth of its world.
 //! - `notify`: notifications of the service to systemd.
+//! - `packaging`: units, scripts and contents of the Debian package.
 //! - `paper`: printing, export, rejudging, retention.
 //! - [`picture`]: the drawing in README.md matches `config/scene.toml`.
 //! - `protocol`: every command of every module, written, answered and read; settings, INIT*.
@@ -24,12 +27,16 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[cfg(feature = "sim")]
+mod backup;
 #[cfg(all(feature = "sim", unix))]
 mod bus;
 #[cfg(feature = "sim")]
 mod calibrate;
 mod check;
 mod commands;
+#[cfg(feature = "sim")]
+mod doctor;
 #[cfg(all(feature = "sim", unix))]
 mod full_disk;
 #[cfg(feature = "sim")]
@@ -45,6 +52,7 @@ mod layout;
 mod lots;
 #[cfg(all(feature = "sim", unix))]
 mod notify;
+mod packaging;
 #[cfg(feature = "sim")]
 mod paper;
 mod picture;
