@@ -96,3 +96,19 @@ fn a_failed_backup_leaves_nothing() {
     let left = fs::read_dir(workshop.folder.join("backups")).unwrap();
     assert_eq!(left.count(), 0);
 }
+
+#[test]
+fn a_backup_keeps_an_older_schema() {
+    let workshop = Workshop::new("older-schema");
+    let lot = "run --sim --lot A --recipe jzc-22f-012 --count 1 --seed 1";
+    workshop.run(lot).with_status(0);
+    let history = workshop.folder.join("relayrig.db");
+    let older = rusqlite::Connection::open(&history).unwrap();
+    older.pragma_update(None, "user_version", 10).unwrap();
+    workshop.run("history backup --into backups").with_status(0);
+    for file in [history, only_backup(&workshop).join("relayrig.db")] {
+        let file = rusqlite::Connection::open(file).unwrap();
+        let schema = file.pragma_query_value(None, "user_version", |row| row.get::<_, i64>(0));
+        assert_eq!(schema.unwrap(), 10);
+    }
+}

@@ -1,6 +1,7 @@
 //! Backups of a whole rig: history, people and configuration in a dated folder each, of which the newest stay.
 //!
-//! The history does not note these copies: they go again, so none of them permits to prune a run.
+//! The history does not note these copies: they go again, so none of them permits to prune a run. Nor does it change its
+//! schema, because an earlier program may be at work on it.
 
 use crate::order::Files;
 use anyhow::Context;
@@ -82,7 +83,7 @@ fn copy_rig(files: &Files, to: &Path) -> anyhow::Result<u64> {
     let named = || to.display().to_string();
     fs::create_dir_all(to).with_context(named)?;
     let db = to.join(files.db.file_name().unwrap_or("relayrig.db".as_ref()));
-    let bytes = Archive::open(&files.db)?.backup(&db)?;
+    let bytes = Archive::open_unchanged(&files.db)?.backup(&db)?;
     let people = access_path(&files.db);
     if people.exists() {
         Register::open(&people)?.copy_to(&access_path(&db))?;

@@ -1,7 +1,7 @@
 //! Copies the history while it is in use, and checks its integrity. Writers continue during both.
 
+use super::Archive;
 use super::error::{Doing, HistoryError, Result};
-use super::{Archive, open};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
@@ -43,11 +43,7 @@ impl Archive {
             .pragma_update(None, "query_only", true)
             .doing("copying the history")?;
         copied.doing("copying the history")?;
-        Archive {
-            connection: open::reader(partial)?,
-            path: partial.to_owned(),
-        }
-        .check()?;
+        Self::open_unchanged(partial)?.check()?;
         let file = File::open(partial).map_err(place)?;
         file.sync_all().map_err(place)?;
         // A hard link fails if the name has been taken in the meantime; a rename would overwrite the file.
