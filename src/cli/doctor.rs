@@ -8,7 +8,7 @@ use app::exit::Exit;
 use app::order::Files;
 use app::source::LinePort;
 use serde_json::{Value, json};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Looks at an installation.
 #[derive(Debug, clap::Args)]
@@ -37,7 +37,7 @@ pub struct DoctorArgs {
 /// Runs the command.
 pub fn run(files: &Files, args: &DoctorArgs) -> anyhow::Result<Exit> {
     let lines: Vec<LinePort> = args.line.iter().map(port).collect::<anyhow::Result<_>>()?;
-    let is_installed = files.db == PathBuf::from(installed::HISTORY);
+    let is_installed = files.db == Path::new(installed::HISTORY);
     let usual = is_installed.then(|| installed::BACKUPS.into());
     let backups = args.backups.clone().or(usual);
     let found = examine(&Installation {
@@ -53,7 +53,7 @@ pub fn run(files: &Files, args: &DoctorArgs) -> anyhow::Result<Exit> {
     out.line(&match args.json {
         true => json!({"type": "summary", "ok": ok, "unknown": unknown, "warning": warnings, "fault": faults})
             .to_string(),
-        false => format!("{faults} faults, {warnings} warnings, {unknown} not checked, {ok} ok"),
+        false => format!("faults {faults}, warnings {warnings}, not checked {unknown}, ok {ok}"),
     })?;
     Ok(match faults {
         0 => Exit::Done,

@@ -26,7 +26,7 @@ pub struct Installation<'a> {
     pub files: &'a Files,
     /// Ports that replace those of `rig.toml`; `None` for a simulated rig, which has no ports.
     pub lines: Option<&'a [LinePort]>,
-    /// Folder of the backups; `None`: not checked.
+    /// Folder of the backups; `None`: not checked. Without a history no backup is expected.
     pub backups: Option<&'a Path>,
 }
 
@@ -41,7 +41,7 @@ pub fn examine(installation: &Installation<'_>) -> Vec<Finding> {
     findings.extend(storage::check_disk(&files.db, &account));
     findings.push(history);
     findings.extend(storage::check_people(&files.db, &account));
-    let backups = installation.backups;
+    let backups = installation.backups.filter(|_| files.db.exists());
     findings.extend(backups.map(|folder| storage::check_backup(folder, now)));
     if let (Some(given), Ok(plant)) = (installation.lines, &plant) {
         findings.extend(ports::check(&plant.wiring, given, &account));

@@ -150,7 +150,7 @@ fn is_private(file: &Metadata) -> bool {
 pub(super) fn check_backup(folder: &Path, now: Timestamp) -> Finding {
     let expected = format!("a backup of the last {BACKUP_H} hours");
     let subject = Subject::new(Check::Backup, folder.display(), expected);
-    let remedy = "systemctl enable --now relayrig-backup.timer; look into its journal";
+    let remedy = "systemctl start relayrig-backup; look whether relayrig-backup.timer is enabled";
     let Some((made, newest)) = backups(folder).pop() else {
         return subject.warning("none", remedy);
     };
