@@ -16,15 +16,16 @@ pub(super) struct Account {
 }
 
 impl Account {
-    /// Returns the account that runs the rig whose history lies in `folder`: this one, or the owner of the folder when
-    /// this one is root.
+    /// Returns the account that runs the rig whose history lies in `folder`: this one when it may write there and is not
+    /// root, else the owner of the folder.
     pub fn of_rig(folder: &Path) -> Self {
-        let own = Uid::effective();
-        let owner = std::fs::metadata(folder).map(|it| Uid::from_raw(it.uid()));
-        Self::new(match (own.is_root(), owner) {
-            (true, Ok(owner)) => owner,
-            (true, Err(_)) | (false, Ok(_) | Err(_)) => own,
-        })
+        let own = Self::new(Uid::effective());
+        match std::fs::metadata(folder) {
+            Ok(meta) if own.uid == 0 || !own.may_write(&meta) => {
+                Self::new(Uid::from_raw(meta.uid()))
+            }
+            Ok(_) | Err(_) => own,
+        }
     }
 
     fn new(uid: Uid) -> Self {

@@ -1,7 +1,7 @@
 //! What is wrong with an installation, and what to do.
 //!
 //! The doctor reads files, rights and the state of the computer. It opens no port and writes nothing, so it may look while
-//! the rig works. Root looks for the account that owns the data, since that account runs the rig.
+//! the rig works. It judges rights for the account that runs the rig, which owns the data, not for root or another reader.
 
 mod account;
 mod calibration;
@@ -42,7 +42,7 @@ pub fn examine(installation: &Installation<'_>) -> Vec<Finding> {
     findings.push(history);
     findings.extend(storage::check_people(&files.db, &account));
     let backups = installation.backups.filter(|_| files.db.exists());
-    findings.extend(backups.map(|folder| storage::check_backup(folder, now)));
+    findings.extend(backups.map(|folder| storage::check_backup(folder, &account, now)));
     if let (Some(given), Ok(plant)) = (installation.lines, &plant) {
         findings.extend(ports::check(&plant.wiring, given, &account));
     }

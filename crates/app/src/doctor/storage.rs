@@ -8,6 +8,7 @@ use jiff::Timestamp;
 use nix::sys::statvfs::{FsFlags, Statvfs, statvfs};
 use page::access::access_path;
 use std::fs::{self, Metadata};
+use std::io::ErrorKind;
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
@@ -74,6 +75,9 @@ fn check_room(room: Subject, free: u64) -> Finding {
 pub(super) fn check_history(db: &Path, account: &Account) -> (Finding, Option<Examination>) {
     let expected = format!("a whole history that {} may write", account.name);
     let subject = Subject::new(Check::History, db.display(), expected);
+    if is_hidden(db) {
+        return (subject.unknown(HIDDEN, as_rig(account)), None);
+    }
     let facts = match examine(db) {
         Err(HistoryError::Missing { .. }) => {
             return (subject.ok("none yet; the first run makes it"), None);
@@ -146,11 +150,27 @@ fn is_private(file: &Metadata) -> bool {
     file.mode() & 0o077 == 0
 }
 
+/// What is found of a file that only another account may see.
+const HIDDEN: &str = "no right to look";
+
+/// Returns true when the file may exist, but this process has no right to see it.
+fn is_hidden(file: &Path) -> bool {
+    let error = fs::metadata(file).err().map(|it| it.kind());
+    error == Some(ErrorKind::PermissionDenied)
+}
+
+fn as_rig(account: &Account) -> String {
+    format!("run the doctor as root or as {}", account.name)
+}
+
 /// Checks the age of the newest backup inside `folder`.
-pub(super) fn check_backup(folder: &Path, now: Timestamp) -> Finding {
+pub(super) fn check_backup(folder: &Path, account: &Account, now: Timestamp) -> Finding {
     let expected = format!("a backup of the last {BACKUP_H} hours");
     let subject = Subject::new(Check::Backup, folder.display(), expected);
     let remedy = "systemctl start relayrig-backup; look whether relayrig-backup.timer is enabled";
+    if is_hidden(&folder.join(".")) {
+        return subject.unknown(HIDDEN, as_rig(account));
+    }
     let Some((made, newest)) = backups(folder).pop() else {
         return subject.warning("none", remedy);
     };
@@ -190,13 +210,15 @@ mod tests {
     fn a_backup_may_be_two_days_old() {
         let folder = tempfile::tempdir().unwrap();
         let now: Timestamp = "2026-03-03T12:00:00Z".parse().unwrap();
-        assert_eq!(check_backup(folder.path(), now).health, Health::Warning);
-        for (name, health) in [
+        let account = Account::of_rig(folder.path());
+        let health = || check_backup(folder.path(), &account, now).health;
+        assert_eq!(health(), Health::Warning);
+        for (name, expected) in [
             ("relayrig-20260228T000000Z", Health::Warning),
             ("relayrig-20260302T020000Z", Health::Ok),
         ] {
             fs::create_dir(folder.path().join(name)).unwrap();
-            assert_eq!(check_backup(folder.path(), now).health, health, "{name}");
+            assert_eq!(health(), expected, "{name}");
         }
     }
 }
