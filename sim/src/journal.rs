@@ -1,5 +1,5 @@
 //! Journal of the outputs: every change of a digital output, every expiry of a host watchdog, every fault that
-//! strikes, every coil that is overdriven.
+//! strikes, every coil that is overdriven, every reply that this computer made late.
 //!
 //! The journal records at the terminals, between modules and world, and so holds the signals of the actuators. It
 //! is off until [`JournaledWorld::listen`].
@@ -44,6 +44,15 @@ pub enum Entry {
         /// Value of the outputs now: bits, or volts.
         carries: f64,
     },
+    /// In real time, this computer made a line send its reply late.
+    Late {
+        /// Rig time at which the reply was due, microseconds.
+        t_us: u64,
+        /// Name of the line.
+        line: String,
+        /// How late the reply was, microseconds.
+        late_us: u64,
+    },
     /// A coil is driven in a supply range above the commanded one.
     CoilOverdriven(Overdrive),
 }
@@ -57,6 +66,16 @@ pub(crate) struct JournaledWorld {
     carries: BTreeMap<String, f64>,
     /// Number of overdrives in the journal.
     overdrives: usize,
+    late: LateReplies,
+}
+
+/// Replies that this computer made late, in real time.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct LateReplies {
+    /// Number of them.
+    pub count: u64,
+    /// Lateness of the latest, microseconds.
+    pub worst_us: u64,
 }
 
 impl JournaledWorld {
@@ -68,6 +87,7 @@ impl JournaledWorld {
             last_request_us: 0,
             carries: BTreeMap::new(),
             overdrives: 0,
+            late: LateReplies::default(),
         }
     }
 
@@ -104,6 +124,22 @@ impl JournaledWorld {
             t_us: self.now_us,
             fault: fault.to_owned(),
         });
+    }
+
+    /// Records that the reply of a line, due at `t_us`, was sent late.
+    pub(crate) fn record_late(&mut self, line: &str, t_us: u64, late_us: u64) {
+        self.late.count += 1;
+        self.late.worst_us = self.late.worst_us.max(late_us);
+        self.send(Entry::Late {
+            t_us,
+            line: line.to_owned(),
+            late_us,
+        });
+    }
+
+    /// Returns the late replies so far.
+    pub(crate) fn late(&self) -> LateReplies {
+        self.late
     }
 
     fn send(&self, entry: Entry) {

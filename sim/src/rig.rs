@@ -13,7 +13,7 @@ use crate::config::LineSpec;
 use crate::dcon;
 use crate::error::SimError;
 use crate::fault::{Event, LineFaults};
-use crate::journal::{Entry, JournaledWorld};
+use crate::journal::{Entry, JournaledWorld, LateReplies};
 use crate::line::wire_us;
 use crate::module::Module;
 use crate::shared;
@@ -195,6 +195,17 @@ impl Rig {
             .iter()
             .map(|module| (module.id().to_owned(), module.base().eeprom_writes))
             .collect()
+    }
+
+    /// Records that the reply of line `number`, due at `t_us`, was sent late.
+    pub(crate) fn record_late(&mut self, number: usize, t_us: u64, late_us: u64) {
+        let name = self.lines.get(number).map_or("", |line| line.name.as_str());
+        self.scene.record_late(name, t_us, late_us);
+    }
+
+    /// Returns the replies that this computer made late, in real time.
+    pub fn late_replies(&self) -> LateReplies {
+        self.scene.late()
     }
 
     /// Starts a journal of the outputs, from now on.

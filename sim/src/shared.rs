@@ -241,6 +241,16 @@ impl SharedRig {
         self.rig().eeprom_writes_by_module()
     }
 
+    /// Records a late reply; see [`Rig::late_replies`].
+    pub(crate) fn record_late(&self, line: usize, t_us: u64, late_us: u64) {
+        self.rig().record_late(line, t_us, late_us);
+    }
+
+    /// See [`Rig::late_replies`].
+    pub fn late_replies(&self) -> crate::journal::LateReplies {
+        self.rig().late_replies()
+    }
+
     /// See [`Rig::journal`].
     pub fn journal(&self) -> std::sync::mpsc::Receiver<crate::journal::Entry> {
         self.rig().journal()

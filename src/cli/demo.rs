@@ -1,5 +1,5 @@
-//! `relayrig demo`: [`serve`] over the simulated rig with a first lot that starts at once; it needs no preparation and has a
-//! history of its own.
+//! `relayrig demo`: [`serve`] over the simulated rig with a first lot that starts at once; it needs no preparation and
+//! has a history of its own.
 
 use super::rig::{self, PaceArg, RigArgs};
 use super::serve::{self, ServeArgs};

@@ -2,12 +2,14 @@
 
 use super::output::{Fixed, Output, cells, headings};
 use super::rig::RigArgs;
+use super::table::lateness_line;
 use super::terminal::{Rows, Terminal};
 use anyhow::Context;
 use app::exit::Exit;
 use app::gauge_study::{self, Figure};
 use app::lot::Purpose;
 use app::order::{Files, LotOrder};
+use app::real_time::BareLoop;
 use app::run_lot;
 use quality::gauge_rr::GaugeRr;
 use serde_json::json;
@@ -43,6 +45,9 @@ pub struct RunArgs {
     /// Test parts of the lot a second time with the consent of NAME; the first results stay
     #[arg(long, value_name = "NAME")]
     pub retest: Option<String>,
+    /// Beside the lot, a bare real-time loop, to compare how late this computer wakes both
+    #[arg(long)]
+    pub bare_loop: bool,
     /// Instead of one lot, ten parts (or --count) three times on three rigs, for the share of the gauge
     #[arg(long, value_enum, value_name = "NAME", requires = "sim")]
     pub study: Option<StudyArg>,
@@ -79,8 +84,16 @@ pub fn run(files: &Files, args: &RunArgs) -> anyhow::Result<Exit> {
         false => Rows::Table,
     };
     let mut terminal = Terminal::new(rows);
+    let bare_loop = args.bare_loop.then(BareLoop::start).transpose()?;
     let exit = run_lot(files, &source, &order, Purpose::Lot, &mut terminal)?;
     terminal.ended(&exit);
+    if let Some(bare_loop) = bare_loop {
+        let lateness = bare_loop.end().view();
+        Output::stdout().line(&match args.json {
+            true => json!({"type": "bare_loop", "lateness": lateness}).to_string(),
+            false => lateness_line("lateness of a bare loop", &lateness),
+        })?;
+    }
     Ok(exit)
 }
 

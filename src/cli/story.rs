@@ -62,7 +62,7 @@ pub fn run(files: &Files, args: &StoryArgs) -> anyhow::Result<Exit> {
         TruthFile::create(path)?;
     }
     let lot = args.script.file_stem().unwrap_or_default();
-    // Every telling is a lot of its own.
+    // A complete lot takes no second run, so each play of a script has a lot of its own.
     let now = jiff::Zoned::now().strftime("%Y-%m-%d %H:%M:%S%.6f");
     let order = LotOrder {
         lot: format!("story {} {now}", lot.to_string_lossy()),

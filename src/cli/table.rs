@@ -4,6 +4,7 @@ use super::output::{Fixed, bins, cells, headings};
 use app::lot::Summary;
 use machine::dut::{Characteristic, Kind};
 use machine::handling::output::Judged;
+use machine::view::LatenessView;
 use quality::Spread;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -63,6 +64,18 @@ impl Table {
             "{} parts/h, {} s of rig time in {} s, {} alarms{bodies}",
             summary.parts_per_hour, summary.elapsed_s, summary.wall_s, summary.alarms
         );
+        if let Some(lateness) = &summary.lateness {
+            text += &lateness_line("lateness of the cycle", lateness);
+            text.push('\n');
+        }
         text
     }
+}
+
+/// Returns a line with the figures of a lateness.
+pub fn lateness_line(name: &str, it: &LatenessView) -> String {
+    format!(
+        "{name}: median {:.3}, p99 {:.3}, p99.9 {:.3}, worst {:.3} ms of {} waits",
+        it.p50_ms, it.p99_ms, it.p999_ms, it.worst_ms, it.waits
+    )
 }

@@ -1,12 +1,12 @@
 //! A run at the terminal: progress bar and alarms on stderr; rows, table or summary on stdout.
 
 use super::table::Table;
-use app::cycle::Event;
 use app::exit::Exit;
 use app::lot::{LotEvent, LotProgress, Subscriber, part_json};
 use app::progress::progress;
+use cycle::Event;
 use indicatif::ProgressBar;
-use machine::handling::ledger::Kind;
+use machine::handling::ledger::PartRole;
 use machine::handling::output::Judged;
 use std::io::Write;
 use texts::Lang;
@@ -87,7 +87,7 @@ impl Subscriber for Terminal {
         };
         match event {
             LotEvent::Begun => self.begun(lot),
-            LotEvent::Cycle(Event::Judged(it)) if matches!(it.part.kind, Kind::Lot(_)) => {
+            LotEvent::Cycle(Event::Judged(it)) if matches!(it.part.kind, PartRole::Lot(_)) => {
                 self.judged(it, lot);
             }
             LotEvent::Cycle(Event::Alarm(alarm, _)) => self
@@ -99,7 +99,7 @@ impl Subscriber for Terminal {
                 }
             }),
             LotEvent::PartDone(part, landed) if rows == Rows::Json => {
-                if matches!(part.judged.part.kind, Kind::Lot(_)) {
+                if matches!(part.judged.part.kind, PartRole::Lot(_)) {
                     let bin = landed.as_ref().map_or("", |it| it.bin.name());
                     let json = part_json(&lot.context, &part.judged, part.cycle_s, bin);
                     self.print(&format!("{json}\n"));

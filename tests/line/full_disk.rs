@@ -24,7 +24,7 @@ fn a_full_history_stops_feeding_and_loses_no_part() {
 }
 
 #[test]
-fn room_on_the_disk_lets_the_lot_go_on_at_the_page() {
+fn freed_disk_room_lets_a_lot_continue() {
     let workshop = Workshop::new("room-again");
     let line = "serve --listen 127.0.0.1:0 --sim --speed 100";
     let served = Served::over(workshop.start_with_little_room(BLOCKS, line));

@@ -121,7 +121,7 @@ fn a_demo_has_a_history_of_its_own() {
 }
 
 #[test]
-fn a_lock_in_mid_lot_is_cleared_at_the_page() {
+fn a_lock_during_a_lot_clears_at_the_page() {
     let workshop = Workshop::new("lock-cleared");
     let served = Served::start(&workshop, "--sim --speed 100");
     served.until_state("Stopped");

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 const RECIPE: &str = "jzc-22f-012";
 /// Longest wait for a state; far more than a busy computer needs.
-const PATIENCE: Duration = Duration::from_secs(120);
+const VIEW_TIMEOUT: Duration = Duration::from_secs(120);
 
 /// The program with its page, and a session of an engineer.
 pub struct Served {
@@ -113,7 +113,7 @@ impl Served {
             if test(&view) {
                 return view;
             }
-            assert!(began.elapsed() < PATIENCE, "never {what}: {view}");
+            assert!(began.elapsed() < VIEW_TIMEOUT, "never {what}: {view}");
             std::thread::yield_now();
         }
     }
@@ -306,7 +306,7 @@ fn a_line_missing_at_start_is_named_and_awaited() {
     let _rig = Rig::start(&workshop, "");
     let began = Instant::now();
     while served.get("/api/view")["machine"]["state"] != "Stopped" {
-        assert!(began.elapsed() < PATIENCE, "it never came back");
+        assert!(began.elapsed() < VIEW_TIMEOUT, "it never came back");
         // On a machine that is busy a module may be late once more.
         let _ = served.post("/api/orders", &json!({"order": "clear"}));
     }

@@ -70,7 +70,7 @@ pub enum AdmissionError {
     OtherRecipe {
         /// Name of the lot.
         lot: String,
-        /// Name and hash of the recipe as ordered.
+        /// Recipe that the order names: its name and the first 12 characters of its hash.
         found: String,
         /// State of the lot, and the recipe with which the lot began.
         standing: Box<LotStatus>,
@@ -103,8 +103,8 @@ impl AdmissionError {
 /// Checks that a lot may run; returns its recipe.
 ///
 /// # Errors
-/// Fails when the lot is held, when it is complete and the order is no retest, when it began with another recipe, when a
-/// retest has no earlier run, or when this plant cannot measure the recipe.
+/// Fails when the lot is held, when it is complete and the order is no retest, when it began with another recipe, when
+/// a retest has no earlier run, or when this plant cannot measure the recipe.
 pub fn admit(
     db: &Path,
     plant: &Plant,
@@ -126,13 +126,17 @@ pub fn admit(
     Ok(Arc::new(recipe))
 }
 
+/// Returns the state of a lot; `None` for a lot without runs and for a missing history.
+pub(super) fn standing(db: &Path, lot: &str) -> Result<Option<LotStatus>, HistoryError> {
+    match db.exists() {
+        true => Archive::open(db)?.standing(lot),
+        false => Ok(None),
+    }
+}
+
 fn check_lot_state(db: &Path, recipe: &Recipe, order: &LotOrder) -> Result<(), AdmissionError> {
-    let standing = match db.exists() {
-        true => Archive::open(db)?.standing(&order.lot)?,
-        false => None,
-    };
     let lot = order.lot.clone();
-    let Some(standing) = standing.map(Box::new) else {
+    let Some(standing) = standing(db, &lot)?.map(Box::new) else {
         return match order.retest {
             Some(_) => Err(AdmissionError::NothingToRetest { lot }),
             None => Ok(()),
@@ -140,11 +144,15 @@ fn check_lot_state(db: &Path, recipe: &Recipe, order: &LotOrder) -> Result<(), A
     };
     match standing.state {
         LotState::Held => Err(AdmissionError::Held { lot, standing }),
-        _ if standing.recipe_hash != recipe.hash => Err(AdmissionError::OtherRecipe {
-            lot,
-            found: format!("{} {}", recipe.name, &recipe.hash[..12]),
-            standing,
-        }),
+        LotState::Open | LotState::Running | LotState::Complete
+            if standing.recipe_hash != recipe.hash =>
+        {
+            Err(AdmissionError::OtherRecipe {
+                lot,
+                found: format!("{} {}", recipe.name, &recipe.hash[..12]),
+                standing,
+            })
+        }
         LotState::Complete if order.retest.is_none() => {
             Err(AdmissionError::Complete { lot, standing })
         }

@@ -3,7 +3,8 @@
 //! The cause of a run travels through these files:
 //!
 //! - chosen in `lot/mod.rs` and `service/mod.rs` (lost history, failed assertion), `lot/progress.rs` (the alarm, or an
-//!   abort), `lib.rs` (the rig refuses the lot before it begins; `admission.rs` makes its row) and `calibration/mod.rs` (reference parts without a calibration);
+//!   order), `lib.rs` (the rig refuses the lot before it begins; `admission.rs` makes its row) and
+//!   `calibration/mod.rs` (reference parts without a calibration);
 //! - made into a row in `lot/journal.rs`;
 //! - written by `history/src/run_end.rs`.
 //!
@@ -79,7 +80,7 @@ impl Cause {
         }
     }
 
-    /// `aborted`: a person ordered the abort while no alarm was active.
+    /// `aborted`: a person ordered the abort or the suspension while no alarm did.
     pub fn aborted() -> Self {
         Self::new("aborted", "an order aborted the run")
     }

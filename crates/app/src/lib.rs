@@ -8,8 +8,8 @@
 //! | [`order`], [`source`] | the lot ordered, and its rig |
 //! | [`admission`] | checks before a lot may run |
 //! | [`lot`] | a run: one stream of events and its subscribers |
+//! | [`real_time`] | the thread of the lines and the cycle |
 //! | [`exit`] | reasons why a run ends |
-//! | [`cycle`] | one turn of the rig: scan, step, clear, apply, record, publish |
 //! | [`service`] | one lot after another, ordered at a page |
 //! | [`calibration`], [`gauge_study`] | runs that measure the rig itself |
 //! | `story` | scripted faults and operator orders on the simulated rig |
@@ -21,7 +21,6 @@ pub mod calibration;
 pub mod collision;
 pub mod controls;
 pub mod copies;
-pub mod cycle;
 pub mod doctor;
 pub mod exit;
 pub mod follower;
@@ -34,6 +33,7 @@ pub mod lot_decision;
 pub mod order;
 pub mod order_queue;
 pub mod progress;
+pub mod real_time;
 pub mod service;
 #[cfg(feature = "sim")]
 pub mod simulated;

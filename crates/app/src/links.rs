@@ -4,25 +4,28 @@ use super::lot::LotContext;
 use super::source::{LinePort, RigSource};
 #[cfg(feature = "sim")]
 use super::{simulated, source::Simulated, truth_file::TruthFile};
-use crate::cycle::LineEnds;
 use anyhow::anyhow;
 use bus::{LineLog, LineSettings, OpenPort, Pace};
 use config::Plant;
+use cycle::LineEnds;
 use machine::rig::wiring::LineId;
 #[cfg(feature = "sim")]
 use rigsim::{SharedRig, pty, wire};
+use tokio::runtime::Handle;
 use tokio::sync::mpsc;
 
 /// How long a measuring line waits for a late reply, ms. The line requests the name of a silent module three times;
-/// with this wait that takes 0.65 s, so the host watchdogs of the line's other modules still receive their heartbeat in time.
+/// with this wait that takes 0.65 s, so the host watchdogs of the line's other modules still receive their heartbeat in
+/// time.
 const LATE_REPLY_MS: u64 = 180;
 
 /// Returns how many EEPROM writes all modules have made so far; `None` on a real rig, whose modules do not count them.
 pub type EepromCount = Box<dyn Fn() -> Option<u64> + Send>;
 
 /// Open lines, ready for the cycle.
-#[derive(Default)]
 pub struct Lines {
+    /// Runs the tasks of the lines.
+    handle: Handle,
     /// Queue ends that the cycle holds, in the order of the wiring.
     pub ends: Vec<LineEnds>,
     /// Trace and health of each line, with its name.
@@ -35,6 +38,18 @@ pub struct Lines {
 }
 
 impl Lines {
+    fn none(handle: &Handle) -> Self {
+        Self {
+            handle: handle.clone(),
+            ends: Vec::new(),
+            logs: Vec::new(),
+            #[cfg(feature = "sim")]
+            rig: None,
+            #[cfg(feature = "sim")]
+            _ptys: None,
+        }
+    }
+
     /// Returns a counter of the simulated modules' EEPROM writes.
     pub fn eeprom_count(&self) -> EepromCount {
         #[cfg(feature = "sim")]
@@ -60,6 +75,14 @@ impl Lines {
                 for crash in rig.crashes() {
                     tracing::error!("bodies touched: {crash}");
                 }
+                let late = rig.late_replies();
+                if late.count > 0 {
+                    let worst_ms = late.worst_us / 1000;
+                    tracing::warn!(
+                        "this computer made {} replies of the simulated rig late, the latest by {worst_ms} ms",
+                        late.count
+                    );
+                }
                 for overdrive in rig.overdrives() {
                     tracing::error!("coil overdriven: {overdrive}");
                 }
@@ -82,7 +105,8 @@ impl Lines {
             .push((settings.name.clone(), settings.log.clone()));
         let (requests, requested) = mpsc::channel(1);
         let (answer, answers) = mpsc::channel(1);
-        tokio::spawn(bus::run_reopening(open, settings, *pace, requested, answer));
+        let serving = bus::run_reopening(open, settings, *pace, requested, answer);
+        self.handle.spawn(serving);
         self.ends.push(LineEnds {
             line,
             requests,
@@ -110,27 +134,32 @@ fn settings(plant: &Plant, line: LineId) -> LineSettings {
     settings
 }
 
-/// Opens every line of the plant.
+/// Opens every line of the plant; `handle` runs their tasks.
 ///
 /// # Errors
 /// Fails when `--line` names a line that the wiring lacks, or when the simulated rig cannot be built.
-pub fn open(context: &LotContext, pace: &Pace) -> anyhow::Result<Lines> {
+pub fn open(context: &LotContext, pace: &Pace, handle: &Handle) -> anyhow::Result<Lines> {
+    let lines = Lines::none(handle);
     match context.source {
-        RigSource::Serial(given) => serial(context.plant, given, pace),
+        RigSource::Serial(given) => serial(lines, context.plant, given, pace),
         #[cfg(feature = "sim")]
         RigSource::Simulated(source) => {
             let rig = match &source.live {
                 Some(live) => live.rig.clone(),
                 None => simulated::build(context.plant, source, context.order)?,
             };
-            simulated_lines(context.plant, source, rig, pace)
+            simulated_lines(lines, context.plant, (source, rig), pace)
         }
     }
 }
 
-fn serial(plant: &Plant, given: &[LinePort], pace: &Pace) -> anyhow::Result<Lines> {
+fn serial(
+    mut lines: Lines,
+    plant: &Plant,
+    given: &[LinePort],
+    pace: &Pace,
+) -> anyhow::Result<Lines> {
     check(plant, given)?;
-    let mut lines = Lines::default();
     for line in plant.wiring.line_ids() {
         let wired = plant.wiring.line(line);
         let other = given.iter().find(|it| it.line == wired.name);
@@ -158,16 +187,15 @@ pub fn check(plant: &Plant, given: &[LinePort]) -> anyhow::Result<()> {
 
 #[cfg(feature = "sim")]
 fn simulated_lines(
+    mut lines: Lines,
     plant: &Plant,
-    source: &Simulated,
-    rig: SharedRig,
+    (source, rig): (&Simulated, SharedRig),
     pace: &Pace,
 ) -> anyhow::Result<Lines> {
     let named = |name: &str| {
         let line = plant.wiring.line_named(name);
         line.ok_or_else(|| anyhow!("line {name} is not wired"))
     };
-    let mut lines = Lines::default();
     if source.pace == super::source::SimulatedPace::Real {
         let ptys = pty::serve(&rig, pty::Rates::Ignored)?;
         for (name, path) in ptys.paths() {

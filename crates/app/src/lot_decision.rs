@@ -1,9 +1,8 @@
-//! Writes a person's decision to hold, release, close or reopen a lot that is not under way; the audit keeps it with the
-//! name, like an order at a screen.
+//! Writes a person's decision to hold, release, close or reopen a lot that is not under way; the audit keeps it with
+//! the name, like an order at a screen.
 
-use history::{
-    Archive, Decision, HistoryError, LotStateRecord, OrderRecord, ReopeningRecord, Row, Store,
-};
+use crate::admission::standing;
+use history::{Decision, HistoryError, LotStateRecord, OrderRecord, ReopeningRecord, Row, Store};
 use machine::view::{By, Order};
 use serde_json::json;
 use std::path::Path;
@@ -12,19 +11,15 @@ use texts::Message;
 /// Writes an order about a lot, and the state that the order gives the lot.
 ///
 /// # Errors
-/// Fails with the refusal for an unknown lot, a state of the lot that forbids the decision, a missing reason, or a history
-/// that cannot be written.
+/// Fails with the refusal for an unknown lot, a state of the lot that forbids the decision, a missing reason, or a
+/// history that cannot be written.
 pub fn write(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<(), Message> {
     let reason = order.reason.as_deref().unwrap_or_default();
     let lot = order.lot.as_deref().unwrap_or_default();
-    decision.reason_refusal(reason).map_or(Ok(()), Err)?;
+    decision.check_reason(reason)?;
     let refused = |code| Message::new("refusal", code);
     let trouble = |error: HistoryError| refused("program_trouble").with("detail", error);
-    let standing = match db.exists() {
-        true => Archive::open(db).and_then(|it| it.standing(lot)),
-        false => Ok(None),
-    };
-    let standing = standing.map_err(trouble)?;
+    let standing = standing(db, lot).map_err(trouble)?;
     let state = standing.ok_or_else(|| refused("no_such_lot").with("lot", lot))?;
     decision.refusal(state.state).map_or(Ok(()), Err)?;
     let rows = [audit(order, by), state_row(order, by, decision)];

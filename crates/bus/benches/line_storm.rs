@@ -20,7 +20,7 @@ const CLASHES: u32 = 4_000_000;
 const LISTS: f64 = 1.0 / 20.0;
 const FORM: InputForm = InputForm::eight(DataFormat::Hex, TypeCode(0x08));
 /// Faults whose damage a host can detect.
-const SEEN: [&str; 5] = ["truncate", "flip", "noise", "garble", "clash"];
+const DETECTABLE: [&str; 5] = ["truncate", "flip", "noise", "garble", "clash"];
 
 fn main() -> ExitCode {
     let words = || std::env::args().skip(1);
@@ -74,7 +74,10 @@ fn print_expected(n: f64, faults: &[&str]) {
     );
     let (_, q) = passing(AnalogIn::ReadAll(FORM), 32);
     let c = chance(faults, "clash");
-    let calm: f64 = SEEN.iter().map(|name| 1.0 - chance(faults, name)).product();
+    let calm: f64 = DETECTABLE
+        .iter()
+        .map(|name| 1.0 - chance(faults, name))
+        .product();
     let in_sight = calm.powi(i32::from(bus::PROBATION_ANSWERS));
     println!("two modules at one address, two characters apart at most:");
     println!(
@@ -95,7 +98,7 @@ fn print_expected(n: f64, faults: &[&str]) {
         ),
     ];
     println!(
-        "  believed if nothing were asked twice n c p                {:.3}",
+        "  believed if no read were repeated   n c p                {:.3}",
         n * c * p
     );
     for (what, times) in rest {

@@ -1,6 +1,6 @@
 //! Bytes of one exchange: writes a request, reads until CR or the deadline, waits for silence.
 
-use super::trace::Direction;
+use super::trace::{Direction, Entry};
 use super::{LineLog, Pace, Port};
 use dcon::{Command, FRAME_LIMIT};
 use std::future::poll_fn;
@@ -294,9 +294,10 @@ impl Exchange<'_> {
     }
 
     fn note(&self, direction: Direction, bytes: &[u8]) {
-        self.log
-            .records()
-            .trace
-            .add(self.pace.now(), direction, bytes);
+        let at = self.pace.now();
+        for piece in bytes.chunks(FRAME_LIMIT) {
+            let entry = Entry::new(at, direction, piece);
+            self.log.write(move |it| it.trace.extend(entry));
+        }
     }
 }

@@ -25,11 +25,27 @@ impl Histogram {
     /// Number of classes: they cover 2^24 us (16 s), and the last one also holds longer latencies.
     const CLASSES: usize = 96;
 
-    pub(super) fn add(&mut self, latency: Span) {
+    /// Counts a latency; below 1 us counts as 1 us.
+    pub fn add(&mut self, latency: Span) {
         let class = (latency.0.max(1) as f64).log2() * 4.0;
         let class = (class as usize).min(Self::CLASSES - 1);
         self.classes[class] = self.classes[class].saturating_add(1);
         self.total += 1;
+    }
+
+    /// Returns the number of latencies counted.
+    pub fn total(&self) -> u64 {
+        self.total
+    }
+
+    /// Returns the number of latencies in the classes up to `edge`, exact for an edge that is a power of two.
+    pub fn count_up_to(&self, edge: Span) -> u64 {
+        let classes = (edge.0.max(1) as f64).log2() * 4.0;
+        let classes = (classes.round() as usize).min(Self::CLASSES);
+        self.classes[..classes]
+            .iter()
+            .map(|it| u64::from(*it))
+            .sum()
     }
 
     /// Returns the upper edge of the class that contains the percentile `share` (0 to 1); `None` when nothing was

@@ -2,6 +2,7 @@
 
 use super::exchange::{Exchange, Frame};
 use super::from_streams;
+use super::log::Records;
 use super::outstanding::OutstandingReplies;
 use super::probation::Probation;
 use super::transaction::{Times, Transaction, Trouble};
@@ -271,11 +272,10 @@ impl Line {
         let taken = attempt.answered_at.since(attempt.requested_at);
         let latency = Span(taken.0.saturating_sub(on_wire.0));
         let reads_reset = matches!(command, Command::Common(_, Common::ReadResetStatus));
-        self.settings
-            .log
-            .records()
-            .health
-            .count(address, reads_reset, &attempt.outcome, latency);
+        let outcome = attempt.outcome.clone();
+        let count =
+            move |it: &mut Records| it.health.count(address, reads_reset, &outcome, latency);
+        self.settings.log.write(count);
     }
 }
 

@@ -1,11 +1,21 @@
 //! Trace and health of a line; the task of the line writes them and others read them.
+//!
+//! The task of the line never waits for a reader: a reader that holds the records may have lost the processor for many
+//! milliseconds, and the modules' replies do not wait.
 
 use super::{Health, Trace};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::fmt;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
-/// A shared handle: all clones refer to the same records. The lock is held for one entry, never across an await.
-#[derive(Debug, Clone, Default)]
-pub struct LineLog(Arc<Mutex<Records>>);
+/// A shared handle: all clones refer to the same records. Only one task writes.
+#[derive(Clone, Default)]
+pub struct LineLog {
+    records: Arc<Mutex<Records>>,
+    /// Changes that found the records locked, oldest first; only the writer locks them.
+    deferred: Arc<Mutex<Vec<Change>>>,
+}
+
+type Change = Box<dyn FnOnce(&mut Records) + Send>;
 
 #[derive(Debug, Default)]
 pub(super) struct Records {
@@ -16,10 +26,14 @@ pub(super) struct Records {
 impl LineLog {
     /// Creates a log whose trace keeps the last `entries` pieces of traffic.
     pub fn with_trace(entries: usize) -> Self {
-        Self(Arc::new(Mutex::new(Records {
+        let records = Records {
             trace: Trace::with_capacity(entries),
             health: Health::default(),
-        })))
+        };
+        Self {
+            records: Arc::new(Mutex::new(records)),
+            deferred: Arc::default(),
+        }
     }
 
     /// Returns a copy of the trace: the last traffic.
@@ -37,8 +51,51 @@ impl LineLog {
         self.records().health.clone()
     }
 
-    pub(super) fn records(&self) -> MutexGuard<'_, Records> {
+    /// Changes the records, or, while a reader holds them, defers the change to the next call.
+    pub(super) fn write(&self, change: impl FnOnce(&mut Records) + Send + 'static) {
+        let mut deferred = self.deferred.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut records = match self.records.try_lock() {
+            Ok(records) => records,
+            Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
+            Err(TryLockError::WouldBlock) => return deferred.push(Box::new(change)),
+        };
+        deferred.drain(..).for_each(|it| it(&mut records));
+        change(&mut records);
+    }
+
+    fn records(&self) -> MutexGuard<'_, Records> {
         // The records are plain counts, which stay valid even if the holder of the lock panicked.
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.records.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl fmt::Debug for LineLog {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let records = &self.records;
+        f.debug_struct("LineLog").field("records", records).finish()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Direction, Entry};
+    use units::RigTime;
+
+    #[test]
+    fn a_reader_delays_no_entry_and_loses_none() {
+        let log = LineLog::with_trace(8);
+        let add = |at| {
+            let entry = Entry::new(RigTime(at), Direction::Sent, b"$01M\r");
+            log.write(move |it| it.trace.extend(entry));
+        };
+        let reader = log.records();
+        add(1);
+        add(2);
+        drop(reader);
+        assert_eq!(log.trace().entries().count(), 0, "deferred");
+        add(3);
+        let times: Vec<u64> = log.trace().entries().map(|it| it.at.0).collect();
+        assert_eq!(times, [1, 2, 3]);
     }
 }

@@ -73,15 +73,14 @@ impl Trace {
         }
     }
 
-    /// Adds bytes; more bytes than a frame has become several entries.
-    pub(super) fn add(&mut self, at: RigTime, direction: Direction, bytes: &[u8]) {
-        for piece in bytes.chunks(FRAME_LIMIT) {
-            self.stamp(direction, piece);
-            if self.ring.len() >= self.capacity {
-                self.ring.pop_front();
-            }
-            self.ring.extend(Entry::new(at, direction, piece));
+    /// Adds an entry, if given, and drops the oldest one when the ring is full.
+    pub(super) fn extend(&mut self, entry: Option<Entry>) {
+        let Some(entry) = entry else { return };
+        self.stamp(entry.direction, entry.bytes());
+        if self.ring.len() >= self.capacity {
+            self.ring.pop_front();
         }
+        self.ring.push_back(entry);
     }
 
     fn stamp(&mut self, direction: Direction, bytes: &[u8]) {

@@ -196,7 +196,7 @@ impl Transaction<'_> {
         Ok(Reply::Sent)
     }
 
-    /// Sends the request, reads the reply, and checks that nothing follows during the rest.
+    /// Sends the request and reads the reply; rejects an answer when bytes arrive during the turnaround after it.
     async fn ask(
         &mut self,
         command: &Command,

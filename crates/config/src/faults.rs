@@ -35,11 +35,11 @@ impl fmt::Display for ConfigFaults {
     }
 }
 
-/// Checks all files of `dir`. A file whose keys are wrong hides what else the plant would refuse in it, and a wrong rig hides
-/// what it cannot perform of a recipe.
+/// Checks all files of `dir`. Values are compared with each other only in a file whose keys are right, and a recipe is
+/// compared with the rig only when the files of the rig are right.
 ///
 /// # Errors
-/// Every fault found.
+/// Fails with every fault found.
 pub fn check_all(dir: &Path) -> Result<Plant, ConfigFaults> {
     let mut found = Found::default();
     for (name, keys) in [

@@ -39,11 +39,11 @@ pub struct Plant {
     pub reference_parts: ReferenceSet,
     /// Gates of a lot: reference checks, reject-rate limit, first articles, wear limits.
     pub lot: LotSettings,
-    /// Patience with a history that cannot be written.
+    /// Time-out of a history that cannot be written.
     pub history: HistorySettings,
 }
 
-/// Patience with a history that cannot be written.
+/// Time-out of a history that cannot be written.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default)]
 pub struct HistorySettings {

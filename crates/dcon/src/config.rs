@@ -81,7 +81,7 @@ impl FormatByte {
         }
     }
 
-    /// Returns true when an analog input converts faster and with fewer bits (bit 5).
+    /// Returns true in fast mode (bit 5): an analog input converts faster, at a lower resolution.
     pub fn fast(self) -> bool {
         self.0 & 0x20 != 0
     }

@@ -29,7 +29,7 @@ pub struct Column {
     of: fn(&Part) -> Cell<'_>,
 }
 
-/// Columns of every part, in order.
+/// Columns that every part has, in order.
 pub const COLUMNS: [Column; 13] = [
     column("time", |it| Cell::Time(it.time)),
     column("lot", |it| text(&it.lot)),

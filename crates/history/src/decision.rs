@@ -63,16 +63,19 @@ impl Decision {
         }
     }
 
-    /// Returns the refusal of a decision with this reason; `None` for one that needs none or has one.
-    pub fn reason_refusal(self, reason: &str) -> Option<Message> {
-        let missing = |code| {
-            let blank = reason.trim().is_empty();
-            blank.then(|| Message::new("refusal", code))
+    /// Checks that a hold or a reopening has a reason.
+    ///
+    /// # Errors
+    /// Fails with the refusal when the reason is blank.
+    pub fn check_reason(self, reason: &str) -> Result<(), Message> {
+        let code = match self {
+            Self::Hold => "hold_without_reason",
+            Self::Reopen => "reopen_without_reason",
+            Self::Release | Self::Close => return Ok(()),
         };
-        match self {
-            Self::Hold => missing("hold_without_reason"),
-            Self::Reopen => missing("reopen_without_reason"),
-            Self::Release | Self::Close => None,
+        match reason.trim().is_empty() {
+            true => Err(Message::new("refusal", code)),
+            false => Ok(()),
         }
     }
 }

@@ -87,6 +87,13 @@ impl Select {
             .query_row(params_from_iter(&self.values), read)
     }
 
+    /// Returns true when the statement gives a row.
+    pub fn exists(&self, connection: &Connection) -> rusqlite::Result<bool> {
+        connection
+            .prepare(&self.sql)?
+            .exists(params_from_iter(&self.values))
+    }
+
     fn add(&mut self, sql: &str, value: impl Into<Value>) {
         self.sql.push_str(sql);
         self.values.push(value.into());
@@ -291,8 +298,7 @@ impl Filter {
         }
     }
 
-    /// Adds the conditions on `part`; with `by_value`, leaves out kind and verdict, which the index has already
-    /// restricted.
+    /// Adds the conditions on `part`; with `by_value`, without kind and verdict, which [`Self::values`] sets.
     fn part_conditions(&self, select: &mut Select, by_value: bool) {
         if !by_value {
             match self.kind.as_deref() {

@@ -7,8 +7,8 @@
 //! | held | no | a failed reference check, the reject-rate limit, a person |
 //! | complete | a retest only, with the same recipe | the count was reached, or a person closed it |
 //!
-//! A lot keeps its recipe for life. A complete lot stays complete, whatever ends a retest or a hold, until a person reopens it
-//! ([`ReopeningRecord`](super::ReopeningRecord)).
+//! A lot keeps its recipe for life. A complete lot stays complete, whatever ends a retest or a hold, until a person
+//! reopens it ([`ReopeningRecord`](super::ReopeningRecord)).
 //!
 //! A part judged after the last passed check and before a failed one is *suspect*. Its row stays unchanged;
 //! [`Filter::suspect`](super::Filter) selects it. On a real rig the checks of all runs count; on the simulated rig only
@@ -130,8 +130,8 @@ pub(super) const SUSPECT: &str = " AND EXISTS (SELECT 1 FROM golden_check AS fai
     AND part.judged_at_us <= failed.at_us \
     AND (own.id = checked.id OR (own.source = 'rig' AND checked.source = 'rig')))";
 
-/// Stores the state of a lot, `complete` instead of `open` for one that was complete; does nothing for a lot without runs.
-/// Returns the number of changed rows.
+/// Stores the state of a lot, `complete` instead of `open` for one that was complete; does nothing for a lot without
+/// runs. Returns the number of changed rows.
 pub(super) fn state(connection: &Connection, record: &LotStateRecord) -> rusqlite::Result<usize> {
     connection.execute(
         "INSERT INTO lot_state (lot_id, state, why, since_us, completed)
@@ -166,8 +166,8 @@ pub(super) fn reference_check(
 }
 
 impl Store {
-    /// Opens the lots whose run was cut off, or completes them again after a retest. The caller has just taken the rig (or the simulated rig), so that none of their
-    /// runs is under way.
+    /// Opens the lots whose run was cut off, or completes them again after a retest. The caller has just taken the real
+    /// or the simulated rig, so none of their runs is under way.
     pub fn cut_off(&mut self, simulated: bool, at_us: i64) -> Result<()> {
         self.connection()
             .execute(

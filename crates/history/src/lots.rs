@@ -2,7 +2,7 @@
 
 use super::error::{Doing, Result};
 use super::{Archive, Filter, Moment};
-use rusqlite::{OptionalExtension, params, params_from_iter};
+use rusqlite::{OptionalExtension, params};
 use serde::Serialize;
 
 /// A run, with counts of its production parts.
@@ -148,10 +148,7 @@ impl Archive {
     /// Returns true when lot, recipe and run of the filter select at least one run.
     pub fn has_runs(&self, filter: &Filter) -> Result<bool> {
         let runs = filter.runs();
-        self.connection
-            .prepare(&runs.sql)
-            .and_then(|mut it| it.exists(params_from_iter(&runs.values)))
-            .doing("looking for a run")
+        runs.exists(&self.connection).doing("looking for a run")
     }
 
     /// Counts the verdicts on production parts that were judged in a time span: `since` included, `until` excluded.

@@ -3,7 +3,7 @@
 use super::error::{Doing, HistoryError, Result};
 use super::store::source;
 use super::{Archive, Filter, Store};
-use rusqlite::{Connection, OptionalExtension, params_from_iter};
+use rusqlite::{Connection, OptionalExtension};
 use std::path::Path;
 
 /// Marks the file as that of a rig of this kind. Fails when it belongs to one of the other kind.
@@ -63,11 +63,9 @@ impl Store {
 impl Archive {
     /// Returns true when one of the selected runs (lot, recipe, run) was on the simulated rig.
     pub fn is_simulated(&self, filter: &Filter) -> Result<bool> {
-        let runs = filter.runs();
-        let sql = format!("{} AND run.source = 'simulated'", runs.sql);
-        self.connection
-            .prepare(&sql)
-            .and_then(|mut it| it.exists(params_from_iter(&runs.values)))
+        let mut runs = filter.runs();
+        runs.sql.push_str(" AND run.source = 'simulated'");
+        runs.exists(&self.connection)
             .doing("looking for simulated runs")
     }
 }

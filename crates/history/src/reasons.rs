@@ -80,7 +80,7 @@ fn limit_reason(text: &str) -> Option<Reason> {
     Reason::stored(code, Characteristic::from_key(key), side, "")
 }
 
-/// Inserts the codes for every part that was recorded before schema 8.
+/// Reads the texts stored before schema 8 and inserts their reason codes, part by part.
 pub(super) fn read_texts(connection: &Connection) -> rusqlite::Result<()> {
     let mut after = 0;
     loop {

@@ -69,6 +69,51 @@ pub struct View {
     pub machine: Machine,
     /// End of the last run of a lot; null before the first.
     pub last_run: Option<RunEnd>,
+    /// What the computer grants the program, and how late it wakes the cycle.
+    pub host: HostView,
+}
+
+/// Real-time rights of the program, and its lateness.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct HostView {
+    /// Priority of the cycle under SCHED_FIFO; null when the system refuses it, or in virtual time.
+    pub fifo_priority: Option<u8>,
+    /// True when the memory of the program is locked.
+    pub memory_locked: bool,
+    /// Reasons of the system for what it refuses; empty without a refusal.
+    pub refused: Vec<String>,
+    /// How late the cycle wakes.
+    pub lateness: LatenessView,
+}
+
+/// Lateness of the waits of a run: from the instant that a wait asks for to the one at which it ends.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct LatenessView {
+    /// Waits counted.
+    pub waits: u64,
+    /// Median, ms, at most 19 % too high.
+    pub p50_ms: f64,
+    /// Lateness that 99 of 100 waits keep, ms, at most 19 % too high.
+    pub p99_ms: f64,
+    /// Lateness that 999 of 1000 waits keep, ms, at most 19 % too high.
+    pub p999_ms: f64,
+    /// Greatest lateness of the run, ms.
+    pub worst_ms: f64,
+    /// Greatest lateness of the last one to two seconds, ms.
+    pub recent_ms: f64,
+    /// Sum over all waits, ms.
+    pub sum_ms: f64,
+    /// Waits by lateness, edges ascending; those beyond the last edge are in none.
+    pub buckets: Vec<Bucket>,
+}
+
+/// Number of waits above the edge before and up to this one.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Bucket {
+    /// Edge, ms.
+    pub up_to_ms: f64,
+    /// Waits in the bucket.
+    pub count: u64,
 }
 
 /// End of a run of a lot.

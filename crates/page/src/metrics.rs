@@ -6,10 +6,10 @@ use super::router::App;
 use axum::extract::State;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::IntoResponse;
-use machine::view::{ModuleView, View};
+use machine::view::{LatenessView, ModuleView, View};
 use prometheus_client::collector::Collector;
 use prometheus_client::encoding::text::encode_registry;
-use prometheus_client::encoding::{DescriptorEncoder, EncodeGaugeValue};
+use prometheus_client::encoding::{DescriptorEncoder, EncodeGaugeValue, NoLabelSet};
 use prometheus_client::metrics::MetricType;
 use prometheus_client::registry::Registry;
 use std::collections::BTreeMap;
@@ -57,7 +57,8 @@ impl Collector for Scrape {
         let lines = self.view.lines.iter();
         let lost = lines.map(|line| ([("line", line.name.as_str())], line.ports_lost));
         let help = "Transactions that found no port.";
-        out.known("relayrig_line_ports_lost", help, lost)
+        out.known("relayrig_line_ports_lost", help, lost)?;
+        out.lateness(&self.view.host.lateness)
     }
 }
 
@@ -192,6 +193,28 @@ impl Figures<'_> {
         figure.encode_gauge(&value)
     }
 
+    /// Writes the lateness of the cycle; nothing in virtual time, which has none.
+    fn lateness(&mut self, it: &LatenessView) -> fmt::Result {
+        if it.waits == 0 {
+            return Ok(());
+        }
+        let (name, help) = (
+            "relayrig_cycle_lateness_seconds",
+            "How late the cycle woke.",
+        );
+        let mut figure = self
+            .0
+            .encode_descriptor(name, help, None, MetricType::Histogram)?;
+        let mut buckets: Vec<(f64, u64)> = it
+            .buckets
+            .iter()
+            .map(|it| (it.up_to_ms / 1e3, it.count))
+            .collect();
+        let counted: u64 = buckets.iter().map(|it| it.1).sum();
+        buckets.push((f64::INFINITY, it.waits - counted));
+        figure.encode_histogram::<NoLabelSet>(it.sum_ms / 1e3, it.waits, &buckets, None)
+    }
+
     /// Writes one row for each set of labels.
     fn each<'a, const N: usize, V: EncodeGaugeValue>(
         &mut self,
@@ -226,6 +249,7 @@ impl Figures<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use machine::view::Bucket;
 
     #[test]
     fn figures_have_a_type_and_unknown_ones_are_absent() {
@@ -243,6 +267,33 @@ mod tests {
         );
         assert!(text.contains("relayrig_up 1\n") && text.contains("relayrig_screens 2\n"));
         assert!(!text.contains("wanted") && !text.contains("per_hour"));
+    }
+
+    #[test]
+    fn lateness_is_a_histogram() {
+        let mut view = View::default();
+        let bucket = |up_to_ms, count| Bucket { up_to_ms, count };
+        view.host.lateness = LatenessView {
+            waits: 10,
+            sum_ms: 5.0,
+            buckets: vec![bucket(0.064, 7), bucket(0.128, 2)],
+            ..LatenessView::default()
+        };
+        let text = text(Scrape {
+            view,
+            alive: true,
+            streams: 0,
+        });
+        let name = "relayrig_cycle_lateness_seconds";
+        for row in [
+            "_sum 0.005",
+            "_count 10",
+            "_bucket{le=\"0.000064\"} 7",
+            "_bucket{le=\"0.000128\"} 9",
+            "_bucket{le=\"+Inf\"} 10",
+        ] {
+            assert!(text.contains(&format!("{name}{row}\n")), "{row}: {text}");
+        }
     }
 
     #[test]

@@ -1,9 +1,11 @@
 //! Gauge repeatability and reproducibility by averages and ranges (AIAG MSA): the method for hand calculation,
 //! which many customers still require beside the analysis of variance.
 //!
-//! `EV = R K1`, `AV = sqrt((Xdiff K2)^2 - EV^2 / (parts trials))`, `PV = Rp K3`. EV, AV and PV are the standard deviations
-//! of repeatability, of operators and of parts. R is the mean range of the trials, Xdiff the range of the operators' means, Rp the range of the parts' means; K1, K2
-//! and K3 are 1 / d2*, which turns a mean range into a standard deviation (Duncan's table). The method has no term for interaction, so interaction adds to the reproducibility.
+//! `EV = R K1`, `AV = sqrt((Xdiff K2)^2 - EV^2 / (parts trials))`, `PV = Rp K3`. EV, AV and PV are the standard
+//! deviations of repeatability, of operators and of parts. R is the mean range of the trials, Xdiff the range of the
+//! operators' means, Rp the range of the parts' means; K1, K2 and K3 are 1 / d2*, which turns a mean range into a
+//! standard deviation (Duncan's table). The method has no term for interaction, so interaction adds to the
+//! reproducibility.
 
 use super::crossing;
 use super::gauge_rr::{GaugeRr, GaugeRrError, Reading, deviations};

@@ -92,8 +92,8 @@ impl Capability {
     }
 }
 
-/// Returns the index towards the nearer limit from percentiles, for values of any distribution. Returns `None` without
-/// a limit, and with fewer than 741 values, whose outer percentiles would have to be extrapolated.
+/// Returns the capability index towards the nearer limit, computed from percentiles and so valid for any distribution.
+/// Returns `None` without a limit, and with fewer than 741 values, whose outer percentiles would have to be extrapolated.
 pub fn by_percentiles(limits: Limits, values: &Ordered) -> Option<f64> {
     if values.len() < ENOUGH_FOR_TAILS {
         return None;

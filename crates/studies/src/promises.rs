@@ -1,9 +1,10 @@
-//! Promises that a rig breaks: whether it notices, and how often the stated uncertainty covers the truth all the same.
+//! Study `promises`: whether a rig notices that it breaks a promise, and how often the stated uncertainty covers the
+//! truth all the same.
 //!
 //! The uncertainty rests on what `rig.toml` and the recipe promise. Each term of [`TERMS`] is a world that breaks one
 //! promise by [`FACTOR`] and keeps the others. A term keeps its bar when the run notices it in enough lots, or when the
-//! uncertainty of every parameter still covers the truth often enough; each of both figures has a bar only where the other
-//! one misses its own. A run has noticed when it raises the alarm of a promise, or when it refuses the calibration. Worlds
+//! uncertainty of every parameter still covers the truth often enough: coverage has no bar where enough lots notice, and
+//! notice has none where only the coverage is enough. A run has noticed when it raises the alarm of a promise, or when it refuses the calibration. Worlds
 //! that keep every promise give the share of lots with a false alarm.
 
 use super::chart::Chart;
@@ -33,51 +34,35 @@ const FALSE_ALARMS_PCT: f64 = 0.5;
 /// Confidence of the upper bound of that share.
 const CONFIDENCE: f64 = 0.95;
 
-/// A promise and the key of the world that breaks it.
-struct Term {
-    /// Dotted path in `rig.toml`; its last key is the name of the term.
-    promised: &'static str,
-    world: &'static str,
-}
-
-/// Every promise of `rig.toml` that a world can break by more scatter or a wider tolerance.
-const TERMS: [Term; 12] = [
-    Term::new("accuracy.ai_noise_lsb", "devices.ai_noise_lsb"),
-    Term::new(
+/// Every promise of `rig.toml` that a world can break by more scatter or a wider tolerance: dotted path in `rig.toml`,
+/// whose last key is the name of the term, and key of the world.
+const TERMS: [(&str, &str); 12] = [
+    ("accuracy.ai_noise_lsb", "devices.ai_noise_lsb"),
+    (
         "accuracy.operation_scatter_mv",
         "lot.threshold_scatter_sd_mv",
     ),
-    Term::new(
+    (
         "accuracy.part_minus_track_k",
         "environment.part_minus_track_sd_k",
     ),
-    Term::new("accuracy.rtd_k", "environment.rtd_error_sd_k"),
-    Term::new("accuracy.ai_gain_pct", "devices.ai_gain_pct"),
-    Term::new(
+    ("accuracy.rtd_k", "environment.rtd_error_sd_k"),
+    ("accuracy.ai_gain_pct", "devices.ai_gain_pct"),
+    (
         "accuracy.ai_offset_pct_of_range",
         "devices.ai_offset_pct_of_range",
     ),
-    Term::new("accuracy.ao_gain_pct", "devices.ao_gain_pct"),
-    Term::new("accuracy.ao_offset_mv", "devices.ao_offset_mv"),
-    Term::new("accuracy.ao_slope_pct", "devices.ao_slope_pct"),
-    Term::new("accuracy.ao_refresh_ms", "devices.ao_refresh_ms"),
-    Term::new("accuracy.gate_delay_us", "board.gate_delay_us"),
-    Term::new("reference.counter_clock_tolerance_ppm", "devices.clock_ppm"),
+    ("accuracy.ao_gain_pct", "devices.ao_gain_pct"),
+    ("accuracy.ao_offset_mv", "devices.ao_offset_mv"),
+    ("accuracy.ao_slope_pct", "devices.ao_slope_pct"),
+    ("accuracy.ao_refresh_ms", "devices.ao_refresh_ms"),
+    ("accuracy.gate_delay_us", "board.gate_delay_us"),
+    ("reference.counter_clock_tolerance_ppm", "devices.clock_ppm"),
 ];
 
-/// The scatter of closures stands in the recipe, percent; a world states it as a share.
+/// Name of the term for the scatter of closures, which the recipe states in percent, and the key of the world, which
+/// states it as a share.
 const CLOSURES: (&str, &str) = ("closure_scatter_pct", "lot.closure_ln_sd");
-
-impl Term {
-    const fn new(promised: &'static str, world: &'static str) -> Self {
-        Self { promised, world }
-    }
-
-    fn name(&self) -> &'static str {
-        let last = self.promised.rsplit_once('.');
-        last.map_or(self.promised, |(_, key)| key)
-    }
-}
 
 /// A world that breaks a promise, and its lots.
 struct BrokenWorld {
@@ -88,7 +73,7 @@ struct BrokenWorld {
 /// Runs the lots of all worlds and makes the report.
 ///
 /// # Errors
-/// A promise that `rig.toml` does not state, an unknown `--term`, or a lot that did not run.
+/// Fails when `rig.toml` lacks a promise, when `--term` is unknown, or when a lot cannot be run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let mut worlds = Vec::new();
     for (name, key, value) in changes(order)? {
@@ -120,9 +105,10 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
 fn changes(order: &Order) -> anyhow::Result<Vec<(&'static str, &'static str, f64)>> {
     let rig = table(&order.config.join("rig.toml"))?;
     let mut all = Vec::new();
-    for term in &TERMS {
-        let promised = number(&rig, term.promised).context(term.promised)?;
-        all.push((term.name(), term.world, FACTOR * promised));
+    for (path, world) in TERMS {
+        let promised = number(&rig, path).context(path)?;
+        let name = path.rsplit_once('.').map_or(path, |(_, key)| key);
+        all.push((name, world, FACTOR * promised));
     }
     all.extend(closures(order));
     if let Some(wanted) = &order.term {
@@ -190,7 +176,10 @@ impl BrokenWorld {
 
     /// Names the parameter with the least coverage, and the alarms by promise.
     fn note(&self) -> String {
-        let least = self.least_covered().0.map_or("nothing", Parameter::name);
+        let least = self
+            .least_covered()
+            .0
+            .map_or("no parameter", Parameter::name);
         format!(
             "{}: covers {least} least; {}",
             self.name,
@@ -256,7 +245,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_false_alarm_in_600_lots_bounds_it_to_half_a_percent() {
+    fn upper_bound_of_no_alarm_in_600_lots() {
         assert!((upper_bound(0, 600) - 0.00498).abs() < 1e-4);
         assert!((upper_bound(1, 600) - 0.00788).abs() < 1e-4);
         assert_eq!(upper_bound(3, 3), 1.0);

@@ -176,7 +176,7 @@ fn set(table: &mut Table, path: &str, value: Value) -> anyhow::Result<()> {
 /// Reads a TOML file.
 ///
 /// # Errors
-/// A file that cannot be read, or that is not TOML.
+/// Fails when the file cannot be read, or is not TOML.
 pub fn table(path: &Path) -> anyhow::Result<Table> {
     let named = || path.display().to_string();
     let text = std::fs::read_to_string(path).with_context(named)?;

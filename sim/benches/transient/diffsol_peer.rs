@@ -4,7 +4,7 @@ use super::{END_S, NoContactTimes, VOLTS};
 use diffsol::{
     DiffsolError, NalgebraMat, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason, Op,
 };
-use rigsim::world::relay::lumped::{Drive, Kind, Model, State};
+use rigsim::world::relay::lumped::{Drive, Element, Model, State};
 use std::cell::Cell;
 
 /// Index of NO among the roots.
@@ -35,7 +35,7 @@ pub fn tsit45(model: &Model, rtol: f64) -> Result<NoContactTimes, DiffsolError> 
         .root(
             |s, _, _, gaps| {
                 let s = state(s);
-                for (gap, kind) in gaps.iter_mut().zip(Kind::TOUCHING) {
+                for (gap, kind) in gaps.iter_mut().zip(Element::TOUCHING) {
                     *gap = model.stops.overlap(kind, &s);
                 }
             },

@@ -8,7 +8,7 @@
 mod diffsol_peer;
 mod fixed_steps;
 
-use rigsim::world::relay::lumped::{Excitation, Kind, Model, Outcome, Parameters, Waveform};
+use rigsim::world::relay::lumped::{Element, Excitation, Model, Outcome, Parameters, Waveform};
 use std::time::Instant;
 
 /// Length of the transient, s.
@@ -80,7 +80,7 @@ fn own(model: &Model, rtol: f64) -> NoContactTimes {
             NoContactTimes {
                 make_s: seen.no_first_make.unwrap_or(f64::NAN),
                 last_s: seen.no_last_change.unwrap_or(f64::NAN),
-                events: run.events.iter().filter(|e| e.kind == Kind::No).count(),
+                events: run.events.iter().filter(|e| e.kind == Element::No).count(),
                 evaluations: run.evaluations,
             }
         }

@@ -8,6 +8,11 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use thread_priority::{
+    RealtimeThreadSchedulePolicy, ScheduleParams, ThreadPriority, ThreadSchedulePolicy,
+    set_thread_priority_and_policy, thread_native_id,
+};
+
 use super::socket::Socket;
 use super::tty::Tty;
 use crate::SharedRig;
@@ -20,6 +25,12 @@ const IDLE: Duration = Duration::from_millis(50);
 /// Time by which the thread wakes before a deadline: a sleep ends some 60 us late, so the thread yields until the
 /// deadline.
 const EARLY: Duration = Duration::from_micros(120);
+
+/// Lateness of a reply from which on the journal has it, microseconds: two characters at 19,200 baud.
+const LATE_US: u64 = 1_000;
+
+/// Priority of the threads under SCHED_FIFO: below a controller on the same computer, above every usual process.
+const PRIORITY: i32 = 40;
 
 /// Bytes of one read, with the instant of the read.
 type Piece = (Instant, Vec<u8>);
@@ -53,7 +64,10 @@ impl Reader {
         let (reading, ended) = (master.try_clone()?, Arc::clone(&end));
         let thread = std::thread::Builder::new()
             .name("line reader".into())
-            .spawn(move || read(reading, &sender, &ended))?;
+            .spawn(move || {
+                raise();
+                read(reading, &sender, &ended);
+            })?;
         Ok(Self {
             thread,
             pieces,
@@ -82,9 +96,20 @@ fn read(mut master: File, pieces: &Sender<Piece>, end: &AtomicBool) {
     }
 }
 
+/// Raises this thread to SCHED_FIFO where the system grants it. Where it does not, a busy computer may make replies
+/// late; the journal then has them.
+fn raise() {
+    let priority = ThreadPriority::from_posix(ScheduleParams {
+        sched_priority: PRIORITY,
+    });
+    let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
+    let _ = set_thread_priority_and_policy(thread_native_id(), priority, policy);
+}
+
 impl Server {
     /// Serves until `stop` is set; opens a new terminal when a lost port comes back.
     pub(super) fn serve(mut self, mut master: File) {
+        raise();
         loop {
             // An I/O error of the terminal counts as a lost port.
             let _ = self.converse(master);
@@ -207,7 +232,12 @@ impl Server {
             self.replies.extend(reply);
         }
         while let Some(place) = self.replies.iter().position(|reply| reply.at_us <= now_us) {
-            master.write_all(&self.replies.remove(place).bytes)?;
+            let reply = self.replies.remove(place);
+            master.write_all(&reply.bytes)?;
+            let late_us = self.rig_us(Instant::now()) - reply.at_us;
+            if late_us > LATE_US {
+                self.rig.record_late(self.number, reply.at_us, late_us);
+            }
         }
         if self.arrivals.is_empty() && self.replies.is_empty() {
             self.rig.advance(now_us);

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 /// Meaning of a fault's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum FaultKind {
     /// Start in seconds of rig time; the fault ends by itself.
     Timed,
     /// Number of a lot part in the order of leaving the magazine, from 1; the fault strikes once.
@@ -31,8 +31,8 @@ macro_rules! faults {
             }
 
             /// Returns the meaning of the fault's value.
-            pub fn kind(self) -> Kind {
-                match self { $($(Fault::$name => Kind::$kind,)*)* }
+            pub fn kind(self) -> FaultKind {
+                match self { $($(Fault::$name => FaultKind::$kind,)*)* }
             }
         }
     };
@@ -94,7 +94,7 @@ impl WorldFaults {
     /// Returns the timed faults with their start in seconds.
     pub fn timed(&self) -> impl Iterator<Item = (Fault, f64)> + '_ {
         let asked = self.0.iter().copied();
-        asked.filter(|(fault, _)| fault.kind() == Kind::Timed)
+        asked.filter(|(fault, _)| fault.kind() == FaultKind::Timed)
     }
 
     /// Adds a fault that strikes at a part.

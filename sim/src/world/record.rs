@@ -1,7 +1,7 @@
 //! Implements the record of the world: facts that no module reports, and faults that begin at run time.
 
 use super::World;
-use super::fault::{Fault, Kind};
+use super::fault::{Fault, FaultKind};
 use super::magazine::Magazine;
 use crate::config::read_world;
 use crate::error::SimError;
@@ -47,11 +47,13 @@ impl WorldRecord for World {
             expected: expected.into(),
         };
         match (fault.kind(), value) {
-            (Kind::Timed, None) => self.mechanism.inject(fault, self.now_us),
-            (Kind::Timed, Some(_)) => return Err(wrong("no value, since the fault strikes now")),
-            (Kind::OfPart, Some(part)) => self.mechanism.add_part_fault(fault, part),
-            (Kind::OfPart, None) => return Err(wrong("the number of a part")),
-            (Kind::OfStart, _) => {
+            (FaultKind::Timed, None) => self.mechanism.inject(fault, self.now_us),
+            (FaultKind::Timed, Some(_)) => {
+                return Err(wrong("no value, since the fault strikes now"));
+            }
+            (FaultKind::OfPart, Some(part)) => self.mechanism.add_part_fault(fault, part),
+            (FaultKind::OfPart, None) => return Err(wrong("the number of a part")),
+            (FaultKind::OfStart, _) => {
                 return Err(wrong(
                     "a fault that a running rig accepts; this one applies only to the start",
                 ));

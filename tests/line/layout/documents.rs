@@ -241,8 +241,8 @@ fn a_path_in_a_document_is_taken_apart() {
     );
     assert_eq!(paths("config/recipes/NAME.toml"), ["config/recipes"]);
     assert_eq!(
-        paths("crates/app/src/cycle.rs:12"),
-        ["crates/app/src/cycle.rs"]
+        paths("crates/cycle/src/lib.rs:12"),
+        ["crates/cycle/src/lib.rs"]
     );
     assert!(paths("cargo run").is_empty());
 }

@@ -31,6 +31,25 @@ const PURE: &[(&str, &[&str])] = &[
     ),
 ];
 
+/// Crates of the real-time thread, with their allowed dependencies: no file, page, log or database can delay the rig.
+const REAL_TIME: &[(&str, &[&str])] = &[
+    (
+        "bus",
+        &[
+            "dcon",
+            "rustix",
+            "thiserror",
+            "tokio",
+            "tokio-serial",
+            "units",
+        ],
+    ),
+    (
+        "cycle",
+        &["bus", "dcon", "jiff", "machine", "texts", "tokio", "units"],
+    ),
+];
+
 /// Modules of `machine` with their allowed imports.
 const MACHINE: &[(&str, &[&str])] = &[
     ("form", &[]),
@@ -50,16 +69,25 @@ const MACHINE: &[(&str, &[&str])] = &[
 
 #[test]
 fn a_pure_crate_depends_only_on_pure_crates() {
+    assert_dependencies(PURE, "is pure");
+}
+
+#[test]
+fn nothing_that_blocks_reaches_the_real_time_thread() {
+    assert_dependencies(REAL_TIME, "runs on the real-time thread");
+}
+
+fn assert_dependencies(table: &[(&str, &[&str])], why: &str) {
     let manifests = files(&["crates"]);
     let mut broken = Vec::new();
-    for (name, allowed) in PURE {
+    for (name, allowed) in table {
         let path = format!("crates/{name}/Cargo.toml");
         let manifest = manifests.iter().find(|it| it.path == path);
         let manifest = manifest.unwrap_or_else(|| panic!("{path} is missing"));
         for found in dependencies(&manifest.text) {
             if !allowed.contains(&found.as_str()) {
                 broken.push(format!(
-                    "{path}: `{name}` is pure and must not need `{found}`"
+                    "{path}: `{name}` {why} and must not need `{found}`"
                 ));
             }
         }

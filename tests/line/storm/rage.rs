@@ -7,7 +7,7 @@
 //!   between request and answer (else *stale*; analog inputs: within the age of a free-running conversion);
 //! - an accepted write must have been carried out (else *hollow*);
 //! - a failure must name line, address and command (else *nameless*);
-//! - every request must be answered within [`PATIENCE`] of rig time (else it *hangs*).
+//! - every request must be answered within [`ANSWER_TIMEOUT`] of rig time (else it *hangs*).
 
 use bus::{Answer, LineError, LineSettings, Pace, Request};
 use dcon::{
@@ -45,7 +45,7 @@ const GRACE_MS: u64 = 200;
 
 /// Longest time until an answer, of rig time: two tries, each with time-out, noisy silence and a lost port. One
 /// microsecond of the rig is a millisecond of the runtime.
-const PATIENCE: Duration = Duration::from_millis(5_000_000);
+const ANSWER_TIMEOUT: Duration = Duration::from_millis(5_000_000);
 
 /// Age of a reading of a free-running converter, microseconds: eight windows of 1/60 s, three of 1/15 s, two steps.
 const CONVERSION_US: u64 = 250_000;
@@ -140,7 +140,7 @@ pub async fn storm(seed: u64, transactions: u64, faults: &[&str]) -> Weather {
             tries: 2,
         };
         ask.send(request).await.expect("the line listens");
-        let Ok(answer) = tokio::time::timeout(PATIENCE, answers.recv()).await else {
+        let Ok(answer) = tokio::time::timeout(ANSWER_TIMEOUT, answers.recv()).await else {
             weather.hangs += 1;
             break;
         };

@@ -52,18 +52,16 @@ impl fmt::Display for FactorComparison {
 /// Pairs the factors of both calibrations by name; leaves out a factor that one of the calibrations lacks.
 pub fn compare(found: &Calibration, expected: &Calibration) -> Vec<FactorComparison> {
     let expected = expected.facts().factors;
-    let of_both = |found: Named| {
-        let mut named = expected.iter().filter(|it| it.name == found.name);
-        named.next().map(|expected| (found, *expected))
-    };
-    let pairs = found.facts().factors.into_iter().filter_map(of_both);
-    pairs
-        .map(|(found, expected)| FactorComparison {
+    let compared = |found: Named| {
+        let expected = expected.iter().find(|it| it.name == found.name)?;
+        Some(FactorComparison {
             name: found.name,
             unit: found.unit,
             found: found.factor.value,
             expected: expected.factor.value,
             expanded_u: K_JOINT * found.factor.u.hypot(expected.factor.u),
         })
-        .collect()
+    };
+    let found = found.facts().factors.into_iter();
+    found.filter_map(compared).collect()
 }

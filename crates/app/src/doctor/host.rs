@@ -1,17 +1,14 @@
 //! Checks of the computer: clock, and the rights to run before other programs and to stay in memory.
 
 use super::finding::{Check, Finding, Subject};
+use crate::real_time::PRIORITY;
 use std::fs;
 use std::process::Command;
 
 /// Name of the service in systemd.
 const SERVICE: &str = "relayrig.service";
-/// Number of the capability `CAP_IPC_LOCK`.
-const IPC_LOCK: u32 = 14;
 /// Number of the capability `CAP_SYS_NICE`.
 const SYS_NICE: u32 = 23;
-/// Least memory that the program may keep locked, bytes; it uses a fraction of it.
-const LOCKED: u64 = 1 << 30;
 
 /// Checks that a time service keeps the wall clock.
 pub(super) fn check_clock() -> Finding {
@@ -39,7 +36,7 @@ struct Privileges {
     of: &'static str,
     /// Highest real-time priority, 0 for none.
     priority: u64,
-    /// Most memory that may be locked, bytes.
+    /// Most memory that may be locked, bytes; the program locks none below a limit.
     locked: u64,
 }
 
@@ -54,27 +51,23 @@ pub(super) fn check_privileges() -> Vec<Finding> {
 impl Privileges {
     fn findings(&self) -> [Finding; 2] {
         let subject = |check, expected: &str| Subject::new(check, self.of, expected);
-        let real_time = subject(Check::RealTime, "priority 1 or more");
-        let memory = subject(Check::LockedMemory, "1 GiB or more");
-        let remedy =
-            "start the rig as the service, or give it CAP_SYS_NICE, LimitRTPRIO and LimitMEMLOCK";
-        let locked = match self.locked {
-            u64::MAX => "no limit".to_owned(),
-            bytes => format!("{} KiB", bytes >> 10),
-        };
+        let least = u64::from(PRIORITY);
+        let real_time = subject(Check::RealTime, &format!("priority {least} or more"));
+        let memory = subject(Check::LockedMemory, "no limit");
+        let remedy = "start the rig as the service, or give it CAP_SYS_NICE, LimitRTPRIO and LimitMEMLOCK=infinity";
         [
-            match self.priority {
-                0 => real_time.warning("no right", remedy),
-                priority => real_time.ok(format!("priority up to {priority}")),
+            match self.priority < least {
+                true => real_time.warning(format!("priority up to {}", self.priority), remedy),
+                false => real_time.ok(format!("priority up to {}", self.priority)),
             },
-            match self.locked < LOCKED {
-                true => memory.warning(locked, remedy),
-                false => memory.ok(locked),
+            match self.locked {
+                u64::MAX => memory.ok("no limit"),
+                bytes => memory.warning(format!("a limit of {} kB", bytes >> 10), remedy),
             },
         ]
     }
 
-    /// Returns rights from limits and capabilities; each capability lifts a limit.
+    /// Returns rights from limits and whether a capability, or being root, lifts each of them.
     fn new(of: &'static str, limits: [Option<u64>; 2], lifted: [bool; 2]) -> Self {
         let [priority, locked] = limits.map(Option::unwrap_or_default);
         Self {
@@ -101,7 +94,7 @@ fn parse_service(text: &str) -> Option<Privileges> {
     }
     let limits = ["LimitRTPRIO", "LimitMEMLOCK"].map(|key| value(key).and_then(limit));
     let given = value("AmbientCapabilities").unwrap_or_default();
-    let lifted = ["cap_sys_nice", "cap_ipc_lock"].map(|name| given.contains(name));
+    let lifted = [given.contains("cap_sys_nice"), false];
     Some(Privileges::new(SERVICE, limits, lifted))
 }
 
@@ -117,12 +110,11 @@ fn parse_process(limits: &str, status: &str) -> Option<Privileges> {
         let line = limits.lines().find_map(|line| line.strip_prefix(name))?;
         limit(line.split_whitespace().next()?)
     };
-    let effective = status
-        .lines()
-        .find_map(|line| line.strip_prefix("CapEff:"))?;
-    let effective = u64::from_str_radix(effective.trim(), 16).ok()?;
+    let value = |name: &str| status.lines().find_map(|line| line.strip_prefix(name));
+    let effective = u64::from_str_radix(value("CapEff:")?.trim(), 16).ok()?;
+    let is_root = value("Uid:")?.split_whitespace().nth(1) == Some("0");
     let limits = ["Max realtime priority", "Max locked memory"].map(soft);
-    let lifted = [SYS_NICE, IPC_LOCK].map(|bit| effective & (1 << bit) != 0);
+    let lifted = [effective & (1 << SYS_NICE) != 0, is_root];
     Some(Privileges::new("this process", limits, lifted))
 }
 
@@ -153,10 +145,12 @@ mod tests {
         let limits = "Limit                     Soft Limit           Hard Limit           Units\n\
                       Max locked memory         8388608              8388608              bytes\n\
                       Max realtime priority     0                    0                    \n";
-        let found = parse_process(limits, "CapEff:\t0000000000000000\n").unwrap();
+        let user = "Uid:\t101\t101\t101\t101\nCapEff:\t0000000000000000\n";
+        let found = parse_process(limits, user).unwrap();
         assert_eq!((found.priority, found.locked), (0, 8_388_608));
         assert_eq!(found.findings().map(|it| it.health), [Health::Warning; 2]);
-        let root = parse_process(limits, "CapEff:\t0000000000804000\n").unwrap();
+        let root = "Uid:\t0\t0\t0\t0\nCapEff:\t0000000000800000\n";
+        let root = parse_process(limits, root).unwrap();
         assert_eq!((root.priority, root.locked), (99, u64::MAX));
     }
 }

@@ -2,10 +2,10 @@
 
 use super::LotContext;
 use super::prior_state::PriorState;
-use crate::cycle::{Cycle, CycleLinks, LineEnds};
 use anyhow::Context;
 use bus::Pace;
 use config::Plant;
+use cycle::{Cycle, CycleLinks, LineEnds};
 use history::UnacknowledgedAlarm;
 use machine::dut::Recipe;
 use machine::dut::device::Rig;

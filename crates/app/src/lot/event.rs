@@ -2,7 +2,7 @@
 
 use super::progress::{LotProgress, PartUnderWay};
 use super::summary::Summary;
-use crate::cycle::Event;
+use cycle::Event;
 use machine::dut::Calibration;
 use machine::handling::output::Landed;
 use std::path::PathBuf;

@@ -36,13 +36,14 @@ use super::controls::Controls;
 use super::exit::{Cause, Exit};
 use super::links;
 use super::order_queue::OrderQueue;
+use super::real_time::RigThread;
 use super::source::RigSource;
 use super::traces::Traces;
-use crate::cycle::{CycleLinks, Event, Profile};
 use bus::{LineLog, Pace};
+use cycle::{CycleLinks, Ended, Event};
 use history::HistoryError;
-use machine::station::turn::{Ending, HistoryState};
-pub(crate) use outage::Patience;
+use machine::station::turn::HistoryState;
+pub(crate) use outage::HistoryRetry;
 use outage::{Outage, history_lost};
 use recorder::Recorder;
 use screen::Screen;
@@ -75,7 +76,11 @@ impl LotRunner<'_> {
         let pace = pace_of(context.source);
         let speed = context.source.speed();
         let limiter = speed.map(|speed| tokio::spawn(pace.limit_speed(speed)));
-        let mut lines = links::open(context, &pace)?;
+        let thread = RigThread::start(pace)?;
+        controls
+            .view
+            .send_modify(|view| view.host = thread.rights.clone());
+        let mut lines = links::open(context, &pace, &thread.handle)?;
         let traces = Traces::new(self.db, context.plant, &lines.logs);
         controls.show_traffic(&traces);
         let (recorder, prior_state) = Recorder::open(self.db, context)?;
@@ -90,7 +95,7 @@ impl LotRunner<'_> {
             traces,
             outer,
             history,
-            patience: Patience {
+            retry: HistoryRetry {
                 db: self.db,
                 controls,
                 pace,
@@ -100,6 +105,8 @@ impl LotRunner<'_> {
         stream.tell(&LotEvent::Begun)?;
         let (events, received) = mpsc::unbounded_channel::<Event>();
         let recorded = Arc::new(AtomicU64::new(0));
+        let (snapshots, showing) = cycle::snapshots(controls.view.clone());
+        let showing = tokio::spawn(showing);
         let links = CycleLinks {
             events,
             recorded: Arc::clone(&recorded),
@@ -108,22 +115,24 @@ impl LotRunner<'_> {
             orders: orders.orders,
             epoch_us: context.epoch_us,
             history: history_seen,
-            view: controls.view.clone(),
+            snapshots,
         };
         let ends = std::mem::take(&mut lines.ends);
         let attended = controls.attended;
         let cycle = assemble::cycle(context, prior_state, pace, ends, links, attended)?;
-        let running = tokio::spawn(cycle.run());
+        let running = thread.handle.spawn(cycle.run());
         let kept = stream.keep(received, &recorded).await;
         if let Err(error) = &kept {
             stream.give_up(error);
         }
         let ended = running.await;
+        // The cycle has dropped its end, so that the last snapshot comes before the end of the run.
+        showing.await?;
         if let Some(limiter) = limiter {
             limiter.abort();
         }
         let exit = match (&ended, &kept) {
-            (Ok((ending, _)), Ok(())) => stream.lot.exit(ending),
+            (Ok(ended), Ok(())) => stream.lot.exit(&ended.ending),
             (Ok(_), Err(error)) => lost(error),
             (Err(_), _) => {
                 let cause = Cause::assertion();
@@ -131,8 +140,8 @@ impl LotRunner<'_> {
                 Exit::Trouble(cause)
             }
         };
-        let (ending, profile) = ended.unwrap_or((Ending::Alarm, Profile::default()));
-        let closed = stream.close(&ending, &exit, &profile, &lines.logs).await;
+        let ended = ended.unwrap_or_else(|_| Ended::by_assertion());
+        let closed = stream.close(&ended, &exit, &lines.logs).await;
         lines.finish(context.source)?;
         // A failed assertion outranks a failed close.
         Ok(match closed {
@@ -165,7 +174,7 @@ struct Stream<'a, 'b> {
     outer: &'b mut dyn Subscriber,
     /// Tells the cycle whether rows are written.
     history: watch::Sender<HistoryState>,
-    patience: Patience<'a>,
+    retry: HistoryRetry<'a>,
 }
 
 impl Stream<'_, '_> {
@@ -175,8 +184,8 @@ impl Stream<'_, '_> {
         self.recorder.receive(event, &self.lot)
     }
 
-    /// Receives the events of the cycle until it ends; sets `recorded` to the last durable part. Rows that an outage leaves
-    /// pending are for [`Stream::close`].
+    /// Receives the events of the cycle until it ends; sets `recorded` to the last durable part. [`Stream::close`]
+    /// writes the rows that an outage leaves pending.
     ///
     /// # Errors
     /// Fails when an event has no rows.
@@ -185,7 +194,7 @@ impl Stream<'_, '_> {
         mut events: mpsc::UnboundedReceiver<Event>,
         recorded: &AtomicU64,
     ) -> anyhow::Result<()> {
-        let pace = self.patience.pace;
+        let pace = self.retry.pace;
         let mut batch = Vec::new();
         let mut outage: Option<Outage> = None;
         loop {
@@ -222,26 +231,25 @@ impl Stream<'_, '_> {
 
     /// Tells the cycle that rows are pending.
     fn unwritten(&mut self, outage: &mut Option<Outage>, error: &anyhow::Error) {
-        let (now, give_up_s) = (self.patience.pace.now(), self.patience.give_up_s);
+        let (now, give_up_s) = (self.retry.pace.now(), self.retry.give_up_s);
         if outage.is_none() {
             tracing::error!("history: {error:#}; trying again for {give_up_s} s");
         }
-        let outage = outage.get_or_insert_with(|| Outage::begin(now));
-        outage.failed(now);
+        let outage = Outage::note(outage, now);
         if outage.is_too_long(now, give_up_s) || !error.is::<HistoryError>() {
             return self.give_up(error);
         }
         self.history
-            .send_replace(match self.patience.controls.attended {
-                true => HistoryState::Lost(history_lost(self.patience.db, error)),
+            .send_replace(match self.retry.controls.attended {
+                true => HistoryState::Lost(history_lost(self.retry.db, error)),
                 false => HistoryState::Waiting,
             });
     }
 
     /// Ends the run because rows cannot be written.
     fn give_up(&mut self, error: &anyhow::Error) {
-        self.patience.give_up_s = 0.0;
-        let alarm = history_lost(self.patience.db, error);
+        self.retry.give_up_s = 0.0;
+        let alarm = history_lost(self.retry.db, error);
         self.history.send_replace(HistoryState::GivenUp(alarm));
     }
 
@@ -268,26 +276,18 @@ impl Stream<'_, '_> {
     /// Fails when the history cannot be written for too long; the run then stays open in it.
     async fn close(
         &mut self,
-        ending: &Ending,
+        ended: &Ended,
         exit: &Exit,
-        profile: &Profile,
         logs: &[(String, LineLog)],
     ) -> anyhow::Result<()> {
         for left_behind in self.lot.take_unlanded() {
             self.tell(&left_behind)?;
         }
         let writing = self.recorder.writing;
-        let summary = self
-            .lot
-            .summary(ending, exit.cause(), profile, writing, logs);
+        let summary = self.lot.summary(ended, exit.cause(), writing, logs);
         self.tell(&LotEvent::Ended(Box::new(summary)))?;
-        self.recorder.end(ending, exit, &self.lot);
+        self.recorder.end(&ended.ending, exit, &self.lot);
         let (recorder, lot) = (&mut self.recorder, &self.lot);
-        self.patience
-            .until_written(async || recorder.close(lot))
-            .await
+        self.retry.until_written(async || recorder.close(lot)).await
     }
 }
-
-#[cfg(all(test, feature = "sim"))]
-mod outage_tests;

@@ -1,8 +1,8 @@
 //! Time during which the history cannot be written: when to try again, and when to give up.
 
 use crate::controls::Controls;
-use crate::cycle::alarm_line;
 use bus::Pace;
+use cycle::alarm_line;
 use history::HistoryError;
 use machine::station::annunciator::Annunciator;
 use machine::station::trouble::Alarm;
@@ -17,30 +17,27 @@ const RETRY: Span = Span::ms(1000);
 #[derive(Debug)]
 pub(super) struct Outage {
     began: RigTime,
-    /// Begin by the wall clock: virtual time stands still while a try waits for a lock.
+    /// Start by the wall clock: virtual time does not pass while a try waits for a lock.
     began_wall: Instant,
     retry_at: RigTime,
 }
 
 impl Outage {
-    /// Begins with a failed try at `now`.
-    pub fn begin(now: RigTime) -> Self {
-        Self {
+    /// Notes a failed try at `now`; the first one begins the outage.
+    pub fn note(outage: &mut Option<Self>, now: RigTime) -> &Self {
+        let outage = outage.get_or_insert_with(|| Self {
             began: now,
             began_wall: Instant::now(),
-            retry_at: now + RETRY,
-        }
+            retry_at: now,
+        });
+        assert!(now >= outage.began, "a try before the outage");
+        outage.retry_at = now + RETRY;
+        outage
     }
 
     /// Returns the time of the next try.
     pub fn retry_at(&self) -> RigTime {
         self.retry_at
-    }
-
-    /// Notes another failed try.
-    pub fn failed(&mut self, now: RigTime) {
-        assert!(now >= self.began, "a try before the outage");
-        self.retry_at = now + RETRY;
     }
 
     /// Returns true once the outage has lasted for `give_up_s`, by the clock of the rig or of the wall.
@@ -50,9 +47,9 @@ impl Outage {
     }
 }
 
-/// Patience with writes while no cycle turns.
+/// Repeats writes of the history that fail while no cycle turns.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Patience<'a> {
+pub(crate) struct HistoryRetry<'a> {
     /// History file.
     pub db: &'a Path,
     /// Flags and view of the program.
@@ -63,7 +60,7 @@ pub(crate) struct Patience<'a> {
     pub give_up_s: f64,
 }
 
-impl Patience<'_> {
+impl HistoryRetry<'_> {
     /// Repeats `write` while the history fails it, and shows the alarm at the page meanwhile.
     ///
     /// # Errors
@@ -84,8 +81,7 @@ impl Patience<'_> {
                 Err(error) => error,
             };
             let now = self.pace.now();
-            let outage = outage.get_or_insert_with(|| Outage::begin(now));
-            outage.failed(now);
+            let outage = Outage::note(&mut outage, now);
             let over = outage.is_too_long(now, self.give_up_s) || self.controls.is_stopping();
             if over || !error.is::<HistoryError>() {
                 return Err(error);
@@ -116,13 +112,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_outage_is_tried_every_second_until_it_is_too_long() {
-        let mut outage = Outage::begin(RigTime(5_000_000));
-        assert_eq!(outage.retry_at(), RigTime(6_000_000));
-        assert!(!outage.is_too_long(RigTime(6_000_000), 2.0));
-        outage.failed(RigTime(6_000_000));
-        assert_eq!(outage.retry_at(), RigTime(7_000_000));
-        assert!(outage.is_too_long(RigTime(7_000_000), 2.0));
-        assert!(Outage::begin(RigTime(0)).is_too_long(RigTime(0), 0.0));
+    fn an_outage_is_tried_every_second_until_too_long() {
+        let mut outage = None;
+        let first = Outage::note(&mut outage, RigTime(5_000_000));
+        assert_eq!(first.retry_at(), RigTime(6_000_000));
+        assert!(!first.is_too_long(RigTime(6_000_000), 2.0));
+        assert!(first.is_too_long(RigTime(5_000_000), 0.0));
+        let second = Outage::note(&mut outage, RigTime(6_000_000));
+        assert_eq!(second.retry_at(), RigTime(7_000_000));
+        assert!(second.is_too_long(RigTime(7_000_000), 2.0));
     }
 }

@@ -5,13 +5,15 @@ use super::counts::Counts;
 use super::event::LotEvent;
 use super::rows;
 use super::summary::{BrokenPromise, Summary, WallProfile};
-use crate::cycle::{Event, Profile};
 use crate::exit::{Cause, Exit};
 use crate::links::EepromCount;
 use bus::LineLog;
+use cycle::{Ended, Event};
 use machine::dut::{Bin, Reason, Verdict};
-use machine::handling::ledger::Kind;
+use machine::handling::ledger::PartRole;
 use machine::handling::output::{Interrupted, Judged, Landed};
+use machine::station::catalogue::Reaction;
+use machine::station::packml::State;
 use machine::station::trouble::Alarm;
 use machine::station::turn::Ending;
 use std::collections::BTreeMap;
@@ -52,8 +54,10 @@ pub struct LotProgress<'a> {
     eeprom: EepromCount,
     eeprom_at_start: Option<u64>,
     broken: Vec<BrokenPromise>,
-    /// First alarm of the present trouble; without present trouble, the last alarm.
+    /// First alarm of the last trouble: the first one that makes the machine abort, hold or suspend.
     trouble: Option<Alarm>,
+    /// False while an alarm of that trouble is active.
+    trouble_is_over: bool,
 }
 
 impl<'a> LotProgress<'a> {
@@ -71,6 +75,7 @@ impl<'a> LotProgress<'a> {
             eeprom_at_start: None,
             broken: Vec::new(),
             trouble: None,
+            trouble_is_over: true,
         }
     }
 
@@ -103,11 +108,18 @@ impl<'a> LotProgress<'a> {
             Event::Interrupted(interrupted) => self.interrupted(interrupted),
             Event::Alarm(alarm, _) => {
                 self.counts.alarms += 1;
-                self.trouble = Some(alarm.clone());
+                if self.trouble_is_over && has_reaction(alarm) {
+                    self.trouble = Some(alarm.clone());
+                    self.trouble_is_over = false;
+                }
             }
-            Event::ListedAlarms(standing, _) => {
-                let first = standing.iter().find(|it| it.first_out && it.is_active());
-                self.trouble = first.map(|it| it.alarm.clone()).or(self.trouble.take());
+            Event::ListedAlarms(listed, _) => {
+                let mut active = listed.iter().filter(|it| it.is_active());
+                self.trouble_is_over = !active.any(|it| has_reaction(&it.alarm));
+            }
+            // An order caused this state: the last trouble ended before.
+            Event::State(State::Aborting | State::Suspending) if self.trouble_is_over => {
+                self.trouble = None;
             }
             Event::LotBegan(at) => {
                 self.lot_began = Some(*at);
@@ -129,8 +141,8 @@ impl<'a> LotProgress<'a> {
     fn judged(&mut self, judged: &Judged) {
         let ordinal = judged.part.ordinal;
         match judged.part.kind {
-            Kind::Reference(_) => self.reference_count += 1,
-            Kind::Lot(_) => self.counts.add(judged.verdict.name()),
+            PartRole::Reference(_) => self.reference_count += 1,
+            PartRole::Lot(_) => self.counts.add(judged.verdict.name()),
         }
         let part = PartUnderWay {
             judged: Box::new(judged.clone()),
@@ -150,7 +162,7 @@ impl<'a> LotProgress<'a> {
         reasons.push(Reason::interrupted(&interrupted.why));
         let before = std::mem::replace(&mut part.judged.verdict, Verdict::Void(reasons));
         part.judged.part.bin = Some(Bin::RETEST);
-        if matches!(part.judged.part.kind, Kind::Lot(_)) {
+        if matches!(part.judged.part.kind, PartRole::Lot(_)) {
             self.counts.remove(before.name());
             self.counts.add("void");
         }
@@ -158,7 +170,7 @@ impl<'a> LotProgress<'a> {
 
     fn landed(&mut self, landed: &Landed) -> Option<LotEvent> {
         let part = self.under_way.remove(&landed.part.ordinal)?;
-        if matches!(landed.part.kind, Kind::Lot(_)) {
+        if matches!(landed.part.kind, PartRole::Lot(_)) {
             self.last_landed = Some(landed.at);
             *self.counts.bins.entry(landed.bin.to_string()).or_insert(0) += 1;
         }
@@ -171,7 +183,7 @@ impl<'a> LotProgress<'a> {
         parts.map(|part| LotEvent::PartDone(Box::new(part), None))
     }
 
-    /// Returns how the run ended: complete, stopped, or trouble with the alarm (else the abort) that caused it.
+    /// Returns how the run ended: complete, stopped, or trouble with the alarm (else the order) that caused it.
     pub fn exit(&self, ending: &Ending) -> Exit {
         match ending {
             Ending::Complete => Exit::Done,
@@ -186,9 +198,8 @@ impl<'a> LotProgress<'a> {
     /// Returns the summary of the run; `writing` is the wall time that the history took.
     pub fn summary(
         &self,
-        ending: &Ending,
+        ended: &Ended,
         cause: Option<&Cause>,
-        profile: &Profile,
         writing: Duration,
         logs: &[(String, LineLog)],
     ) -> Summary {
@@ -196,11 +207,84 @@ impl<'a> LotProgress<'a> {
         let began = self.lot_began;
         let elapsed_s = began.map_or(0.0, |began| self.end().since(began).as_seconds());
         let eeprom = self.eeprom_at_start.zip((self.eeprom)());
-        let mut summary = Summary::new(&self.counts, (ending, cause), elapsed_s, wall, logs);
+        let mut summary = Summary::new(&self.counts, (&ended.ending, cause), elapsed_s, wall, logs);
         summary.eeprom_writes = eeprom.map(|(before, after)| after - before);
         summary.broken_promises = self.broken.clone();
         summary.bodies_watched = self.context.source.bodies_watched();
-        summary.wall_profile = WallProfile::new(profile, writing, wall);
+        summary.wall_profile = WallProfile::new(&ended.profile, writing, wall);
+        let is_real = !self.context.source.is_virtual();
+        summary.lateness = is_real.then(|| ended.lateness.view());
         summary
+    }
+}
+
+fn has_reaction(alarm: &Alarm) -> bool {
+    alarm.code.entry().reaction != Reaction::Nothing
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::lot::Purpose;
+    use crate::order::LotOrder;
+    use crate::source::RigSource;
+    use config::{Plant, load_recipe};
+    use machine::handling::wear::Wearing;
+    use machine::station::annunciator::Annunciator;
+    use machine::station::catalogue::AlarmCode;
+    use std::path::Path;
+    use std::sync::Arc;
+
+    /// Passes an alarm to `lot` as the cycle does: the alarm, then the list.
+    fn raise(lot: &mut LotProgress, list: &mut Annunciator, code: AlarmCode) {
+        let alarm = Alarm::from(code);
+        list.raise(&alarm, RigTime(1));
+        lot.apply(&Event::Alarm(alarm, RigTime(1)));
+        pass(lot, list);
+    }
+
+    fn pass(lot: &mut LotProgress, list: &Annunciator) {
+        lot.apply(&Event::ListedAlarms(list.listed().to_vec(), RigTime(1)));
+    }
+
+    #[test]
+    fn an_exit_names_the_cause_of_its_own_abort() {
+        let config = Path::new("../../config");
+        let plant = Plant::load(config).unwrap();
+        let recipe = Arc::new(load_recipe(config, "jzc-22f-012").unwrap());
+        let order = LotOrder {
+            lot: "A".into(),
+            recipe: recipe.name.clone(),
+            count: None,
+            retest: None,
+        };
+        let source = RigSource::Serial(Vec::new());
+        let context = LotContext::new(&plant, (&order, &recipe), &source, Purpose::Lot);
+        let mut lot = LotProgress::new(context, Box::new(|| None));
+        let mut list = Annunciator::default();
+        let exit = |code: AlarmCode| Exit::Trouble(Cause::from(&code.into()));
+
+        raise(&mut lot, &mut list, AlarmCode::Worn(Wearing::ALL[0]));
+        raise(&mut lot, &mut list, AlarmCode::DoorOpen);
+        lot.apply(&Event::State(State::Aborting));
+        assert_eq!(lot.exit(&Ending::Alarm), exit(AlarmCode::DoorOpen));
+
+        list.sensed(&[]);
+        pass(&mut lot, &list);
+        let closed = "a door that closes again does not hide the cause";
+        assert_eq!(
+            lot.exit(&Ending::Alarm),
+            exit(AlarmCode::DoorOpen),
+            "{closed}"
+        );
+
+        lot.apply(&Event::State(State::Execute));
+        lot.apply(&Event::State(State::Aborting));
+        assert_eq!(lot.exit(&Ending::Alarm), Exit::Trouble(Cause::aborted()));
+
+        raise(&mut lot, &mut list, AlarmCode::AirLost);
+        raise(&mut lot, &mut list, AlarmCode::StepTooLong);
+        assert_eq!(lot.exit(&Ending::Alarm), exit(AlarmCode::AirLost));
     }
 }

@@ -1,17 +1,18 @@
 //! Writes the events of a run to the history.
 //!
-//! Between lots the history has no run until a part found inside needs a row: the lot [`FOUND_LOT`](super::FOUND_LOT) then gets
-//! one. One transaction takes all pending rows; the recorder then publishes the ordinal of the last judged part, which
-//! allows the sorter to open its gripper. After a failed transaction its rows stay pending, in order. The database works on a blocking thread, one short task per transaction.
+//! Between lots the history has no run until a part found inside needs a row: the lot
+//! [`FOUND_LOT`](super::FOUND_LOT) then gets one. One transaction takes all pending rows; the recorder then publishes
+//! the ordinal of the last judged part, which allows the sorter to open its gripper. After a failed transaction its
+//! rows stay pending, in order. The database works on a blocking thread, one short task per transaction.
 
 use super::event::LotEvent;
 use super::journal::Journal;
 use super::prior_state::PriorState;
 use super::progress::{LotProgress, PartUnderWay};
 use super::{LotContext, Purpose, rows};
-use crate::cycle::Event;
 use crate::exit::Exit;
 use anyhow::Context;
+use cycle::Event;
 use history::{
     CalibratedRecord, CalibrationRecord, InterruptedRecord, LandingRecord, LotRecord, Row, Store,
     snapshot_hash,

@@ -4,17 +4,17 @@ use super::LotContext;
 use history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord};
 use machine::dut::{Characteristic, Judgement, Verdict};
 use machine::gauge::{Limit, Reading};
-use machine::handling::ledger::Kind;
+use machine::handling::ledger::PartRole;
 use machine::handling::output::Judged;
 use machine::instrument::trace::Trace;
 use serde_json::{Map, Value, json};
 use units::RigTime;
 
 /// Returns the part's number within its kind, and the name of the kind.
-pub fn number(kind: &Kind, reference_count: u64) -> (u64, &'static str) {
+pub fn number(kind: &PartRole, reference_count: u64) -> (u64, &'static str) {
     match kind {
-        Kind::Lot(seq) => (*seq, "lot"),
-        Kind::Reference(_) => (reference_count, "golden"),
+        PartRole::Lot(seq) => (*seq, "lot"),
+        PartRole::Reference(_) => (reference_count, "golden"),
     }
 }
 
@@ -26,8 +26,8 @@ pub fn part(context: &LotContext, judged: &Judged, reference_count: u64) -> Part
         lot: context.order.lot.clone(),
         seq,
         serial: match &judged.part.kind {
-            Kind::Reference(serial) => Some(serial.clone()),
-            Kind::Lot(_) => None,
+            PartRole::Reference(serial) => Some(serial.clone()),
+            PartRole::Lot(_) => None,
         },
         verdict: judged.verdict.name().to_string(),
         bin: judged

@@ -4,9 +4,9 @@
 use super::event::{LotEvent, Subscriber};
 use super::progress::LotProgress;
 use super::{LotContext, rows};
-use crate::cycle::Event;
 use crate::traces::Traces;
-use machine::handling::ledger::Kind;
+use cycle::Event;
+use machine::handling::ledger::PartRole;
 use machine::handling::output::Judged;
 use machine::view::{LastPart, RecentPart, RunEnd, View};
 use tokio::sync::watch;
@@ -68,7 +68,7 @@ impl Subscriber for Screen {
 
 /// Returns true for a part of the lot under way.
 fn is_shown(judged: &Judged, between_lots: bool) -> bool {
-    !between_lots && matches!(judged.part.kind, Kind::Lot(_))
+    !between_lots && matches!(judged.part.kind, PartRole::Lot(_))
 }
 
 /// Shows the lot and its limits.

@@ -2,11 +2,12 @@
 
 use super::counts::Counts;
 use super::rows::rounded;
-use crate::cycle::Profile;
 use crate::exit::Cause;
 use bus::LineLog;
+use cycle::Profile;
 use machine::dut::promise::Broken;
 use machine::station::turn::Ending;
+use machine::view::LatenessView;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -48,6 +49,9 @@ pub struct Summary {
     /// Promises of rig and recipe that did not hold.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub broken_promises: Vec<BrokenPromise>,
+    /// How late this computer woke the cycle; absent in virtual time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lateness: Option<LatenessView>,
     /// Wall time by phase of the control cycle.
     pub wall_profile: WallProfile,
     /// Fingerprint of all bytes that passed on each line, by the name of the line.
@@ -79,6 +83,7 @@ impl Summary {
             eeprom_writes: None,
             bodies_watched: None,
             broken_promises: Vec::new(),
+            lateness: None,
             wall_profile: WallProfile::default(),
             bytes: logs
                 .iter()

@@ -1,36 +1,130 @@
-//! Tests a run whose control cycle fails an assertion.
+//! Tests of whole runs in virtual time: a failed assertion of the cycle, a history that cannot be written for a while.
 
 #![allow(clippy::unwrap_used)]
 
 use super::*;
 use crate::order::LotOrder;
-use crate::runtime;
-use crate::source::{RigSource, Simulated};
+use crate::source::Simulated;
 use config::{Plant, load_recipe};
 use history::{Archive, Filter, LotState};
-use machine::view::{By, Order, OrderRequest};
+use machine::view::{By, Order, OrderRequest, View};
+use rusqlite::Connection;
+use std::path::PathBuf;
+use texts::{Lang, Message};
+use tokio::sync::oneshot;
+
+const COUNT: u64 = 6;
+
+/// A lot of six parts on a simulated rig, and its history file.
+struct TestLot {
+    plant: Plant,
+    order: LotOrder,
+    source: RigSource,
+    controls: Controls,
+    db: PathBuf,
+    _folder: tempfile::TempDir,
+}
+
+impl TestLot {
+    fn new(attended: bool) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        Self {
+            plant: Plant::load(Path::new("../../config")).unwrap(),
+            order: LotOrder {
+                lot: "A".into(),
+                recipe: "jzc-22f-012".into(),
+                count: Some(COUNT),
+                retest: None,
+            },
+            source: RigSource::Simulated(Simulated::with_seed(1)),
+            controls: Controls::new(attended),
+            db: folder.path().join("history.db"),
+            _folder: folder,
+        }
+    }
+
+    /// Runs the lot; `person` acts beside it with the sender of orders.
+    fn run<F: Future<Output = ()>>(
+        &self,
+        person: impl FnOnce(mpsc::Sender<OrderRequest>, watch::Receiver<View>) -> F,
+    ) -> Exit {
+        let recipe = load_recipe(&self.plant.dir, &self.order.recipe).unwrap();
+        let recipe = Arc::new(recipe);
+        let runner = LotRunner {
+            db: &self.db,
+            context: LotContext::new(
+                &self.plant,
+                (&self.order, &recipe),
+                &self.source,
+                Purpose::Lot,
+            ),
+            controls: &self.controls,
+        };
+        let mut no_subscriber = ();
+        let (orders, asked) = mpsc::channel(4);
+        let seen = self.controls.view.subscribe();
+        let runtime = crate::runtime(&self.source).unwrap();
+        runtime.block_on(async {
+            let acting = async {
+                person(orders, seen).await;
+                std::future::pending::<()>().await;
+            };
+            tokio::select! {
+                exit = runner.run(OrderQueue::from(asked), &mut no_subscriber) => exit.unwrap(),
+                () = acting => unreachable!(),
+            }
+        })
+    }
+
+    /// Makes every transaction with a part fail, as a full disk does.
+    fn fail(&self) {
+        let by_hand = Connection::open(&self.db).unwrap();
+        let refuse =
+            "CREATE TRIGGER full BEFORE INSERT ON part BEGIN SELECT RAISE(ABORT, 'no room'); END";
+        by_hand.execute_batch(refuse).unwrap();
+    }
+
+    fn mend(&self) {
+        let by_hand = Connection::open(&self.db).unwrap();
+        by_hand.execute_batch("DROP TRIGGER full").unwrap();
+    }
+
+    /// Checks that the lot has one run with this many parts, each in its bin.
+    fn check_rows(&self, parts: u64) {
+        let archive = Archive::open(&self.db).unwrap();
+        let runs = archive.lots(&Filter::default()).unwrap();
+        assert_eq!(runs.len(), 1, "one run");
+        assert_eq!(runs[0].counts.parts, parts);
+        let rows = archive.query(&Filter::default()).unwrap();
+        assert!(rows.iter().all(|it| it.landed_bin == it.bin), "{rows:?}");
+    }
+}
+
+async fn until(view: &mut watch::Receiver<View>, test: impl Fn(&View) -> bool) {
+    view.wait_for(|view| test(view)).await.unwrap();
+}
+
+async fn order(orders: &mpsc::Sender<OrderRequest>, word: &str) -> Result<(), Message> {
+    let (answer, answered) = oneshot::channel();
+    let order = Order {
+        order: word.into(),
+        ..Order::default()
+    };
+    let way_back = move |it| drop(answer.send(it));
+    let request = OrderRequest::new(order, By::default(), way_back);
+    orders.send(request).await.unwrap();
+    answered.await.unwrap()
+}
+
+fn lost(view: &View) -> bool {
+    let mut alarms = view.alarms.iter();
+    alarms.any(|it| it.code == "history_lost" && it.state != "returned")
+}
 
 #[test]
 fn a_failed_assertion_ends_the_run_in_the_history() {
-    let folder = tempfile::tempdir().unwrap();
-    let (config, db) = (Path::new("../../config"), folder.path().join("history.db"));
-    let plant = Plant::load(config).unwrap();
-    let recipe = Arc::new(load_recipe(config, "jzc-22f-012").unwrap());
-    let order = LotOrder {
-        lot: "A".into(),
-        recipe: recipe.name.clone(),
-        count: Some(9),
-        retest: None,
-    };
-    let source = RigSource::Simulated(Simulated::with_seed(1));
-    let controls = Controls::new(true);
-    let runner = LotRunner {
-        db: &db,
-        context: LotContext::new(&plant, (&order, &recipe), &source, Purpose::Lot),
-        controls: &controls,
-    };
-    let (orders, asked) = mpsc::channel(1);
-    let exit = runtime(&source).unwrap().block_on(async {
+    let test = TestLot::new(true);
+    let exit = test.run(async |orders, _seen| {
         let lamp_test = Order {
             order: "lamp_test".into(),
             ..Order::default()
@@ -40,10 +134,9 @@ fn a_failed_assertion_ends_the_run_in_the_history() {
             panic!("an assertion of the cycle")
         });
         orders.send(request).await.unwrap();
-        runner.run(OrderQueue::from(asked), &mut ()).await.unwrap()
     });
     assert_eq!(exit, Exit::Trouble(Cause::assertion()));
-    let archive = Archive::open(&db).unwrap();
+    let archive = Archive::open(&test.db).unwrap();
     let runs = archive.lots(&Filter::default()).unwrap();
     let [run] = &runs[..] else { panic!("{runs:?}") };
     assert_eq!(run.ended.as_deref(), Some("alarm"));
@@ -51,4 +144,71 @@ fn a_failed_assertion_ends_the_run_in_the_history() {
     assert!(run.closed.is_some(), "the run stays open");
     let standing = archive.standing("A").unwrap().unwrap();
     assert_eq!(standing.state, LotState::Open);
+}
+
+#[test]
+fn a_lot_continues_after_an_outage_without_loss() {
+    let test = TestLot::new(true);
+    let exit = test.run(async |orders, mut seen| {
+        until(&mut seen, |view| view.judged >= 2).await;
+        test.fail();
+        until(&mut seen, |view| {
+            view.machine.state == "Aborted" && lost(view)
+        })
+        .await;
+        let why = order(&orders, "clear").await.unwrap_err().say(Lang::En);
+        assert!(
+            why.contains("history.db cannot be written") && why.contains("no room"),
+            "{why}"
+        );
+        test.mend();
+        until(&mut seen, |view| !lost(view)).await;
+        for (word, state) in [
+            ("clear", "Stopped"),
+            ("reset", "Idle"),
+            ("start", "Execute"),
+        ] {
+            assert_eq!(order(&orders, word).await, Ok(()), "{word}");
+            until(&mut seen, |view| view.machine.state == state).await;
+        }
+    });
+    assert_eq!(exit, Exit::Done);
+    let judged = test.controls.view.borrow().judged;
+    assert!(judged >= COUNT, "{judged}");
+    test.check_rows(judged);
+    let by_hand = Connection::open(&test.db).unwrap();
+    let cleared =
+        "SELECT count(*) FROM alarm WHERE code = 'history_lost' AND cleared_at_us IS NOT NULL";
+    let cleared: i64 = by_hand.query_row(cleared, [], |row| row.get(0)).unwrap();
+    assert_eq!(cleared, 1);
+}
+
+#[test]
+fn too_long_an_outage_ends_an_attended_run() {
+    let test = TestLot::new(true);
+    let exit = test.run(async |_orders, mut seen| {
+        until(&mut seen, |view| view.judged >= 2).await;
+        test.fail();
+    });
+    assert_eq!(exit.code(), 3);
+    assert_eq!(
+        exit.cause().map(|it| it.code.as_str()),
+        Some("history_lost")
+    );
+}
+
+#[test]
+fn an_unattended_run_waits_for_its_history_and_completes() {
+    let test = TestLot::new(false);
+    let exit = test.run(async |_orders, mut seen| {
+        until(&mut seen, |view| view.judged >= 2).await;
+        test.fail();
+        let pace = Pace::virtual_time();
+        pace.sleep_until(units::RigTime(100_000_000)).await;
+        assert!(seen.borrow().alarms.is_empty());
+        assert_eq!(seen.borrow().machine.state, "Execute");
+        test.mend();
+    });
+    assert_eq!(exit, Exit::Done);
+    test.check_rows(COUNT);
 }

@@ -1,8 +1,8 @@
 //! Controls a rig for a whole day: page and API in front of the rig, one lot after another.
 //!
 //! At every moment one *run* (a control cycle, from its start to its end) controls the rig; the command `run` makes one
-//! too. Between lots a run without a lot does: the machine keeps its state until an operator resets it, the page shows inputs and alarms, motions by hand are possible,
-//! and the rig discharges parts found inside. A lot that is ordered at the page and admitted ([`router`]) ends that
+//! too. Between lots a run without a lot does: the machine keeps its state until an operator resets it, the page shows
+//! inputs and alarms, motions by hand are possible, and the rig discharges parts found inside. A lot that is ordered at the page and admitted ([`router`]) ends that
 //! run. The run of the lot then begins as every lot does: it verifies the modules, homes the machine, and calibrates
 //! the rig if necessary. After the lot the rig is between lots again.
 //!
@@ -27,7 +27,7 @@ use super::admission::{AdmissionError, admit};
 use super::controls::Controls;
 use super::exit::Exit;
 use super::lot::{
-    FOUND_LOT, LotContext, LotRunner, Patience, Purpose, Subscriber, lost, mimic, pace_of,
+    FOUND_LOT, HistoryRetry, LotContext, LotRunner, Purpose, Subscriber, lost, mimic, pace_of,
 };
 use super::order::{Files, LotOrder};
 use super::order_queue::OrderQueue;
@@ -149,7 +149,7 @@ impl Service {
             let mut run = async || self.run_once(lot.as_ref(), rests, &mut *outer).await;
             let exit = match std::mem::take(&mut first) {
                 true => run().await?,
-                false => match self.patience().until_written(run).await {
+                false => match self.retry().until_written(run).await {
                     Err(error) if error.is::<HistoryError>() => return Ok(lost(&error)),
                     exit => exit?,
                 },
@@ -173,7 +173,7 @@ impl Service {
                             let store = Store::open(&self.files.db);
                             Ok(store.and_then(|mut store| store.record(rows))?)
                         };
-                        if let Err(error) = self.patience().until_written(hold).await {
+                        if let Err(error) = self.retry().until_written(hold).await {
                             return Ok(lost(&error));
                         }
                     }
@@ -184,8 +184,8 @@ impl Service {
         }
     }
 
-    fn patience(&self) -> Patience<'_> {
-        Patience {
+    fn retry(&self) -> HistoryRetry<'_> {
+        HistoryRetry {
             db: &self.files.db,
             controls: &self.controls,
             pace: pace_of(&self.source),

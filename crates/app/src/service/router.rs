@@ -104,10 +104,8 @@ impl OrderRouter {
             None if order.order == "start" => self.admitted(&order).await.map(Some),
             Some(Decision::Hold) if ours => {
                 let reason = order.reason.as_deref().unwrap_or_default();
-                let hold = || Some(AfterRun::Hold(Box::new((order.clone(), by))));
-                Decision::Hold
-                    .reason_refusal(reason)
-                    .map_or_else(|| Ok(hold()), Err)
+                let checked = Decision::Hold.check_reason(reason);
+                checked.map(|()| Some(AfterRun::Hold(Box::new((order, by)))))
             }
             Some(Decision::Close) if ours => Ok(None),
             Some(Decision::Release) if ours => Err(refused("lot_under_way")),

@@ -5,8 +5,8 @@
 
 use super::play::Refusal;
 use super::script::{Awaited, Script, Step};
-use crate::cycle::{Event, PANEL};
-use machine::handling::ledger::{Kind, Part};
+use cycle::{Event, PANEL};
+use machine::handling::ledger::{Part, PartRole};
 use machine::handling::output::Landed;
 use machine::rig::bin::Bin;
 use machine::station::annunciator::ListedAlarm;
@@ -173,7 +173,9 @@ impl Narrator {
 
     fn landed(&mut self, landed: &Landed) {
         let (part, bin) = (&landed.part, landed.bin);
-        if let (Kind::Lot(_), Some((name, verdict))) = (&part.kind, self.parts.get(&part.ordinal)) {
+        if let (PartRole::Lot(_), Some((name, verdict))) =
+            (&part.kind, self.parts.get(&part.ordinal))
+        {
             let text = format!("{name:<9} {verdict}, in bin {bin}");
             *self.bins.entry(bin).or_insert(0) += 1;
             self.plain(&text);
@@ -197,8 +199,8 @@ impl Narrator {
 
 fn name(part: &Part) -> String {
     match &part.kind {
-        Kind::Reference(serial) => format!("part {serial}"),
-        Kind::Lot(number) => format!("part {number}"),
+        PartRole::Reference(serial) => format!("part {serial}"),
+        PartRole::Lot(number) => format!("part {number}"),
     }
 }
 

@@ -2,9 +2,9 @@
 
 use super::narrator::Narrator;
 use super::script::{Action, Awaited, Script};
-use crate::cycle::Event;
 use bus::Pace;
-use machine::handling::ledger::Kind;
+use cycle::Event;
+use machine::handling::ledger::PartRole;
 use machine::station::packml::State;
 use machine::view::{By, Order, OrderRequest};
 use rigsim::SharedRig;
@@ -182,7 +182,7 @@ impl Observed {
                 self.alarms.insert(alarm.code.name());
             }
             Event::Judged(judged) => {
-                if let Kind::Lot(number) = judged.part.kind {
+                if let PartRole::Lot(number) = judged.part.kind {
                     self.numbers.insert(judged.part.ordinal, number);
                     self.judged.insert(number);
                 }

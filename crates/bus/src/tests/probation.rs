@@ -49,7 +49,7 @@ fn three_different_answers_to_one_request_are_rejected() {
 #[test]
 fn a_switched_input_needs_a_third_answer_that_agrees() {
     let port = Digital::ReadPort.to(Address(3));
-    let told = |third| {
+    let answers_to = |third| {
         let script = vec![
             say(DAMAGED),
             say(b">3B3F2C\r"),
@@ -58,7 +58,7 @@ fn a_switched_input_needs_a_third_answer_that_agrees() {
         ];
         played_count(script, &[(count(), 1), (port, 1)])
     };
-    let (got, sent) = told(b">3B7F30\r");
+    let (got, sent) = answers_to(b">3B7F30\r");
     let bits = Bits {
         first: 0x3B,
         second: 0x7F,
@@ -67,7 +67,7 @@ fn a_switched_input_needs_a_third_answer_that_agrees() {
     // The time stored is that of the second answer, the first one to show the new input.
     assert!(got[1].requested_at >= got[0].answered_at + Span(2_000));
     assert!(got[1].answered_at.since(got[1].requested_at) < Span(3_000));
-    let (got, _) = told(b">3B3F2C\r");
+    let (got, _) = answers_to(b">3B3F2C\r");
     assert!(matches!(
         got[1].outcome,
         Err(LineError::Contradicted { .. })

@@ -63,7 +63,7 @@ pub const FILE: &[Key] = keys! {
     key("line", Form::Named(&Form::Table(LINE)), "bus", "RS-485 lines by name");
     key("bus", Form::Table(BUS), "bus, cycle", "times and counts of every line");
     key("safety", Form::Table(SAFETY), "rig", "what the plant demands of the emergency stop");
-    optional("history", Form::Table(HISTORY), "app", "what a program does that cannot write the history");
+    optional("history", Form::Table(HISTORY), "app", "reaction to a history that cannot be written");
     key("module", Form::Named(&Form::Table(MODULE)), "rig", "modules by name");
     optional("analog_in", of_kinds(analog_in, &Form::Table(ANALOG_IN)), "rig", "analog inputs by point");
     optional("temperature", of_kinds(temperature, &Form::Table(CHANNEL)), "rig", "thermometers by point");

@@ -247,7 +247,7 @@ fn paper_of_simulated_parts_says_simulation_across_it() {
 }
 
 #[test]
-fn a_lot_report_shows_who_reopened_the_lot_and_why() {
+fn a_lot_report_shows_name_and_reason_of_reopening() {
     let page = lot_report(Lang::En);
     let words = "1970-01-01 00:01:30 +00:00 by zhao: &lt;/td&gt;";
     assert!(page.contains(words), "{page}");

@@ -181,7 +181,7 @@ fn a_complete_lot_is_open_only_after_a_reopening() {
 }
 
 #[test]
-fn an_import_does_not_change_the_recipe_of_a_lot() {
+fn an_import_keeps_the_recipe_of_a_lot() {
     let file = File::new();
     let mut store = file.store();
     store.begin_lot(&lot("A")).unwrap();
@@ -196,7 +196,7 @@ fn an_import_does_not_change_the_recipe_of_a_lot() {
 }
 
 #[test]
-fn a_file_belongs_to_the_rig_of_its_first_run() {
+fn the_first_run_decides_the_rig_of_a_file() {
     for simulated in [false, true] {
         let file = File::new();
         assert!(check_rig(&file.path, simulated).is_ok(), "no file");

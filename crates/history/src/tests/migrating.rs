@@ -82,7 +82,7 @@ fn a_migrated_file_keeps_rows_and_takes_new_ones() {
 }
 
 #[test]
-fn a_file_of_before_belongs_to_the_rig_of_its_rows() {
+fn rows_of_an_older_file_name_its_rig() {
     let of = "INSERT INTO run (id, lot_id, number, recipe_id, opened_at_us, source, written_by)
         VALUES (2, 1, 2, 1, 5, 'simulated', 'relayrig of old');";
     let calibrated = "INSERT INTO calibration (hash, made_at_us, due_at_us, verified, body)

@@ -85,7 +85,7 @@ fn read_only_file_is_readable_and_names_its_error() {
 }
 
 #[test]
-fn a_batch_that_failed_is_written_whole_once_the_file_can_be_written() {
+fn a_failed_batch_is_written_whole_on_retry() {
     let file = File::new();
     let mut store = file.store();
     let batch = [

@@ -1,6 +1,14 @@
-//! Accuracies that the makers of the instruments specify, from `config/rig.toml`.
+//! Accuracies that the makers of the instruments specify, from `config/rig.toml`, and the range of their inputs.
 
 use serde::Deserialize;
+
+/// Full scale of a +-10 V input, V at the terminal.
+pub const FULL_SCALE_V: f64 = 10.0;
+/// Resolution of a +-10 V input of 12 bits, volts per step.
+pub const LSB_V: f64 = 2.0 * FULL_SCALE_V / 4096.0;
+/// Highest voltage at a terminal that a test or a calibration may plan to read; the other 2 % of the full scale are in
+/// reserve for the errors of sources, references and input.
+pub const READABLE_V: f64 = 0.98 * FULL_SCALE_V;
 
 /// Accuracies before calibration: half widths, except for fields documented as standard deviations.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]

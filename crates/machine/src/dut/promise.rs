@@ -17,7 +17,7 @@ named! {
 }
 
 impl Promise {
-    /// Returns the file and the key that hold it; its last syllable is the unit.
+    /// Returns the file and the key that hold the promise; the key ends with its unit.
     pub const fn key(self) -> &'static str {
         match self {
             Self::AiNoise => "rig.toml accuracy.ai_noise_lsb",

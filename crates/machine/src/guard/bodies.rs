@@ -4,7 +4,7 @@ use super::actuator::Actuator;
 use super::error::GuardError;
 use super::part::Role;
 use super::scene::{Axis, Body, Ride, carriers};
-use super::settings::{GuardSettings, Kind, Piece, PoseSettings};
+use super::settings::{GuardSettings, Piece, PoseSettings, ShapeKind};
 use lpm::{Mover, Pose, Shape};
 
 /// Returns the bodies in the order of the file.
@@ -80,20 +80,20 @@ fn body_of(piece: &Piece, path: &str) -> Result<(Pose, Shape), GuardError> {
         (piece.radius, piece.height),
         &piece.parts,
     ) {
-        (Kind::Block, Some(half), (None, None), None) => Shape::Block { half },
-        (Kind::Cylinder, None, (Some(radius), Some(height)), None) => {
+        (ShapeKind::Block, Some(half), (None, None), None) => Shape::Block { half },
+        (ShapeKind::Cylinder, None, (Some(radius), Some(height)), None) => {
             Shape::Cylinder { radius, height }
         }
-        (Kind::Compound, None, (None, None), Some(parts)) => {
+        (ShapeKind::Compound, None, (None, None), Some(parts)) => {
             let placed = parts
                 .iter()
                 .enumerate()
                 .map(|(i, part)| body_of(part, &format!("{path}.parts[{i}]")));
             Shape::Compound(placed.collect::<Result<_, _>>()?)
         }
-        (Kind::Block, _, _, _) => return Err(lacking("block", "half")),
-        (Kind::Cylinder, _, _, _) => return Err(lacking("cylinder", "radius and height")),
-        (Kind::Compound, _, _, _) => return Err(lacking("compound", "parts")),
+        (ShapeKind::Block, _, _, _) => return Err(lacking("block", "half")),
+        (ShapeKind::Cylinder, _, _, _) => return Err(lacking("cylinder", "radius and height")),
+        (ShapeKind::Compound, _, _, _) => return Err(lacking("compound", "parts")),
     };
     let PoseSettings { position, rotation } = piece.pose;
     Ok((Pose { position, rotation }.rescaled(), shape))

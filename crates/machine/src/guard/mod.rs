@@ -58,8 +58,8 @@ pub use error::GuardError;
 pub use motion::{Cleared, Motion, Stroke};
 pub use refusal::{Blocked, Refusal};
 pub use settings::{
-    ActuatorSettings, Element, GuardSettings, Kind, PairRule, PairSettings, Piece, Policy,
-    PoseSettings,
+    ActuatorSettings, Element, GuardSettings, PairRule, PairSettings, Piece, Policy, PoseSettings,
+    ShapeKind,
 };
 pub use situation::{PartPlaces, PartSize, Situation};
 

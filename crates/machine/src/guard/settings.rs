@@ -54,7 +54,7 @@ pub struct Element {
     /// Name used in pairs and refusals.
     pub id: String,
     /// Form of the body.
-    pub kind: Kind,
+    pub kind: ShapeKind,
     /// Half extents of a block, mm.
     pub half: Option<[f64; 3]>,
     /// Radius of a cylinder, mm.
@@ -75,7 +75,7 @@ pub struct Element {
 #[serde(deny_unknown_fields)]
 pub struct Piece {
     /// Form of the body.
-    pub kind: Kind,
+    pub kind: ShapeKind,
     /// Half extents of a block, mm.
     pub half: Option<[f64; 3]>,
     /// Radius of a cylinder, mm.
@@ -92,7 +92,7 @@ pub struct Piece {
 /// Forms that tooling may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
+pub enum ShapeKind {
     /// A box; takes `half`.
     Block,
     /// A cylinder; takes `radius` and `height`.

@@ -17,7 +17,7 @@ const FOUND: &str = "found_inside";
 
 /// Role of a part in the lot.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Kind {
+pub enum PartRole {
     /// A reference part, with its serial number.
     Reference(String),
     /// A part of the lot, by the order in which it entered the nest, from 1.
@@ -28,7 +28,7 @@ pub enum Kind {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
     /// Role and number of the part.
-    pub kind: Kind,
+    pub kind: PartRole,
     /// Number among all parts of the run, reference parts included, from 1; the records come in this order.
     pub ordinal: u64,
     /// Bin of the part, after its verdict.
@@ -298,10 +298,10 @@ impl Ledger {
     fn number(&mut self, reference: Option<String>, interrupted: Option<String>) -> Part {
         self.numbered += 1;
         let kind = match reference {
-            Some(serial) => Kind::Reference(serial),
+            Some(serial) => PartRole::Reference(serial),
             None => {
                 self.lot_numbered += 1;
-                Kind::Lot(self.lot_numbered)
+                PartRole::Lot(self.lot_numbered)
             }
         };
         assert!(self.lot_numbered <= self.numbered, "numbers given twice");

@@ -6,7 +6,7 @@
 //! The jaws close while the pusher returns; the probes rise only after it has returned. The fingers close while the
 //! probes go down, the jaws open only after both, and the gripper owns the part once z is up.
 
-use super::ledger::Kind;
+use super::ledger::PartRole;
 use super::moves::Move;
 use super::output::{Judged, NestDone, NestExit, NestJob};
 use super::place::{NestId, Place};
@@ -58,7 +58,7 @@ pub struct Nest {
 /// Conditions of a test.
 #[derive(Debug, Clone, Copy)]
 pub struct TestTerms<'a> {
-    /// Kind under test: recipe, calibration and the values learned from parts.
+    /// PartRole under test: recipe, calibration and the values learned from parts.
     pub device: &'a Device,
     /// True when every result gets confirmation measurements.
     pub thorough: bool,
@@ -211,7 +211,7 @@ fn testing(
 
 /// Returns the trouble to report before another test of a void reference part; `None` when there is no further test.
 fn repeat_reason(id: NestId, turn: &Turn, test: &Procedure) -> Option<Trouble> {
-    let Kind::Reference(serial) = &turn.ledger.part(Place::Nest(id))?.kind else {
+    let PartRole::Reference(serial) = &turn.ledger.part(Place::Nest(id))?.kind else {
         return None;
     };
     // A complete test is inconclusive while overshoots are learned, but needs no repetition.
@@ -229,8 +229,8 @@ fn judged(id: NestId, turn: &mut Turn, test: &mut Procedure) {
     };
     part.test = part.probed_at.map(|at| Second(now.since(at).as_seconds()));
     part.bin = Some(match part.kind {
-        Kind::Reference(_) => Bin::RETEST,
-        Kind::Lot(_) => verdict.bin(),
+        PartRole::Reference(_) => Bin::RETEST,
+        PartRole::Lot(_) => verdict.bin(),
     });
     turn.parts.judged.push(Judged {
         part: part.clone(),

@@ -36,7 +36,7 @@ const DRIVE_RESET: Span = Span::ms(50);
 
 /// Progress of homing.
 #[derive(Debug, Clone, PartialEq, Eq)]
-enum Stage {
+enum HomingStep {
     /// Waiting for the first values of all part sensors.
     Looking,
     /// Resetting the drive, since this time.
@@ -48,7 +48,7 @@ enum Stage {
 /// State of homing.
 #[derive(Debug, Clone)]
 pub struct Recovery {
-    stage: Stage,
+    stage: HomingStep,
     left: VecDeque<Move>,
     requested: Option<Move>,
     refused: usize,
@@ -57,7 +57,7 @@ pub struct Recovery {
 impl Default for Recovery {
     fn default() -> Self {
         Self {
-            stage: Stage::Looking,
+            stage: HomingStep::Looking,
             left: ORDER.into(),
             requested: None,
             refused: 0,
@@ -69,35 +69,35 @@ impl Recovery {
     /// Steps once; returns true when everything is home. `releasing`: the escapement may have let a part through.
     pub fn step(&mut self, turn: &mut Turn, releasing: bool) -> bool {
         match self.stage {
-            Stage::Looking => {
+            HomingStep::Looking => {
                 if SensedParts::of(turn).is_some() {
                     turn.rig.outputs.push((DigitalOut::AxisReset, true));
-                    self.stage = Stage::Drive(turn.now);
+                    self.stage = HomingStep::Drive(turn.now);
                 }
             }
-            Stage::Drive(since) => self.drive(turn, since),
-            Stage::Up if !turn.arrived(Move::SortUp) => self.request(turn, Move::SortUp),
-            Stage::Up => {
+            HomingStep::Drive(since) => self.drive(turn, since),
+            HomingStep::Up if !turn.arrived(Move::SortUp) => self.request(turn, Move::SortUp),
+            HomingStep::Up => {
                 if let Some(seen) = SensedParts::of(turn) {
                     pushed(turn, &seen);
                     reconcile(turn.ledger, &seen, releasing, turn.trouble);
                     self.leave_gripped(turn.ledger);
-                    (self.stage, self.requested) = (Stage::Home, None);
+                    (self.stage, self.requested) = (HomingStep::Home, None);
                 }
             }
-            Stage::Home => return self.home(turn),
+            HomingStep::Home => return self.home(turn),
         }
         false
     }
 
     /// Returns true when the reset of the drive ends in this turn.
     pub fn drive_reset(&self, now: RigTime) -> bool {
-        matches!(self.stage, Stage::Drive(since) if now.since(since) >= DRIVE_RESET)
+        matches!(self.stage, HomingStep::Drive(since) if now.since(since) >= DRIVE_RESET)
     }
 
     /// Defers a motion that the guard refused; returns false when no other motion is left to try first.
     pub fn refused(&mut self, movement: Move) -> bool {
-        if self.requested != Some(movement) || self.stage != Stage::Home {
+        if self.requested != Some(movement) || self.stage != HomingStep::Home {
             return false;
         }
         let first = self.left.front();
@@ -119,7 +119,7 @@ impl Recovery {
         } else if looked {
             turn.rig.outputs.push((DigitalOut::AxisReset, false));
             turn.rig.outputs.push((DigitalOut::AxisServoOn, true));
-            self.stage = Stage::Up;
+            self.stage = HomingStep::Up;
         }
     }
 

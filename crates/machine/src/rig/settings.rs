@@ -124,7 +124,7 @@ pub struct AnalogInSettings {
 pub struct AnalogOutSettings {
     /// Name of the module.
     pub module: String,
-    /// Volts of the coil supply per volt at the terminal.
+    /// Volts that the coil supply gives per volt at the module's terminal.
     pub gain: f64,
 }
 

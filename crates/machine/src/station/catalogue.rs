@@ -112,6 +112,8 @@ codes! {
     BusTrouble = "bus_trouble", Abort, Operator;
     /// A safety input has no fresh sample.
     SensorStale = "sensor_stale", Abort, Sensor;
+    /// A reply or a sample is missing, and the lateness of this computer explains it.
+    HostLate = "host_late", Abort, Sensor;
     /// A module has not confirmed its safe outputs in time.
     OutputsNotConfirmed = "outputs_not_confirmed", Abort, Operator;
     /// The program cannot write the history file.

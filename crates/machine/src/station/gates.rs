@@ -18,7 +18,7 @@ use super::trouble::Alarm;
 use super::turn::{Checked, TurnOutput};
 use crate::dut::verdict::Verdict;
 use crate::handling::Place;
-use crate::handling::ledger::Kind;
+use crate::handling::ledger::PartRole;
 use crate::handling::output::Judged;
 use crate::handling::wear::{Uses, Wearing};
 use serde::Deserialize;
@@ -183,8 +183,8 @@ impl Station {
     /// Returns true when every result of the part in the nest gets confirmation measurements.
     pub(super) fn is_thorough(&self) -> bool {
         match self.line.ledger.part(Place::NEST).map(|part| &part.kind) {
-            Some(Kind::Lot(seq)) => *seq <= self.plan.lot.first_article_parts,
-            Some(Kind::Reference(_)) => self.lot.gates.checking,
+            Some(PartRole::Lot(seq)) => *seq <= self.plan.lot.first_article_parts,
+            Some(PartRole::Reference(_)) => self.lot.gates.checking,
             None => false,
         }
     }

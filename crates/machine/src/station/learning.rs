@@ -8,7 +8,7 @@ use super::turn::TurnOutput;
 use crate::dut::device::{CalibrationFault, Made};
 use crate::dut::{Calibration, Verdict};
 use crate::handling::Place;
-use crate::handling::ledger::Kind;
+use crate::handling::ledger::PartRole;
 use crate::instrument::act::Runner;
 use units::RigTime;
 
@@ -40,16 +40,16 @@ impl Station {
         let mut outcome = Outcome::default();
         for judged in &output.record.parts.judged {
             match &judged.part.kind {
-                Kind::Reference(serial) if self.lot.gates.is_checking() => {
+                PartRole::Reference(serial) if self.lot.gates.is_checking() => {
                     self.check(judged, serial, &mut outcome);
                 }
-                Kind::Reference(_) | Kind::Lot(_) if judged.part.interrupted.is_some() => {}
-                Kind::Reference(serial) => {
+                PartRole::Reference(_) | PartRole::Lot(_) if judged.part.interrupted.is_some() => {}
+                PartRole::Reference(serial) => {
                     let last = self.lot.reference_left.is_empty();
                     let learned = self.device.learn_reference(serial, &judged.record, last);
                     calibrated(learned, &mut output.record.calibrated, &mut outcome);
                 }
-                Kind::Lot(_) => {
+                PartRole::Lot(_) => {
                     self.count_rejects(judged, &mut outcome);
                     let pass = judged.verdict == Verdict::Pass;
                     self.device.learn(&judged.record, pass);
@@ -67,8 +67,8 @@ impl Station {
     /// Returns the serial number of the reference part in the nest, unless it serves a check.
     pub(super) fn teaching(&self) -> Option<&str> {
         match self.line.ledger.part(Place::NEST).map(|part| &part.kind) {
-            Some(Kind::Reference(serial)) if !self.lot.gates.is_checking() => Some(serial),
-            Some(Kind::Reference(_) | Kind::Lot(_)) | None => None,
+            Some(PartRole::Reference(serial)) if !self.lot.gates.is_checking() => Some(serial),
+            Some(PartRole::Reference(_) | PartRole::Lot(_)) | None => None,
         }
     }
 

@@ -9,7 +9,7 @@
 //! - Files hold the names, never numbers.
 
 named! {
-    /// State of the rig; each line says what the rig does, or how it stands.
+    /// State of the rig; each line says what the rig does, or in which condition it is.
     State {
         /// Powered, outputs safe, every position unknown.
         Stopped = "Stopped",

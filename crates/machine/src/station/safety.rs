@@ -43,7 +43,7 @@ impl Station {
         output.rig.motions.extend(found.motions);
         output.rig.restart_check = self.line.mechanism.needs_restart_check(now);
         self.still_in_nest(now, inputs.image, &mut found.trouble);
-        let mut there = self.safety(now, inputs.image);
+        let mut there = self.safety(now, inputs);
         there.extend(stuck);
         there.extend(self.full_bins(now, inputs.image));
         there.extend(self.still_starved(now, inputs.image));
@@ -86,7 +86,8 @@ impl Station {
 
     /// Returns an alarm for each safety input that is open, and one for an unread input once all have been read before
     /// or the time for the first scan is over.
-    fn safety(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
+    fn safety(&mut self, now: RigTime, inputs: &Inputs) -> Vec<Alarm> {
+        let image = inputs.image;
         let late = now.since(self.machine.began.unwrap_or(now)) > FIRST_SCAN;
         let (mut alarms, mut unread) = (Vec::new(), Vec::new());
         for (point, code) in SAFETY_INPUTS {
@@ -116,7 +117,10 @@ impl Station {
         if let Some(point) = unread.first()
             && (late || self.alarms.sensed)
         {
-            alarms.push(Alarm::stale(*point));
+            alarms.push(match inputs.host_late {
+                Some(late) => Alarm::host_late(point, late),
+                None => Alarm::stale(*point),
+            });
         }
         self.alarms.sensed |= all;
         alarms

@@ -131,6 +131,13 @@ impl Alarm {
         Self::from(AlarmCode::SensorStale).with("input", input)
     }
 
+    /// Returns the alarm that a reply or sample is missing because this computer was late; `missed` names it.
+    pub fn host_late(missed: impl ToString, late: Span) -> Self {
+        Self::from(AlarmCode::HostLate)
+            .with("missed", missed)
+            .with("late_ms", format!("{:.0}", late.as_seconds() * 1e3))
+    }
+
     /// Returns the alarm that a push button stays down.
     pub fn button_stuck(button: DigitalIn) -> Self {
         Self::from(AlarmCode::ButtonStuck).with("input", button)

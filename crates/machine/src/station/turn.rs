@@ -8,7 +8,7 @@ use crate::dut::promise::Broken;
 use crate::handling::output::{Commands, NestDone, PartEvents};
 use crate::handling::trouble::Trouble;
 use crate::rig::image::Image;
-use units::RigTime;
+use units::{RigTime, Span};
 
 /// Inputs of a turn besides the time.
 #[derive(Debug)]
@@ -23,6 +23,8 @@ pub struct Inputs<'a> {
     pub history: HistoryState,
     /// Trouble of a line or module, in one turn only.
     pub bus: Option<Alarm>,
+    /// Lateness of this computer in the last seconds, when it explains an input that was not read.
+    pub host_late: Option<Span>,
     /// True when the operator ends the lot after the parts inside (one Ctrl-C).
     pub stop: bool,
     /// True when the operator ends the lot at once (two Ctrl-C).

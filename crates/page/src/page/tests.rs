@@ -147,7 +147,7 @@ fn every_listed_bin_verdict_and_mode_has_a_name() {
 }
 
 #[test]
-fn every_key_and_choice_of_a_recipe_has_a_text() {
+fn every_recipe_key_and_choice_has_a_text() {
     let table = table();
     let recipe = config::revision("../../config".as_ref(), "jzc-22f-012", None).unwrap();
     for field in serde_json::to_value(recipe).unwrap()["fields"]
@@ -211,7 +211,7 @@ fn every_top_level_name_of_the_scripts_is_unique() {
 const FIRST_BYTES: usize = 60_000;
 
 #[test]
-fn the_first_answer_is_small_and_names_no_other_host() {
+fn first_answer_is_small_and_names_no_other_host() {
     assert!(PAGE.gzip.len() < FIRST_BYTES, "{}", PAGE.gzip.len());
     assert!(PAGE.gzip.len() > 10_000 && PAGE.plain.len() < 150_000);
     for mark in [

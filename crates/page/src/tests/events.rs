@@ -24,7 +24,7 @@ fn judged(event: &str) -> Option<u64> {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_stream_starts_with_the_view_then_beats_each_second() {
+async fn a_stream_sends_a_view_then_beats_each_second() {
     let fixture = Fixture::new();
     let (began, mut stream) = (Instant::now(), stream(&fixture).await);
     let first = next(&mut stream).await.unwrap();
@@ -38,7 +38,7 @@ async fn a_stream_starts_with_the_view_then_beats_each_second() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn at_most_20_views_a_second_with_the_last_change() {
+async fn at_most_20_views_a_second_and_the_last() {
     let fixture = Fixture::new();
     let mut stream = stream(&fixture).await;
     next(&mut stream).await.unwrap();

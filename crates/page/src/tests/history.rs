@@ -100,7 +100,7 @@ async fn the_yield_of_a_span_is_counted() {
 }
 
 #[tokio::test]
-async fn a_histogram_counts_every_value_once_and_has_the_limits() {
+async fn a_histogram_counts_values_once_and_has_limits() {
     let fixture = with_parts(20);
     let path = "/api/history/histogram?param=operate_voltage_v&lot=A";
     let classes = fixture.get(path).await.json();
@@ -115,7 +115,7 @@ async fn a_histogram_counts_every_value_once_and_has_the_limits() {
 }
 
 #[tokio::test]
-async fn a_control_chart_has_last_points_and_limits_from_all() {
+async fn control_limits_use_all_points_not_only_shown() {
     let fixture = with_parts(20);
     let path = "/api/history/spc?param=operate_voltage_v";
     let whole = fixture.get(path).await.json();
@@ -162,7 +162,7 @@ async fn every_report_prints_in_both_languages_without_scripts() {
 }
 
 #[tokio::test]
-async fn an_export_is_a_file_with_the_rows_of_the_filter() {
+async fn an_export_holds_the_rows_of_the_filter() {
     let fixture = with_parts(1000);
     let csv = fixture.get("/api/history/export.csv?verdict=fail").await;
     assert_eq!(csv.headers["content-type"], "text/csv; charset=utf-8");

@@ -21,7 +21,7 @@ fn with_cookie(mut request: Request<Body>, cookie: &str) -> Request<Body> {
 }
 
 #[tokio::test]
-async fn a_login_opens_a_session_for_the_page_and_for_scripts() {
+async fn a_login_opens_a_session_for_page_and_scripts() {
     let fixture = Fixture::new();
     let answer = fixture.ask(login("li", PASSWORD)).await;
     assert_eq!(answer.status, 200, "{}", answer.text());

@@ -3,7 +3,7 @@
 use super::*;
 
 #[tokio::test]
-async fn every_body_is_drawn_from_the_front_and_from_above() {
+async fn every_body_is_drawn_from_front_and_above() {
     let fixture = Fixture::new();
     let answer = fixture.get("/mimic.svg").await;
     assert_eq!(answer.headers["content-type"], "image/svg+xml");

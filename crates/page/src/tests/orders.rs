@@ -112,7 +112,7 @@ async fn a_foreign_page_cannot_stop_the_line() {
 }
 
 #[tokio::test]
-async fn without_a_controller_an_order_is_refused_with_the_reason() {
+async fn without_a_controller_orders_are_refused_with_reason() {
     let mut fixture = Fixture::new();
     fixture.end_of_the_controller().await;
     assert!(

@@ -52,7 +52,7 @@ impl Fixture {
 }
 
 #[tokio::test]
-async fn every_recipe_is_listed_a_faulty_one_with_its_error() {
+async fn every_recipe_is_listed_faulty_ones_with_errors() {
     let fixture = Fixture::new();
     let broken = fixture
         .db
@@ -82,7 +82,7 @@ async fn every_recipe_is_listed_a_faulty_one_with_its_error() {
 }
 
 #[tokio::test]
-async fn a_revision_has_form_unit_range_and_value_of_keys() {
+async fn a_revision_has_form_unit_range_value_per_key() {
     let shown = Fixture::new().newest().await;
     let fields = shown["fields"].as_array().unwrap();
     let field = fields

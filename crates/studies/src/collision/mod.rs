@@ -120,7 +120,7 @@ fn methods(world: &World) -> anyhow::Result<Vec<Method>> {
     Ok(methods)
 }
 
-/// Returns the query of the collision core over these bodies.
+/// Returns a [`Query`] that the collision core answers: `parts` swept against `elements`.
 fn swept(elements: &[lpm::exact::Body], parts: &[lpm::exact::Body]) -> anyhow::Result<Query> {
     let mut model = Model::new();
     for (number, body) in elements.iter().enumerate() {

@@ -40,7 +40,7 @@ pub struct Stepping {
     layers: Vec<Layer>,
     columns: usize,
     parts: Vec<Prepared>,
-    /// For each element, the number of the last query that tested it: an element may lie in several layers and cells.
+    /// For each element, the last query that tested it: a query tests an element once, though several cells hold it.
     tested: Vec<u64>,
     /// Number of queries so far; each is one part at one pose.
     queries: u64,

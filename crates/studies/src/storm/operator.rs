@@ -1,5 +1,5 @@
 //! A simulated operator: gives sensible and random orders, refused ones included, and restarts the line from any state.
-//! Ends the program when the lot is complete or after [`PATIENCE`], and aborts it after as long again.
+//! Ends the program when the lot is complete or after [`LIFE_TIMEOUT`], and aborts it after as long again.
 
 use crate::dice::Dice;
 use bus::Pace;
@@ -12,7 +12,7 @@ use tokio::sync::{mpsc, oneshot, watch};
 use units::{RigTime, Span};
 
 /// Longest time until the operator ends the program; after as long again it aborts the program.
-const PATIENCE: Span = Span::ms(25_000);
+const LIFE_TIMEOUT: Span = Span::ms(25_000);
 
 /// One order and its answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -46,9 +46,9 @@ pub struct Operator {
 }
 
 impl Operator {
-    /// Gives orders until the lot is complete, the program has ended, or [`PATIENCE`] is over.
+    /// Gives orders until the lot is complete, the program has ended, or [`LIFE_TIMEOUT`] is over.
     pub async fn operate(mut self) {
-        while self.pace.now() < RigTime(0) + PATIENCE {
+        while self.pace.now() < RigTime(0) + LIFE_TIMEOUT {
             let wait = Span::ms(self.dice.between(50, 2_000));
             self.pace.sleep_until(self.pace.now() + wait).await;
             let (state, mode) = {
@@ -69,7 +69,7 @@ impl Operator {
         }
         self.stop.store(true, Ordering::Release);
         // A line that waits for single steps or for a magazine does not finish the parts inside by itself.
-        self.pace.sleep_until(self.pace.now() + PATIENCE).await;
+        self.pace.sleep_until(self.pace.now() + LIFE_TIMEOUT).await;
         self.abort.store(true, Ordering::Release);
     }
 

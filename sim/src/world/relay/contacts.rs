@@ -4,7 +4,7 @@
 //! resistance of its own, and a bounce list determines its bounce until it settles. All other touches and breaks
 //! come from the motion directly, for example the flutter of a pulse that is too short.
 
-use super::lumped::{Event, Kind};
+use super::lumped::{Element, Event};
 use super::{Relay, SETTLING_US};
 use crate::world::probes::{Change, Contact};
 
@@ -12,9 +12,9 @@ impl Relay {
     /// Handles a change of mode in the motion.
     pub(super) fn touched(&mut self, event: &Event) -> Option<Change> {
         let contact = match event.kind {
-            Kind::No => Contact::No,
-            Kind::Nc => Contact::Nc,
-            Kind::Backstop | Kind::Seat | Kind::CoilBlocked => return None,
+            Element::No => Contact::No,
+            Element::Nc => Contact::Nc,
+            Element::Backstop | Element::Seat | Element::CoilBlocked => return None,
         };
         let t_us = event.t_s * 1e6;
         if event.on && contact != self.side {
@@ -41,8 +41,8 @@ impl Relay {
             return None;
         }
         let closed = self.motion.touches(match self.side {
-            Contact::No => Kind::No,
-            Contact::Nc => Kind::Nc,
+            Contact::No => Element::No,
+            Contact::Nc => Element::Nc,
         });
         self.set(t_us, self.side, closed)
     }

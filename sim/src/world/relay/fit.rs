@@ -15,7 +15,7 @@
 
 use std::ops::Range;
 
-use super::lumped::{Drive, Kind, Model, Parameters, Solver, State};
+use super::lumped::{Drive, Element, Model, Parameters, Solver, State};
 
 /// Results that the fitted relay shows, at 23 C.
 #[derive(Debug, Clone, Copy)]
@@ -197,7 +197,7 @@ impl FitTarget {
             model,
             model.at_rest(0.0),
             &Drive::still(self.nominal_v),
-            Kind::No,
+            Element::No,
         )
     }
 
@@ -210,13 +210,13 @@ impl FitTarget {
             &Drive::Suppression {
                 volts: self.zener_v,
             },
-            Kind::Nc,
+            Element::Nc,
         )
     }
 }
 
 /// Returns the instant of the first make of a contact, s; [`LONGEST_S`] if it never makes.
-fn first_make(model: &Model, start: State, drive: &Drive, contact: Kind) -> f64 {
+fn first_make(model: &Model, start: State, drive: &Drive, contact: Element) -> f64 {
     let mut solver = Solver::new(model, drive, 0.0, start, RTOL);
     while let Ok(Some(event)) = solver.advance(model, drive, LONGEST_S) {
         if event.kind == contact && event.on {

@@ -12,7 +12,7 @@
 
 use serde::Serialize;
 
-use super::lumped::{Drive, Event, Kind, LAMBDA, Model, Solver, State, V, W, X, Y};
+use super::lumped::{Drive, Element, Event, LAMBDA, Model, Solver, State, V, W, X, Y};
 
 /// Relative tolerance of a step: instants to a nanosecond, while the counters resolve 20 us.
 const RTOL: f64 = 1e-6;
@@ -84,7 +84,7 @@ impl Motion {
     }
 
     /// Checks whether a contact or stop is touched now.
-    pub fn touches(&self, kind: Kind) -> bool {
+    pub fn touches(&self, kind: Element) -> bool {
         self.model.stops.overlap(kind, &self.solver.state) > 0.0
     }
 

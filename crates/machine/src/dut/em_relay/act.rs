@@ -85,13 +85,10 @@ impl Points {
                 let range = self.range.iter();
                 act::Act::Set(range.flat_map(|it| it.select(code)).collect())
             }
-            Act::ConfirmRange { code, within } => match &self.range {
-                Some(range) => act::Act::Agree {
-                    expected: range.expects(code).to_vec(),
-                    word: self.board.clone(),
-                    within,
-                },
-                None => act::Act::Read(act::Read::Word(self.board.clone())),
+            Act::ConfirmRange { code, within } => act::Act::Agree {
+                expected: self.range.iter().flat_map(|it| it.expects(code)).collect(),
+                word: self.board.clone(),
+                within,
             },
             Act::Supply(outputs) => self.supplied(outputs),
             Act::Read(read) => act::Act::Read(self.wired_read(read, scanned)),

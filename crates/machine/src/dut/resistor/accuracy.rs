@@ -1,15 +1,10 @@
 //! Uncertainty of a resistance, computed from the makers' accuracies, since the kind has no calibration.
 
 use super::recipe::ResistorRecipe;
-use crate::dut::accuracy::AccuracySettings;
+use crate::dut::accuracy::{AccuracySettings, FULL_SCALE_V, LSB_V, READABLE_V};
 use crate::gauge::Budget;
 use crate::gauge::budget::{rectangular, resolution};
 
-/// Full scale and step (12 bits) of a +-10 V input, V at the terminal.
-const FULL_SCALE_V: f64 = 10.0;
-const STEP_V: f64 = 2.0 * FULL_SCALE_V / 4096.0;
-/// Share of the full scale that a good part may use.
-const USABLE: f64 = 0.98;
 /// Greatest difference between the temperature of the part and the reference temperature, K.
 const TEMPERATURE_K: f64 = 10.0;
 /// Resistance of both probe contacts in series, ohm (half width).
@@ -30,7 +25,7 @@ impl ChannelAccuracy {
     }
 
     fn noise_v(&self) -> f64 {
-        (self.accuracy.ai_noise_lsb * STEP_V).hypot(resolution(STEP_V))
+        (self.accuracy.ai_noise_lsb * LSB_V).hypot(resolution(LSB_V))
     }
 
     /// Returns the current below which a reading counts as an open circuit, A.
@@ -40,7 +35,7 @@ impl ChannelAccuracy {
 
     /// Returns the greatest current that the channel reads, A.
     pub fn most_ampere(&self) -> f64 {
-        USABLE * FULL_SCALE_V / self.volt_per_ampere
+        READABLE_V / self.volt_per_ampere
     }
 
     /// Returns the uncertainty budget of a resistance, ohm.

@@ -36,7 +36,7 @@ fn noticed(seed: u64, factor: f64, others: f64, parts: usize, rate: f64) -> Opti
 }
 
 #[test]
-fn a_kept_promise_is_disproved_at_most_at_the_stated_rate() {
+fn a_kept_promise_is_disproved_at_most_as_stated() {
     let lots = 2000;
     let alarms =
         |others| (0..lots).filter(move |seed| noticed(*seed, 1.0, others, 100, 0.02).is_some());
@@ -105,7 +105,7 @@ fn other_terms_are_taken_out_of_the_scatter_seen() {
 }
 
 #[test]
-fn no_residuals_show_nothing() {
+fn no_residuals_are_no_evidence() {
     let mut none = Evidence::default();
     none.add(one(f64::NAN, 1.0, 0.0));
     none.add(one(1.0, 0.0, 0.0));

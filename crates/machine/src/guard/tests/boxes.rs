@@ -45,8 +45,8 @@ pub(super) fn boxed(settings: &GuardSettings) -> Vec<Boxed> {
 /// Appends the boxes of a piece; `lying`: rotated from z onto x, the only rotation in the scene.
 fn inner_boxes(piece: &Piece, at: [f64; 3], lying: bool, out: &mut Vec<([f64; 3], [f64; 3])>) {
     match piece.kind {
-        Kind::Block => out.push((at, piece.half.unwrap())),
-        Kind::Cylinder => {
+        ShapeKind::Block => out.push((at, piece.half.unwrap())),
+        ShapeKind::Cylinder => {
             let side = piece.radius.unwrap() / 2f64.sqrt();
             let half = piece.height.unwrap() / 2.0;
             out.push((
@@ -58,7 +58,7 @@ fn inner_boxes(piece: &Piece, at: [f64; 3], lying: bool, out: &mut Vec<([f64; 3]
                 },
             ));
         }
-        Kind::Compound => {
+        ShapeKind::Compound => {
             for part in piece.parts.as_ref().unwrap() {
                 let shift = part.pose.position;
                 inner_boxes(part, std::array::from_fn(|i| at[i] + shift[i]), lying, out);

@@ -3,7 +3,7 @@
 use super::MockRig;
 use super::device;
 use crate::handling::feed::Feed;
-use crate::handling::ledger::Kind;
+use crate::handling::ledger::PartRole;
 use crate::handling::moves::Move;
 use crate::handling::place::{NestId, Place};
 use crate::rig::point::DigitalIn;
@@ -53,7 +53,7 @@ fn a_part_gets_its_number_in_the_nest() {
     );
     assert_eq!(
         mock.ledger.part(Place::NEST).map(|part| part.kind.clone()),
-        Some(Kind::Lot(1))
+        Some(PartRole::Lot(1))
     );
     assert_eq!(step(feed, &mut mock, true), Feed::Retracting);
     mock.carried_out(Move::PusherRetract);
@@ -167,7 +167,7 @@ fn reference_parts_come_first_in_magazine_order() {
     step(feed, &mut mock, true);
     assert_eq!(
         mock.ledger.part(Place::NEST).map(|part| part.kind.clone()),
-        Some(Kind::Reference("G-12-1".into()))
+        Some(PartRole::Reference("G-12-1".into()))
     );
     assert_eq!(mock.reference_serials.len(), 4);
 }

@@ -1,7 +1,7 @@
 //! Every part is in exactly one place, and the places add up.
 
 use crate::dut::em_relay::bins;
-use crate::handling::ledger::{Kind, Ledger};
+use crate::handling::ledger::{Ledger, PartRole};
 use crate::handling::place::{NestId, Place};
 use crate::rig::bin::Bin;
 use units::RigTime;
@@ -37,10 +37,10 @@ fn four_places_may_hold_four_parts() {
 fn parts_are_numbered_in_order_of_entering_the_nest() {
     let mut ledger = Ledger::default();
     let expected = [
-        (Some("G-12-1"), Kind::Reference("G-12-1".into())),
-        (None, Kind::Lot(1)),
-        (Some("G-12-2"), Kind::Reference("G-12-2".into())),
-        (None, Kind::Lot(2)),
+        (Some("G-12-1"), PartRole::Reference("G-12-1".into())),
+        (None, PartRole::Lot(1)),
+        (Some("G-12-2"), PartRole::Reference("G-12-2".into())),
+        (None, PartRole::Lot(2)),
     ];
     for (ordinal, (reference, kind)) in (1..).zip(expected) {
         ledger.enter_pocket();
@@ -128,7 +128,7 @@ fn a_part_is_always_in_exactly_one_place() {
     ledger.return_to_gripper();
     assert_eq!(places(&ledger), [Place::Gripper]);
     ledger.drop_over(Bin::PASS, RigTime(0), 0);
-    assert_eq!(ledger.land().map(|part| part.kind), Some(Kind::Lot(1)));
+    assert_eq!(ledger.land().map(|part| part.kind), Some(PartRole::Lot(1)));
     assert!(ledger.balances() && ledger.inside() == 0);
 }
 

@@ -1,7 +1,7 @@
 //! Homing moves in an order proven clear, and places parts where the sensors show them.
 
 use super::MockRig;
-use crate::handling::ledger::{Kind, Ledger};
+use crate::handling::ledger::{Ledger, PartRole};
 use crate::handling::moves::Move;
 use crate::handling::place::{NestId, Place};
 use crate::handling::recovery::Recovery;
@@ -196,7 +196,7 @@ fn a_pushed_part_never_counts_as_the_lost_one() {
     mock.scan();
     carried_out(&mut mock);
     let kind = mock.ledger.part(Place::NEST).map(|part| part.kind.clone());
-    assert_eq!(kind, Some(Kind::Lot(2)), "the first one fell");
+    assert_eq!(kind, Some(PartRole::Lot(2)), "the first one fell");
     assert_eq!((mock.ledger.lost, mock.ledger.found), (1, 0));
 }
 

@@ -7,7 +7,7 @@ use crate::dut::em_relay::measure::TestRecord;
 use crate::dut::em_relay::reference_part::check;
 use crate::dut::em_relay::settings::ReferencePart;
 use crate::gauge::budget::{Budget, Reading};
-use crate::handling::ledger::Kind;
+use crate::handling::ledger::PartRole;
 use crate::handling::place::Place;
 use crate::handling::wear::Uses;
 use crate::rig::sample::Sample;
@@ -91,8 +91,8 @@ fn kinds(machine: &mut Machine) -> Vec<String> {
                 .judged
                 .iter()
                 .map(|one| match &one.part.kind {
-                    Kind::Reference(_) => "golden".to_owned(),
-                    Kind::Lot(seq) => seq.to_string(),
+                    PartRole::Reference(_) => "golden".to_owned(),
+                    PartRole::Lot(seq) => seq.to_string(),
                 }),
         );
         let rests = machine.station.outer() == State::Held;
@@ -158,7 +158,7 @@ fn an_interrupted_reference_check_begins_again() {
         .station
         .ledger()
         .part(Place::NEST)
-        .is_none_or(|part| matches!(part.kind, Kind::Lot(_)))
+        .is_none_or(|part| matches!(part.kind, PartRole::Lot(_)))
     {
         machine.turn();
     }

@@ -60,6 +60,7 @@ pub struct Machine {
     pub station: Station,
     pub mock: MockRig,
     pub bus: Option<Alarm>,
+    pub host_late: Option<Span>,
     pub stop: bool,
     pub abort: bool,
     /// Key of an actuator that never arrives.
@@ -95,6 +96,7 @@ pub fn quiet(image: &Image) -> Inputs<'_> {
         recorded: 0,
         history: HistoryState::Written,
         bus: None,
+        host_late: None,
         stop: false,
         abort: false,
         orders: Vec::new(),
@@ -137,6 +139,7 @@ impl Machine {
             station: station(count, &mock),
             mock,
             bus: None,
+            host_late: None,
             stop: false,
             abort: false,
             sticking: None,
@@ -264,6 +267,7 @@ impl Machine {
             job: job.clone(),
             recorded,
             bus: bus.clone(),
+            host_late: self.host_late,
             stop,
             abort: self.abort,
             ..quiet(&image)

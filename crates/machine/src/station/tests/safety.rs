@@ -133,6 +133,23 @@ fn safety_inputs_that_are_no_longer_read_are_trouble() {
 }
 
 #[test]
+fn a_late_computer_explains_an_unread_input() {
+    let mut machine = Machine::new(None, vec![Specimen::MissingPin]);
+    for _ in 0..40 {
+        machine.turn();
+    }
+    machine.mock.now = machine.mock.now + Span::ms(973);
+    machine.host_late = Some(Span::ms(560));
+    let output = machine.turn_without_scan();
+    assert_safe(&output, "host_late");
+    let late = output.record.alarms[0].text(Lang::En);
+    assert!(
+        late.contains("560 ms") && late.contains("emergency_stop_ok"),
+        "{late}"
+    );
+}
+
+#[test]
 fn the_station_waits_briefly_for_the_first_scan() {
     let mut machine = Machine::new(Some(1), Vec::new());
     machine.mock = super::MockRig::unread();

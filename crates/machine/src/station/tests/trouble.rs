@@ -67,6 +67,7 @@ fn every_alarm() -> Vec<Alarm> {
         Alarm::bus("silent"),
         Alarm::history_lost("relayrig.db", "recording: locked"),
         Alarm::stale(DigitalIn::AirOk),
+        Alarm::host_late(DigitalIn::AirOk, Span::ms(312)),
         Alarm::button_stuck(DigitalIn::ButtonStop),
         Alarm::part_sticks(),
         Alarm::step_too_long("probing", after),

@@ -16,7 +16,30 @@ function showBus() {
     accepted.toFixed(0) + " ms", word("bus-age") + " " + age.toFixed(0) + " ms"].join(" · ");
 }
 
-PAGES.bus = {show: showBus};
+// Shows what the system grants the program, and a histogram of how late this computer wakes the cycle.
+function showHost() {
+  const {fifo_priority: priority, memory_locked: locked, refused, lateness} = view.host;
+  const rights = [priority === null ? "" : "SCHED_FIFO " + priority, locked ? word("host-locked") : "", ...refused.map((it) =>
+    word("host-refused") + " " + it)].filter(Boolean);
+  const ms = (key, value) => word(key) + " " + value.toFixed(2) + " ms";
+  const figures = lateness.waits ? [ms("host-p50", lateness.p50_ms), ms("host-p999", lateness.p999_ms),
+    ms("host-worst", lateness.worst_ms), ms("host-recent", lateness.recent_ms)] : [word("host-virtual")];
+  at("host").textContent = [...rights, ...figures].join(" · ");
+  at("lateness").replaceChildren(...lateness.buckets.filter((it) => it.count).map((it) => {
+    const bar = make("meter");
+    // A logarithm, because the few late waits are the ones that matter.
+    bar.max = Math.log10(1 + lateness.waits);
+    bar.value = Math.log10(1 + it.count);
+    const element = row(it.up_to_ms.toFixed(3), integerText(it.count), shareText(it.count, lateness.waits));
+    element.lastElementChild.append(" ", bar);
+    return element;
+  }));
+}
+
+PAGES.bus = {show: () => {
+  showBus();
+  showHost();
+}};
 
 // --- signals and motions ---
 

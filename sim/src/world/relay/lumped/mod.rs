@@ -32,7 +32,7 @@ mod tests;
 
 pub use coil::{Drive, Waveform};
 pub use model::Model;
-pub use modes::{Kind, Modes};
+pub use modes::{Element, Modes};
 pub use outcome::Outcome;
 pub use parameters::Parameters;
 pub use solver::{Event, SolveError, Solver};

@@ -1,7 +1,7 @@
 //! The equations of motion, with precomputed constants.
 
 use super::coil::Drive;
-use super::modes::{Kind, Modes, StopPositions};
+use super::modes::{Element, Modes, StopPositions};
 use super::parameters::Parameters;
 use super::stop::Stop;
 use super::{LAMBDA, State, X};
@@ -103,7 +103,7 @@ impl Model {
                 slope,
                 since_s,
             } => (volts + slope * (t_s - since_s) - self.ohm * current) * self.eddy,
-            Drive::Suppression { volts } => match modes.is_engaged(Kind::CoilBlocked) {
+            Drive::Suppression { volts } => match modes.is_engaged(Element::CoilBlocked) {
                 true => self.blocked_rate(current),
                 false => (-volts - self.ohm * current) * self.eddy,
             },
@@ -161,16 +161,16 @@ impl Model {
         let leaf = p.k_l * (x + p.d0 - y) + p.c_l * (v - w);
         let mut load = p.F_r0 + p.k_r * x + p.c_a * v + leaf;
         let mut tip = leaf;
-        if modes.is_engaged(Kind::Backstop) {
+        if modes.is_engaged(Element::Backstop) {
             load -= self.stop.push(-x, -v);
         }
-        if modes.is_engaged(Kind::Seat) {
+        if modes.is_engaged(Element::Seat) {
             load += self.stop.push(x - p.X, v);
         }
-        if modes.is_engaged(Kind::Nc) {
+        if modes.is_engaged(Element::Nc) {
             tip += self.contact.push(-y, -w);
         }
-        if modes.is_engaged(Kind::No) {
+        if modes.is_engaged(Element::No) {
             tip -= self.contact.push(y - p.G, w);
         }
         let across = phi * per_spread;
@@ -182,10 +182,10 @@ impl Model {
 
     /// Returns the gap function of a kind; a value above zero sets its flag.
     #[inline]
-    pub fn gap(&self, kind: Kind, s: &State, drive: &Drive) -> f64 {
+    pub fn gap(&self, kind: Element, s: &State, drive: &Drive) -> f64 {
         match (kind, drive) {
-            (Kind::CoilBlocked, Drive::Source { .. }) => -1.0,
-            (Kind::CoilBlocked, Drive::Suppression { volts }) => {
+            (Element::CoilBlocked, Drive::Source { .. }) => -1.0,
+            (Element::CoilBlocked, Drive::Suppression { volts }) => {
                 let current = self.still_current(s);
                 self.blocked_rate(current) - (-volts - self.ohm * current) * self.eddy
             }
@@ -196,7 +196,7 @@ impl Model {
     /// Returns the flags that belong to a state.
     pub fn modes(&self, s: &State, drive: &Drive) -> Modes {
         let mut modes = Modes::default();
-        for kind in Kind::TOUCHING.into_iter().chain([Kind::CoilBlocked]) {
+        for kind in Element::TOUCHING.into_iter().chain([Element::CoilBlocked]) {
             modes.set(kind, self.gap(kind, s, drive) > 0.0);
         }
         modes

@@ -7,7 +7,7 @@ use super::{State, V, W, X, Y};
 
 /// An element that is either engaged or free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum Element {
     /// Armature on its rest stop.
     Backstop,
     /// Armature on the pole.
@@ -20,9 +20,9 @@ pub enum Kind {
     CoilBlocked,
 }
 
-impl Kind {
+impl Element {
     /// The four mechanical contacts and stops.
-    pub const TOUCHING: [Kind; 4] = [Kind::Backstop, Kind::Seat, Kind::Nc, Kind::No];
+    pub const TOUCHING: [Element; 4] = [Element::Backstop, Element::Seat, Element::Nc, Element::No];
 
     /// Returns the name in files.
     pub fn name(self) -> &'static str {
@@ -43,12 +43,12 @@ pub struct Modes([bool; 5]);
 impl Modes {
     /// Checks whether a kind is engaged.
     #[inline]
-    pub fn is_engaged(self, kind: Kind) -> bool {
+    pub fn is_engaged(self, kind: Element) -> bool {
         self.0[kind as usize]
     }
 
     /// Sets or clears the flag of a kind.
-    pub fn set(&mut self, kind: Kind, on: bool) {
+    pub fn set(&mut self, kind: Element, on: bool) {
         self.0[kind as usize] = on;
     }
 }
@@ -65,25 +65,25 @@ pub struct StopPositions {
 impl StopPositions {
     /// Returns the overlap at a stop, m; above zero while the bodies press.
     #[inline]
-    pub fn overlap(self, kind: Kind, s: &State) -> f64 {
+    pub fn overlap(self, kind: Element, s: &State) -> f64 {
         match kind {
-            Kind::Backstop => -s[X],
-            Kind::Seat => s[X] - self.seat,
-            Kind::Nc => -s[Y],
-            Kind::No => s[Y] - self.no,
-            Kind::CoilBlocked => 0.0,
+            Element::Backstop => -s[X],
+            Element::Seat => s[X] - self.seat,
+            Element::Nc => -s[Y],
+            Element::No => s[Y] - self.no,
+            Element::CoilBlocked => 0.0,
         }
     }
 
     /// Returns the rate of that overlap, m/s.
     #[inline]
-    pub fn rate(self, kind: Kind, s: &State) -> f64 {
+    pub fn rate(self, kind: Element, s: &State) -> f64 {
         match kind {
-            Kind::Backstop => -s[V],
-            Kind::Seat => s[V],
-            Kind::Nc => -s[W],
-            Kind::No => s[W],
-            Kind::CoilBlocked => 0.0,
+            Element::Backstop => -s[V],
+            Element::Seat => s[V],
+            Element::Nc => -s[W],
+            Element::No => s[W],
+            Element::CoilBlocked => 0.0,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Results of a transient, derived from its events.
 
-use super::modes::Kind;
+use super::modes::Element;
 use super::solver::Event;
 use super::{V, W};
 
@@ -36,28 +36,28 @@ pub struct Outcome {
 impl Outcome {
     /// Derives the results from a list of events.
     pub fn of(events: &[Event]) -> Self {
-        let of = |kind: Kind| events.iter().filter(move |e| e.kind == kind);
-        let first = |kind: Kind, on: bool| of(kind).find(|e| e.on == on);
+        let of = |kind: Element| events.iter().filter(move |e| e.kind == kind);
+        let first = |kind: Element, on: bool| of(kind).find(|e| e.on == on);
         let at = |event: Option<&Event>| event.map(|e| e.t_s);
-        let makes = |kind: Kind| of(kind).filter(|e| e.on).count() as u32;
+        let makes = |kind: Element| of(kind).filter(|e| e.on).count() as u32;
         Self {
-            nc_first_open: at(first(Kind::Nc, false)),
-            nc_first_make: at(first(Kind::Nc, true)),
-            no_first_make: at(first(Kind::No, true)),
-            no_first_open: at(first(Kind::No, false)),
-            seat_first: at(first(Kind::Seat, true)),
-            no_last_change: at(of(Kind::No).next_back()),
-            nc_last_change: at(of(Kind::Nc).next_back()),
-            no_makes: makes(Kind::No),
-            nc_makes: makes(Kind::Nc),
-            coil_blocked_first: at(first(Kind::CoilBlocked, true)),
-            no_first_make_speed: first(Kind::No, true).map(|e| e.state[W]),
-            seat_first_speed: first(Kind::Seat, true).map(|e| e.state[V]),
+            nc_first_open: at(first(Element::Nc, false)),
+            nc_first_make: at(first(Element::Nc, true)),
+            no_first_make: at(first(Element::No, true)),
+            no_first_open: at(first(Element::No, false)),
+            seat_first: at(first(Element::Seat, true)),
+            no_last_change: at(of(Element::No).next_back()),
+            nc_last_change: at(of(Element::Nc).next_back()),
+            no_makes: makes(Element::No),
+            nc_makes: makes(Element::Nc),
+            coil_blocked_first: at(first(Element::CoilBlocked, true)),
+            no_first_make_speed: first(Element::No, true).map(|e| e.state[W]),
+            seat_first_speed: first(Element::Seat, true).map(|e| e.state[V]),
         }
     }
 
     /// Returns the open time of a contact between its first closing and its last change, s.
-    pub fn open_s(events: &[Event], contact: Kind) -> f64 {
+    pub fn open_s(events: &[Event], contact: Element) -> f64 {
         let mut own = events
             .iter()
             .filter(|e| e.kind == contact)

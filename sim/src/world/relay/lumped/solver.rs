@@ -11,7 +11,7 @@ use super::State;
 use super::coil::Drive;
 use super::dop853::{EVALUATIONS, Tolerance, TrialStep, step};
 use super::model::Model;
-use super::modes::{Kind, Modes};
+use super::modes::{Element, Modes};
 
 /// A change of a mode.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,7 +19,7 @@ pub struct Event {
     /// Instant, s.
     pub t_s: f64,
     /// Element whose mode changes.
-    pub kind: Kind,
+    pub kind: Element,
     /// True when the element engages, false when it becomes free.
     pub on: bool,
     /// The state at that instant.
@@ -89,8 +89,8 @@ impl Solver {
 
     /// Applies a changed drive: recomputes the flag of the suppression.
     pub fn drive_changed(&mut self, model: &Model, drive: &Drive) {
-        let blocked = model.gap(Kind::CoilBlocked, &self.state, drive) > 0.0;
-        self.modes.set(Kind::CoilBlocked, blocked);
+        let blocked = model.gap(Element::CoilBlocked, &self.state, drive) > 0.0;
+        self.modes.set(Element::CoilBlocked, blocked);
     }
 
     /// Advances to `until_s`, or to the first event before it.
@@ -161,7 +161,7 @@ impl Solver {
         Ok(())
     }
 
-    fn change(&mut self, h: f64, state: State, kind: Kind) -> Event {
+    fn change(&mut self, h: f64, state: State, kind: Element) -> Event {
         let on = !self.modes.is_engaged(kind);
         self.t_s += h;
         self.state = state;
@@ -185,7 +185,7 @@ impl Solver {
         state: State,
     ) -> (f64, State) {
         let mut best = (h, state);
-        for kind in Kind::TOUCHING {
+        for kind in Element::TOUCHING {
             let side = if self.modes.is_engaged(kind) {
                 1.0
             } else {
@@ -218,10 +218,10 @@ impl Solver {
         slope: &State,
         h: f64,
         state: State,
-    ) -> Option<(f64, State, Kind)> {
+    ) -> Option<(f64, State, Element)> {
         let mut first = None;
         let (mut h, mut state) = (h, state);
-        for kind in Kind::TOUCHING.into_iter().chain([Kind::CoilBlocked]) {
+        for kind in Element::TOUCHING.into_iter().chain([Element::CoilBlocked]) {
             if (model.gap(kind, &state, drive) > 0.0) != self.modes.is_engaged(kind) {
                 (h, state) = self.locate(model, drive, slope, kind, h, state);
                 first = Some((h, state, kind));
@@ -237,7 +237,7 @@ impl Solver {
         model: &Model,
         drive: &Drive,
         slope: &State,
-        kind: Kind,
+        kind: Element,
         h: f64,
         state: State,
     ) -> (f64, State) {

@@ -123,7 +123,7 @@ fn a_zener_releases_quickly_and_a_diode_slowly() {
 
 #[test]
 fn holding_the_equilibrium_moves_no_instant_by_a_microsecond() {
-    use crate::world::relay::lumped::{Excitation, Kind, Model, Outcome, Parameters, Waveform};
+    use crate::world::relay::lumped::{Element, Excitation, Model, Outcome, Parameters, Waveform};
     let world = still_world();
     let points = [
         (0.0, 5.0),
@@ -159,7 +159,7 @@ fn holding_the_equilibrium_moves_no_instant_by_a_microsecond() {
     let last_make = whole
         .events
         .iter()
-        .filter(|e| e.kind == Kind::No && e.t_s > 0.15 && e.on)
+        .filter(|e| e.kind == Element::No && e.t_s > 0.15 && e.on)
         .map(|e| e.t_s);
     let found = [held[0], *held.iter().find(|t| **t > 150_000.0).unwrap()];
     let exact = [

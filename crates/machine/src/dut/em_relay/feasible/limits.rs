@@ -1,7 +1,7 @@
 //! Limits of a recipe beyond the reach of its test: with them every part would fail, or a bad one would pass.
 
 use super::Reach;
-use super::supply::READABLE_V;
+use crate::dut::accuracy::READABLE_V;
 use crate::dut::em_relay::measure::{BOUNCE_WINDOW, LONGEST_OPERATION};
 use crate::dut::em_relay::parameter::Parameter;
 use crate::dut::em_relay::points::AnalogIn;

@@ -1,7 +1,7 @@
 //! Demand of a test on the supply, and whether the supply range that meets this demand suits the recipe.
 
 use super::{Reach, nominal_v_per_s};
-use crate::dut::accuracy::AccuracySettings;
+use crate::dut::accuracy::{AccuracySettings, READABLE_V};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Points};
 use crate::dut::em_relay::recipe::RelayRecipe;
@@ -11,9 +11,7 @@ use crate::rig::supply::SupplyDemand;
 use crate::rig::wiring::Wiring;
 use units::{Ampere, Volt};
 
-/// Highest voltage that a reading at a terminal of the coil converter may have: 98 % of its +-10 V.
-pub(super) const READABLE_V: f64 = 9.8;
-/// Lowest voltage at a terminal that can be told from the voltage without current.
+/// Lowest voltage at a terminal that a test can distinguish from the one without current.
 const LEAST_CURRENT_V: f64 = 0.3;
 /// Share by which a good coil may differ from its nominal resistance where the recipe sets no limit.
 const USUAL_SPREAD: f64 = 0.1;
@@ -70,7 +68,7 @@ fn output_faults(
     points: &Points,
 ) -> impl Iterator<Item = Fault> {
     let test = &recipe.test;
-    let asked = [
+    let needed = [
         ("test.prebias_v", AnalogOut::SupplyLevel, test.prebias_v),
         (
             "test.coarse_span_v",
@@ -78,7 +76,7 @@ fn output_faults(
             test.coarse_span_v,
         ),
     ];
-    asked.into_iter().filter_map(|(key, output, volts)| {
+    needed.into_iter().filter_map(|(key, output, volts)| {
         let cannot = wiring.reaches(points.source(output), Volt(volts)).err()?;
         Some(Fault::new(key, volts, cannot.to_string()))
     })

@@ -63,9 +63,9 @@ const TEST: &[Key] = table! {
     key("coarse_span_v", above_zero(1000.0, "V"), "station", "height of the coarse ramp");
     key("coil_channels", Form::Choice(&CoilChannels::NAMES), "station, gauge", "channels that measure the coil");
     key("expected_operate_v", above_zero(1000.0, "V"), "station", "operate threshold expected of the lot");
-    key("expected_operate_sd_v", above_zero(100.0, "V"), "station", "its standard deviation");
+    key("expected_operate_sd_v", above_zero(20.0, "V"), "station", "its standard deviation");
     key("expected_release_v", above_zero(1000.0, "V"), "station", "release threshold expected of the lot");
-    key("expected_release_sd_v", above_zero(100.0, "V"), "station", "its standard deviation");
+    key("expected_release_sd_v", above_zero(20.0, "V"), "station", "its standard deviation");
     key("clamp", Form::Choice(&["zener", "diode"]), "station", "coil suppression during the timed release");
     optional("strategy", Form::Table(STRATEGY), "station", "per threshold; coarse_fine where none is named");
 };

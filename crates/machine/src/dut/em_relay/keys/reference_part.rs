@@ -5,7 +5,7 @@ use crate::form::{Form, Key, above_zero, key};
 
 const VOLTAGE: &[Key] = table! {
     key("value", above_zero(1000.0, "V"), "gauge", "certified value");
-    key("u", above_zero(100.0, "V"), "gauge", "standard uncertainty of the certificate");
+    key("u", above_zero(4.0, "V"), "gauge", "standard uncertainty of the certificate");
 };
 
 const COIL: &[Key] = table! {

@@ -1,7 +1,7 @@
 //! Context of a test: recipe, calibration, and the accuracies of the instruments.
 
 use crate::dut::Recipe;
-use crate::dut::accuracy::AccuracySettings;
+use crate::dut::accuracy::{AccuracySettings, LSB_V};
 use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::calibration::{Calibration, Overshoot};
 use crate::dut::em_relay::coil::ScanUncertainty;
@@ -18,9 +18,6 @@ use crate::instrument::act;
 use crate::rig::supply::{RangeMismatch, SupplyRange};
 use std::sync::Arc;
 use units::{Celsius, Ohm, Span, Volt};
-
-/// Resolution of a +-10 V input of 12 bits, volts per step.
-pub const LSB_V: f64 = 20.0 / 4096.0;
 
 /// Assumed overshoot of a 96 V/s ramp before the first reference part; it only places the first fine ramp. In another
 /// supply range the overshoot lasts as long, so its volts are proportional to the rate of the ramp.

@@ -21,16 +21,14 @@ const COM: usize = 2;
 /// Returns the acts of the check. They also select the supply range, which the safe outputs had deselected with all
 /// sources at zero.
 pub(super) fn acts(context: &Context) -> Vec<Act> {
-    let kelvin = [set(&[(KelvinTest, true)]), Act::Wait(Span::ms(1))];
-    let within = SWITCHING_TIMEOUT;
-    match context.range_code() {
-        Some(code) => [Act::SelectRange(code)]
-            .into_iter()
-            .chain(kelvin)
-            .chain([Act::ConfirmRange { code, within }])
-            .collect(),
-        None => kelvin.into_iter().chain([Act::Read(Read::Board)]).collect(),
-    }
+    let (code, within) = (context.range_code(), SWITCHING_TIMEOUT);
+    let read = match code {
+        Some(code) => Act::ConfirmRange { code, within },
+        None => Act::Read(Read::Board),
+    };
+    let mut acts = Vec::from_iter(code.map(Act::SelectRange));
+    acts.extend([set(&[(KelvinTest, true)]), Act::Wait(Span::ms(1)), read]);
+    acts
 }
 
 pub(super) fn conclude(readings: &Readings, state: &mut TestState) -> Option<Stage> {

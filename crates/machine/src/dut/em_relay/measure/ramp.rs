@@ -76,7 +76,7 @@ impl Expected {
         Self::new(coarse.indicated - Volt(predicted.volts), sd_v)
     }
 
-    /// Returns the interval from the certificate of a reference part under calibration; `None` for any other part.
+    /// Returns the interval that the reference part's certificate predicts while the overshoot is learned, else `None`.
     pub fn certified(context: &Context, track: Celsius, direction: Direction) -> Option<Self> {
         let (part, scale) = (context.teaching.as_ref()?, context.scale());
         let overshoot = context.overshoot(direction);

@@ -18,7 +18,7 @@ use crate::gauge::Evidence;
 use crate::gauge::evidence::Residuals;
 use std::sync::Arc;
 
-/// Share of the lots in which a promise that holds raises its alarm, at most.
+/// Greatest share of the lots in which a promise that holds raises its alarm.
 const FALSE_ALARMS: f64 = 5e-5;
 
 /// Promises and the evidence against them.

@@ -12,11 +12,11 @@ use units::Volt;
 const TAUGHT: u32 = 8;
 /// Standard deviation that a taught overshoot model leaves without any scatter of operations, of a 12 V coil.
 pub const REST: Volt = Volt(0.003);
-/// Greatest ratio of the factors of range and coil at which [`REST`] holds. On 3, 5, 9 and 18 V coils the ramp is 1.2 to 2
-/// times as steep for the coil, and the model leaves half as much again.
+/// Greatest ratio of the factors of range and coil at which [`REST`] holds. For 3, 5, 9 and 18 V coils the ramp is 1.2
+/// to 2 times as steep, and the model leaves half as much again.
 pub const STEEPEST: f64 = 1.1;
-/// Largest residual that counts, in promised standard deviations: now and then a part lies far off the model, which says
-/// nothing of operations.
+/// Largest residual that counts, in promised standard deviations: a rare part far off the model does not show how
+/// operations scatter.
 const OUTLIER: f64 = 3.5;
 
 /// Returns the residuals of repeated fine ramps of one part; `scatter` is the promised scatter.
@@ -32,8 +32,8 @@ pub fn of_repeats<T>(record: &TestRecord<T>, scatter: Volt) -> impl Iterator<Ite
     })
 }
 
-/// Returns the residual of the overshoot that `model` expects of a part: two operations scatter, a coarse and a fine one;
-/// `rest` is what the model leaves without them.
+/// Returns the residual of a part's overshoot about `model`. It contains the scatter of two operations, a coarse and a
+/// fine one, and `rest`, the error of the model.
 pub fn of_overshoot(
     model: &OvershootModel,
     ramp: &Ramp,
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_far_off_the_model_counts_as_an_outlier() {
+    fn a_part_off_the_model_counts_as_outlier() {
         let it = residual(40, 0.080).expect("a taught model");
         assert!((it.squares / (it.own + it.others) - OUTLIER.powi(2)).abs() < 1e-9);
     }
@@ -115,7 +115,7 @@ mod tests {
     fn repeated_ramps_scatter_about_their_mean() {
         let mut record = TestRecord::<()>::default();
         for volts in [7.88, 7.89, 7.90] {
-            let budget = Budget::default().with("golden parts", 0.004);
+            let budget = Budget::default().with("reference parts", 0.004);
             let budget = budget.with_random("repeatability", SCATTER.0);
             let reading = Reading {
                 value: volts,

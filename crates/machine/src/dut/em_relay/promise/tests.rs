@@ -49,7 +49,7 @@ fn stored(ai_noise_lsb: f64) -> Promises {
 }
 
 #[test]
-fn a_stored_broken_promise_stays_in_force_and_is_announced() {
+fn a_stored_broken_promise_stays_and_is_announced() {
     let mut later = stored(NOISE_LSB);
     assert!(noise_used(&later) > 2.0 * NOISE_LSB);
     assert_eq!(later.announce().len(), 1);
@@ -71,7 +71,7 @@ fn a_new_calibration_begins_with_the_promises() {
 }
 
 #[test]
-fn closures_that_scatter_twice_as_much_become_the_expected_scatter() {
+fn closures_that_scatter_more_widen_the_budget() {
     let mut context = context();
     let mut promises = Promises::new(&context);
     let promised = promises.promised(Promise::ClosureScatter);

@@ -1,4 +1,4 @@
-//! What a tested part shows of the promises.
+//! Observes the promises on tested parts.
 
 use super::{Promises, closure, operation};
 use crate::dut::em_relay::measure::{Observed, Ramp};
@@ -24,8 +24,8 @@ impl Promises {
         self.observe(Promise::ClosureScatter, closures);
     }
 
-    /// Observes the scatter of operations of a good part by what the models of both overshoots, operate and release, leave;
-    /// not where the ramp is too steep for the coil.
+    /// Observes the scatter of operations by the residuals of a good part about the models of both overshoots, operate
+    /// and release; does nothing where the ramp is too steep for the coil.
     pub fn watch_overshoots(
         &mut self,
         observed: &Observed,

@@ -1,6 +1,7 @@
 //! Supply levels at which the reference coil is measured, within the limits of the supply range.
 
 use super::SCANS;
+use crate::dut::accuracy::FULL_SCALE_V;
 use crate::dut::em_relay::measure::Context;
 use std::ops::Range;
 use units::Volt;
@@ -16,8 +17,6 @@ const SLOPE_MARGIN: f64 = 0.3 / 5.7;
 const USED: f64 = 0.9;
 /// Number of scans at a level where voltage or current is a small part of the range of its channel.
 const CURRENT_SCANS: usize = 4 * SCANS;
-/// Full scale of the coil converter.
-const FULL: Volt = Volt(10.0);
 /// Relative difference up to which two levels count as the same.
 const ALIKE: f64 = 0.1;
 
@@ -41,7 +40,7 @@ impl Levels {
         let read_v = context
             .points
             .gain(channel)
-            .map(|it| USED * FULL.0 / it * ohm);
+            .map(|it| USED * FULL_SCALE_V / it * ohm);
         let current = range.zip(read_v).map(|(range, read_v)| {
             let within_v = most_v.min(USED * range.max.0);
             Volt(read_v.min(within_v))

@@ -3,8 +3,8 @@
 use super::DROPS;
 use super::levels::Levels;
 use super::taken::Taken;
+use crate::dut::accuracy::LSB_V;
 use crate::dut::em_relay::measure::Context;
-use crate::dut::em_relay::measure::context::LSB_V;
 use crate::dut::em_relay::readings::{CoilScan, Readings};
 use crate::gauge::evidence::Residuals;
 use crate::instrument::readings::Readings as ByPoint;

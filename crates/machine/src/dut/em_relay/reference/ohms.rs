@@ -3,6 +3,7 @@
 use super::levels::Levels;
 use super::taken::{Taken, current, mean};
 use super::{ReferenceFault, SCANS};
+use crate::dut::accuracy::READABLE_V;
 use crate::dut::em_relay::calibration::{InputLine, OutputLine};
 use crate::dut::em_relay::measure::Context;
 use crate::dut::em_relay::readings::CoilScan;
@@ -10,9 +11,6 @@ use crate::dut::em_relay::recipe::CoilChannels;
 use crate::gauge::Factor;
 use crate::gauge::budget::rectangular;
 use units::Volt;
-
-/// Highest voltage that a reading at a terminal of the converter may have.
-const READABLE: Volt = Volt(9.5);
 
 /// Data from which the factors of the current channels are computed.
 pub(super) struct Ohms<'a> {
@@ -29,7 +27,7 @@ impl Ohms<'_> {
         let (context, known) = (self.context, &self.context.reference);
         let per_volt = context.points.gain(channels.current()).unwrap_or(0.0) / known.coil_ohm;
         let steps = self.taken.steps.iter().copied();
-        let within = steps.filter(|(at, _)| at.0 * per_volt <= READABLE.0);
+        let within = steps.filter(|(at, _)| at.0 * per_volt <= READABLE_V);
         let Some((at, scans)) = within.max_by(|a, b| a.0.0.total_cmp(&b.0.0)) else {
             return Err(ReferenceFault::NotRead {
                 name: channels.current().name(),
@@ -55,7 +53,7 @@ impl Ohms<'_> {
         scans: &[CoilScan],
         u_read: f64,
     ) -> Result<(f64, f64), ReferenceFault> {
-        if at.0 * self.voltage_gain <= READABLE.0 {
+        if at.0 * self.voltage_gain <= READABLE_V {
             let voltage_v = mean(scans, |scan| &scan.voltage_fine, "coil voltage")?;
             return Ok((voltage_v - self.input.offset_v.value, u_read));
         }

@@ -1,6 +1,7 @@
 //! Levels of the reference coil in each range of the supply.
 #![allow(clippy::unwrap_used)]
 use super::levels::Levels;
+use crate::dut::accuracy::FULL_SCALE_V;
 use crate::dut::em_relay::measure::Context;
 use crate::dut::em_relay::points::{AnalogIn, Points};
 use crate::dut::em_relay::recipe::CoilChannels;
@@ -8,9 +9,6 @@ use crate::dut::em_relay::tests::context;
 use crate::handling::tests::wiring;
 use std::sync::Arc;
 use units::Volt;
-
-/// Full scale of the coil converter.
-const FULL: Volt = Volt(10.0);
 
 /// Levels in the range with this name, of a recipe with these channels.
 fn levels(range: &str, channels: CoilChannels) -> (Levels, Context) {
@@ -32,7 +30,7 @@ fn levels_stay_within_every_range_and_channel() {
             let (levels, context) = levels(range, channels);
             let limits = context.range.as_ref().unwrap();
             let gain = context.points.gain(AnalogIn::CoilVoltageFine).unwrap();
-            assert!(levels.high.0 * gain < FULL.0, "{range}");
+            assert!(levels.high.0 * gain < FULL_SCALE_V, "{range}");
             for (level, _) in levels.steps() {
                 let current = level.0 / context.reference.coil_ohm;
                 assert!(level < limits.max && level > Volt(0.0), "{range}");
@@ -40,7 +38,7 @@ fn levels_stay_within_every_range_and_channel() {
             }
             let best = levels.current.unwrap_or(levels.high);
             let gain = context.points.gain(channels.current()).unwrap();
-            assert!(best.0 / context.reference.coil_ohm * gain < FULL.0);
+            assert!(best.0 / context.reference.coil_ohm * gain < FULL_SCALE_V);
         }
     }
 }

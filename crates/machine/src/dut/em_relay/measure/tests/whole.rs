@@ -394,7 +394,7 @@ fn only_results_inside_the_guard_band_repeat_once() {
 }
 
 #[test]
-fn nothing_is_driven_in_another_supply_range() {
+fn another_supply_range_prevents_every_drive() {
     let mut context = context();
     let wiring = crate::handling::tests::wiring();
     let mut ranges = wiring.supply_ranges.iter();

@@ -7,23 +7,27 @@
 //! for one request ([`traffic`]). A turn begins when an answer arrives, or at the instant that the last step asked for.
 //! Only the station knows which kind of device is under test.
 
+mod answers;
 mod commission;
 mod event;
 mod jog_preview;
+mod lateness;
 mod open_job;
 mod orders;
 mod profile;
 mod publish;
 mod record;
 mod scan_schedule;
+mod snapshot;
 mod standstill;
 mod timeouts;
 mod traffic;
 
+pub use lateness::Lateness;
+pub use snapshot::{Snapshot, snapshots};
 pub use traffic::LineEnds;
 
-use bus::{Answer, LineError, Pace};
-use dcon::Command;
+use bus::{Pace, Timer};
 pub use event::Event;
 use machine::guard::Guard;
 use machine::handling::NestId;
@@ -39,11 +43,11 @@ use machine::station::Station;
 use machine::station::packml;
 use machine::station::trouble::Alarm;
 use machine::station::turn::{Ending, HistoryState, Inputs, TurnOutput};
-use machine::view::{self, OrderRequest, View};
+use machine::view::{self, OrderRequest};
 pub use orders::PANEL;
 pub use profile::Profile;
 use profile::lap;
-pub(crate) use publish::line as alarm_line;
+pub use publish::line as alarm_line;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
@@ -72,8 +76,30 @@ pub struct CycleLinks {
     pub epoch_us: i64,
     /// State of the history; the recorder sets it.
     pub history: watch::Receiver<HistoryState>,
-    /// Sends the view to the screens.
-    pub view: watch::Sender<View>,
+    /// Carries snapshots to the screens; none on a rig without a screen.
+    pub snapshots: Option<mpsc::Sender<Snapshot>>,
+}
+
+/// How a run of the cycle ended.
+#[derive(Debug)]
+pub struct Ended {
+    /// Way in which it ended.
+    pub ending: Ending,
+    /// Wall time of the phases of its turns.
+    pub profile: Profile,
+    /// How late this computer woke it.
+    pub lateness: Lateness,
+}
+
+impl Ended {
+    /// Returns the end of a cycle whose assertion failed.
+    pub fn by_assertion() -> Self {
+        Self {
+            ending: Ending::Alarm,
+            profile: Profile::default(),
+            lateness: Lateness::default(),
+        }
+    }
 }
 
 /// The control cycle of one rig: its image, outputs, guard, station and lines.
@@ -109,6 +135,8 @@ pub struct Cycle {
     worst_age: Span,
     /// Motion that the guard refused last; cleared when another motion begins.
     refused: Option<view::MotionView>,
+    lateness: Lateness,
+    timer: Timer,
 }
 
 impl Cycle {
@@ -128,6 +156,7 @@ impl Cycle {
             traffic: Traffic::new(&wiring, lines),
             timeouts: Timeouts::new(&wiring),
             wiring,
+            timer: Timer::new(pace),
             pace,
             inside: station.ledger().parts_to_find(),
             station,
@@ -147,18 +176,19 @@ impl Cycle {
             worst_age: Span(0),
             refused: None,
             lost_status: None,
+            lateness: Lateness::default(),
         }
     }
 
     /// Verifies the modules, then takes one turn after another until the station has ended and the outputs are safe.
-    pub async fn run(mut self) -> (Ending, Profile) {
+    pub async fn run(mut self) -> Ended {
         self.verify().await;
         if let Some(alarm) = self
             .bus_alarm
             .take_if(|_| !self.verified && !self.station.is_attended())
         {
             self.send(Event::Alarm(alarm, self.pace.now()));
-            return (Ending::Alarm, self.profile);
+            return self.ended(Ending::Alarm);
         }
         self.verified = false;
         loop {
@@ -185,11 +215,19 @@ impl Cycle {
             if let Some(ending) = output.record.ending.take() {
                 assert!(output.rig.safe, "the run ends with outputs on");
                 self.make_safe().await;
-                return (ending, self.profile);
+                return self.ended(ending);
             }
             if self.job_done.is_none() && output.rig.wake_at.is_none_or(|at| at > now) {
                 self.wait(now, output.rig.wake_at).await;
             }
+        }
+    }
+
+    fn ended(self, ending: Ending) -> Ended {
+        Ended {
+            ending,
+            profile: self.profile,
+            lateness: self.lateness,
         }
     }
 
@@ -210,90 +248,6 @@ impl Cycle {
             self.note_bus_trouble(&text);
         }
         self.traffic.note_time(now);
-    }
-
-    fn take(&mut self, line: LineId, purpose: Purpose, answer: Answer) {
-        assert!(
-            answer.answered_at >= answer.requested_at,
-            "an answer precedes its request"
-        );
-        // Reading the reset status clears it, so the read cannot be repeated: when its reply is lost, the
-        // module may have restarted while it measured the part, and the part is void.
-        let is_status = matches!(
-            answer.command,
-            Command::Common(_, dcon::Common::ReadResetStatus)
-        );
-        let trouble = match &answer.outcome {
-            Ok(reply) => self
-                .image
-                .accept(
-                    line,
-                    &answer.command,
-                    reply,
-                    &answer.raw,
-                    answer.requested_at,
-                )
-                .err()
-                .map(|unexpected| format!("line {}: {unexpected}", self.wiring.line(line).name)),
-            Err(error) => Some(format!(
-                "{error} ({} of {} tries)",
-                answer.tries_used,
-                self.traffic.tries(line)
-            )),
-        };
-        let refused =
-            matches!(&answer.outcome, Err(LineError::Reply { reason, .. }) if reason.is_answer());
-        match (purpose, trouble) {
-            (Purpose::Write { module, job }, None) => {
-                self.outputs.confirmed(module);
-                self.timeouts.written(module);
-                self.finish_job(job, answer.answered_at, None);
-            }
-            // A module that refuses writes has a tripped host watchdog: its outputs are at their safe values.
-            (Purpose::Write { module, .. }, Some(_)) if self.making_safe && refused => {
-                self.outputs.confirmed(module);
-            }
-            (Purpose::Write { module, job }, Some(trouble)) => {
-                if self.timeouts.may_rewrite(module) {
-                    self.outputs.failed(module);
-                    if job {
-                        self.traffic.rewrite_for_job(module);
-                    }
-                } else {
-                    self.finish_job(job, answer.answered_at, Some(trouble.clone()));
-                    self.note_bus_trouble(&trouble);
-                }
-            }
-            (Purpose::Job, trouble) => {
-                let trouble = match is_status {
-                    true => trouble.or(self.lost_status.take()),
-                    false => trouble,
-                };
-                if let Some(trouble) = trouble.as_ref().filter(|_| !refused && !is_status) {
-                    self.note_bus_trouble(trouble);
-                }
-                self.finish_job(true, answer.answered_at, trouble);
-            }
-            (Purpose::Scan, Some(trouble)) => {
-                if is_status && self.is_measuring(line) {
-                    self.lost_status = Some(trouble.clone());
-                }
-                if let Some(times) = self.timeouts.scan_failed(line, &answer.command) {
-                    self.note_bus_trouble(&format!("{trouble}, {times} times in a row"));
-                }
-            }
-            (Purpose::Scan, None) => self.timeouts.scan_answered(line, &answer.command),
-            (Purpose::Check, Some(trouble)) => {
-                self.note_bus_trouble(&trouble);
-            }
-            (Purpose::Check | Purpose::Heartbeat, _) => {}
-        }
-    }
-
-    fn finish_job(&mut self, is_job: bool, at: RigTime, trouble: Option<String>) {
-        if is_job && let Some(done) = self.traffic.job_part_done(at, trouble) {
-            self.job_done = Some(done);
-        }
     }
 
     fn step(&mut self, now: RigTime) -> TurnOutput {
@@ -318,6 +272,7 @@ impl Cycle {
             recorded: self.links.recorded.load(Ordering::Acquire),
             history: self.links.history.borrow().clone(),
             bus: self.bus_alarm.take(),
+            host_late: self.host_late(),
             stop: self.links.stop.load(Ordering::Acquire),
         };
         self.station.step(now, inputs)
@@ -401,11 +356,6 @@ impl Cycle {
         }
     }
 
-    /// Keeps the first bus trouble of the turn; the station learns it in its next step.
-    fn note_bus_trouble(&mut self, detail: &str) {
-        self.bus_alarm.get_or_insert_with(|| Alarm::bus(detail));
-    }
-
     fn is_measuring(&self, line: LineId) -> bool {
         self.traffic.measuring_lines().contains(&line)
     }
@@ -457,7 +407,8 @@ impl Cycle {
                 self.orders_closed = asked.is_none();
                 self.pending_orders.extend(asked);
             }
-            () = self.pace.sleep_until(until) => {}
+            () = self.timer.until(until) => {}
         }
+        self.lateness.count(until, self.pace.now());
     }
 }

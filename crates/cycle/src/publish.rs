@@ -1,9 +1,9 @@
 //! Builds the view of the machine from station, image and outputs; parses orders for the station.
 
-use super::Cycle;
+use super::{Cycle, Snapshot};
 use machine::dut::verdict::Bin;
 use machine::guard::{Actuator, Position};
-use machine::handling::ledger::{Kind, Part};
+use machine::handling::ledger::{Part, PartRole};
 use machine::handling::mechanism::SENSOR_AGE;
 use machine::rig::point::DigitalInput;
 use machine::station::Station;
@@ -66,31 +66,31 @@ pub fn read(order: &view::Order) -> Result<Order, Refused> {
 }
 
 impl Cycle {
-    /// Publishes the view at most once per [`PACE`], and only while a screen is connected.
+    /// Sends a snapshot at most once per [`PACE`], and only on a rig with a screen.
     pub(super) fn publish(&mut self, now: RigTime, last: bool) {
-        if self.links.view.receiver_count() == 0 || (now < self.publish_at && !last) {
+        let Some(snapshots) = self.links.snapshots.clone() else {
+            return;
+        };
+        if now < self.publish_at && !last {
             return;
         }
         self.publish_at = now + PACE;
         let mut machine = self.machine(now);
         machine.jogs = self.jog_preview(now);
-        let (station, epoch_us) = (&self.station, self.links.epoch_us);
-        let alarms = lines(station, epoch_us);
-        let at_us = jiff::Timestamp::now().as_microsecond();
-        self.links.view.send_modify(|view| {
-            view.at_us = at_us;
-            let activity = station.activity();
-            view.state = activity.name();
-            view.doing = activity.code();
-            view.stage = activity.stage();
-            view.inside = station.ledger().inside();
-            // Between lots the screen keeps the results of the last lot.
-            if !station.is_between_lots() {
-                view.came_in = station.ledger().came_in;
-                view.went_out = station.ledger().went_out;
-            }
-            view.alarms = alarms;
-            view.machine = machine;
+        let station = &self.station;
+        let (activity, ledger) = (station.activity(), station.ledger());
+        let in_lot = !station.is_between_lots();
+        // When no snapshot can wait, screens lag behind; the rig does not.
+        let _ = snapshots.try_send(Snapshot {
+            at_us: jiff::Timestamp::now().as_microsecond(),
+            state: activity.name(),
+            doing: activity.code(),
+            stage: activity.stage(),
+            inside: ledger.inside(),
+            counts: in_lot.then_some((ledger.came_in, ledger.went_out)),
+            alarms: lines(station, self.links.epoch_us),
+            machine,
+            lateness: self.lateness.view(),
         });
     }
 
@@ -208,8 +208,8 @@ fn places(station: &Station) -> BTreeMap<String, Token> {
 
 fn token(part: &Part) -> Token {
     let (kind, name) = match &part.kind {
-        Kind::Reference(serial) => ("golden", serial.clone()),
-        Kind::Lot(seq) => ("lot", seq.to_string()),
+        PartRole::Reference(serial) => ("golden", serial.clone()),
+        PartRole::Lot(seq) => ("lot", seq.to_string()),
     };
     Token {
         kind: kind.into(),
@@ -230,7 +230,7 @@ fn lines(station: &Station, epoch_us: i64) -> Vec<AlarmLine> {
 }
 
 /// Returns an alarm as pages show it.
-pub(crate) fn line(one: &ListedAlarm, epoch_us: i64) -> AlarmLine {
+pub fn line(one: &ListedAlarm, epoch_us: i64) -> AlarmLine {
     let alarm = &one.alarm;
     let help = |lang| alarm.code.help(lang).map(str::to_owned);
     let stops = match alarm.code.entry().reaction {

@@ -1,0 +1,222 @@
+//! The thread of the lines and the cycle, raised above all other work where the system allows it.
+//!
+//! At real pace nothing else runs on it: no history, no page, no log. In virtual time it is the caller's own thread,
+//! whose clock is that of the rig.
+
+use anyhow::Context;
+use bus::Pace;
+use cycle::Lateness;
+use machine::view::HostView;
+use rustix::mm::{MlockAllFlags, mlockall};
+use rustix::process::{Resource, getrlimit};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::Duration;
+use thiserror::Error;
+use thread_priority::{
+    RealtimeThreadSchedulePolicy, ScheduleParams, ThreadPriority, ThreadSchedulePolicy,
+    set_thread_priority_and_policy, thread_native_id,
+};
+use tokio::runtime::Handle;
+use tokio::sync::oneshot;
+use units::{RigTime, Span};
+
+/// Priority under SCHED_FIFO: above every usual process, below the threads of the kernel that serve interrupts' timers.
+pub const PRIORITY: u8 = 49;
+/// Interval of the bare loop, as cyclictest has it.
+const INTERVAL: Span = Span::ms(1);
+
+/// A thread whose runtime serves the lines and the cycle. Dropping it ends their tasks.
+pub struct RigThread {
+    /// Spawns tasks onto the thread.
+    pub handle: Handle,
+    /// What the system grants; its lateness is empty.
+    pub rights: HostView,
+    own: Option<(oneshot::Sender<()>, JoinHandle<()>)>,
+}
+
+impl RigThread {
+    /// Returns the current thread in virtual time; else starts a thread and raises it.
+    ///
+    /// # Errors
+    /// Fails when the system refuses a thread or its runtime.
+    pub fn start(pace: Pace) -> anyhow::Result<Self> {
+        if pace.is_virtual() {
+            return Ok(Self {
+                handle: Handle::current(),
+                rights: HostView::default(),
+                own: None,
+            });
+        }
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_all()
+            .build()
+            .context("starting the runtime of the rig")?;
+        let handle = runtime.handle().clone();
+        let (told, rights) = std::sync::mpsc::sync_channel(1);
+        let (stop, stopped) = oneshot::channel();
+        let serve = move || {
+            // The receiver waits below.
+            let _ = told.send(raise());
+            let _ = runtime.block_on(stopped);
+        };
+        let thread = std::thread::Builder::new().name("rig".into());
+        let thread = thread.spawn(serve).context("starting the rig's thread")?;
+        let rights = rights.recv().context("starting the rig's thread")?;
+        log(&rights);
+        Ok(Self {
+            handle,
+            rights,
+            own: Some((stop, thread)),
+        })
+    }
+}
+
+impl Drop for RigThread {
+    fn drop(&mut self) {
+        if let Some((stop, thread)) = self.own.take() {
+            let _ = stop.send(());
+            if thread.join().is_err() {
+                tracing::error!("an assertion on the rig's thread failed");
+            }
+        }
+    }
+}
+
+/// Raises this thread to SCHED_FIFO and locks the memory of the program, as far as the system grants it.
+fn raise() -> HostView {
+    let mut rights = HostView::default();
+    match raise_thread() {
+        Ok(()) => rights.fifo_priority = Some(PRIORITY),
+        Err(why) => rights.refused.push(why.to_string()),
+    }
+    match lock_memory() {
+        Ok(()) => rights.memory_locked = true,
+        Err(why) => rights.refused.push(why.to_string()),
+    }
+    rights
+}
+
+/// Reason why the system refuses a right.
+#[derive(Debug, Error)]
+pub enum Refused {
+    /// The thread may not have a real-time priority.
+    #[error("SCHED_FIFO: {0:?}")]
+    Fifo(thread_priority::Error),
+    /// Memory may be locked up to a limit only, beyond which the system would refuse memory that the program needs.
+    #[error("locked memory: found a limit of {limit_kb} kB, expected none")]
+    Limit {
+        /// The limit (RLIMIT_MEMLOCK), kB.
+        limit_kb: u64,
+    },
+    /// Memory may not be locked.
+    #[error("locked memory: {0}")]
+    Lock(rustix::io::Errno),
+}
+
+/// Raises this thread to SCHED_FIFO.
+///
+/// # Errors
+/// Fails when the system refuses the priority.
+pub fn raise_thread() -> Result<(), Refused> {
+    let priority = ThreadPriority::from_posix(ScheduleParams {
+        sched_priority: PRIORITY.into(),
+    });
+    let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
+    set_thread_priority_and_policy(thread_native_id(), priority, policy).map_err(Refused::Fifo)
+}
+
+/// Keeps the pages of the program in memory from their first use on.
+fn lock_memory() -> Result<(), Refused> {
+    if let Some(limit) = getrlimit(Resource::Memlock).current
+        && !rustix::process::geteuid().is_root()
+    {
+        let limit_kb = limit / 1024;
+        return Err(Refused::Limit { limit_kb });
+    }
+    let all = MlockAllFlags::CURRENT | MlockAllFlags::FUTURE | MlockAllFlags::ONFAULT;
+    mlockall(all).map_err(Refused::Lock)
+}
+
+fn log(rights: &HostView) {
+    if rights.refused.is_empty() {
+        let priority = rights.fifo_priority.unwrap_or_default();
+        return tracing::info!("lines and cycle run under SCHED_FIFO {priority}, memory locked");
+    }
+    let why = rights.refused.join("; ");
+    tracing::warn!("no real-time rights ({why}): a busy computer may delay the rig");
+}
+
+/// A bare loop of sleeps under SCHED_FIFO beside the rig: what this computer does to a program that does nothing else.
+pub struct BareLoop {
+    stop: Arc<AtomicBool>,
+    thread: JoinHandle<Lateness>,
+}
+
+impl BareLoop {
+    /// Starts the loop on a thread of its own, raised as the rig's.
+    ///
+    /// # Errors
+    /// Fails when the system refuses the thread.
+    pub fn start() -> anyhow::Result<Self> {
+        let stop = Arc::new(AtomicBool::new(false));
+        let stopped = Arc::clone(&stop);
+        let thread = std::thread::Builder::new().name("bare loop".into());
+        let thread = thread.spawn(move || {
+            // Without the right the loop shows what a usual thread suffers.
+            let _ = raise_thread();
+            bare_loop(&stopped)
+        });
+        Ok(Self {
+            stop,
+            thread: thread.context("starting the bare loop")?,
+        })
+    }
+
+    /// Ends the loop and returns its lateness.
+    pub fn end(self) -> Lateness {
+        self.stop.store(true, Ordering::Release);
+        self.thread.join().unwrap_or_default()
+    }
+}
+
+fn bare_loop(stop: &AtomicBool) -> Lateness {
+    let began = std::time::Instant::now();
+    let now = || RigTime(began.elapsed().as_micros() as u64);
+    let mut lateness = Lateness::default();
+    let mut next = now() + INTERVAL;
+    while !stop.load(Ordering::Acquire) {
+        std::thread::sleep(Duration::from_micros(next.since(now()).0));
+        lateness.count(next, now());
+        next = next.max(now()) + INTERVAL;
+    }
+    lateness
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[tokio::test]
+    async fn tasks_run_on_a_thread_of_their_own() {
+        let thread = RigThread::start(Pace::real()).unwrap();
+        let name = async { std::thread::current().name().map(str::to_owned) };
+        let name = thread.handle.spawn(name).await.unwrap();
+        assert_eq!(name.as_deref(), Some("rig"));
+        let rights = &thread.rights;
+        let granted = u32::from(rights.fifo_priority.is_some()) + u32::from(rights.memory_locked);
+        assert_eq!(granted as usize + rights.refused.len(), 2, "{rights:?}");
+    }
+
+    #[cfg(feature = "sim")]
+    #[tokio::test(start_paused = true)]
+    async fn virtual_time_stays_on_the_callers_thread() {
+        let thread = RigThread::start(Pace::virtual_time()).unwrap();
+        let here = std::thread::current().id();
+        let there = async { std::thread::current().id() };
+        assert_eq!(thread.handle.spawn(there).await.unwrap(), here);
+        assert_eq!(thread.rights, HostView::default());
+    }
+}

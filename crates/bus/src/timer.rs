@@ -1,0 +1,108 @@
+//! A timer that wakes a task at an instant, finer than the milliseconds of tokio's timers.
+
+use super::Pace;
+use rustix::time::{
+    Itimerspec, TimerfdClockId, TimerfdFlags, TimerfdTimerFlags, Timespec, timerfd_create,
+    timerfd_settime,
+};
+use std::io;
+use std::sync::OnceLock;
+use tokio::net::unix::pipe::Receiver;
+use units::RigTime;
+
+/// Timer of one task. At real pace a timer of the kernel wakes the task; at virtual pace, or where the kernel refuses a
+/// timer, tokio's does.
+#[derive(Debug)]
+pub struct Timer {
+    pace: Pace,
+    /// Timer of the kernel, created at the first wait; none at virtual pace or when the kernel refuses it.
+    fd: OnceLock<Option<Receiver>>,
+}
+
+impl Timer {
+    /// Creates a timer on the clock of `pace`.
+    pub fn new(pace: Pace) -> Self {
+        Self {
+            pace,
+            fd: OnceLock::new(),
+        }
+    }
+
+    /// Waits until `until`; returns at once if that time has passed. A dropped wait leaves nothing behind. Panics outside
+    /// a tokio runtime with I/O, and in another runtime than the first wait.
+    pub async fn until(&self, until: RigTime) {
+        let now = self.pace.now();
+        if now >= until {
+            return;
+        }
+        let is_real = !self.pace.is_virtual();
+        let fd = self.fd.get_or_init(|| is_real.then(kernel_timer)?.ok());
+        match fd.as_ref().filter(|fd| arm(fd, until.since(now).0).is_ok()) {
+            Some(fd) => fired(fd).await,
+            None => self.pace.sleep_until(until).await,
+        }
+    }
+}
+
+/// A timer of the kernel reads like a pipe: as soon as it has fired, it has eight bytes.
+fn kernel_timer() -> io::Result<Receiver> {
+    let flags = TimerfdFlags::NONBLOCK | TimerfdFlags::CLOEXEC;
+    let fd = timerfd_create(TimerfdClockId::Monotonic, flags)?;
+    Receiver::from_owned_fd_unchecked(fd)
+}
+
+/// Sets the timer to fire once, after `us` microseconds; an earlier setting ends.
+fn arm(fd: &Receiver, us: u64) -> io::Result<()> {
+    let zero = Timespec {
+        tv_sec: 0,
+        tv_nsec: 0,
+    };
+    let after = Timespec {
+        tv_sec: (us / 1_000_000) as _,
+        tv_nsec: (us % 1_000_000 * 1_000) as _,
+    };
+    let once = Itimerspec {
+        it_interval: zero,
+        it_value: after,
+    };
+    timerfd_settime(fd, TimerfdTimerFlags::empty(), &once)?;
+    Ok(())
+}
+
+async fn fired(fd: &Receiver) {
+    // An error would come at every call; the task then goes on, early rather than never.
+    while fd.readable().await.is_ok() {
+        match fd.try_read(&mut [0; 8]) {
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
+            Ok(_) | Err(_) => return,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use units::Span;
+
+    #[tokio::test]
+    async fn a_wait_ends_at_its_instant_after_a_dropped_one() {
+        let pace = Pace::real();
+        let timer = Timer::new(pace);
+        for _ in 0..3 {
+            let long = timer.until(pace.now() + Span::ms(60_000));
+            let dropped = tokio::time::timeout(std::time::Duration::ZERO, long).await;
+            assert!(dropped.is_err(), "the wait ended early");
+            let until = pace.now() + Span::ms(3);
+            timer.until(until).await;
+            assert!(pace.now() >= until);
+        }
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn virtual_waits_end_at_their_instant() {
+        let pace = Pace::virtual_time();
+        let timer = Timer::new(pace);
+        timer.until(RigTime(87)).await;
+        assert_eq!(pace.now(), RigTime(87));
+    }
+}

@@ -1,0 +1,54 @@
+//! What the cycle knows of a view: it leaves the cycle through a channel, so that no screen can hold the cycle up.
+
+use machine::view::{AlarmLine, LatenessView, Machine, View};
+use tokio::sync::{mpsc, watch};
+
+/// Snapshots that wait at most; the cycle drops further ones while the rest of the program does not run.
+const WAITING: usize = 16;
+
+/// Parts of a [`View`] that the cycle knows.
+#[derive(Debug)]
+pub struct Snapshot {
+    pub(super) at_us: i64,
+    pub(super) state: String,
+    pub(super) doing: String,
+    pub(super) stage: Option<&'static str>,
+    pub(super) inside: u64,
+    /// Parts fed and parts confirmed; none between lots, so that the screen keeps the results of the last lot.
+    pub(super) counts: Option<(u64, u64)>,
+    pub(super) alarms: Vec<AlarmLine>,
+    pub(super) machine: Machine,
+    pub(super) lateness: LatenessView,
+}
+
+impl Snapshot {
+    fn show(self, view: &mut View) {
+        view.at_us = self.at_us;
+        view.state = self.state;
+        view.doing = self.doing;
+        view.stage = self.stage;
+        view.inside = self.inside;
+        if let Some((came_in, went_out)) = self.counts {
+            view.came_in = came_in;
+            view.went_out = went_out;
+        }
+        view.alarms = self.alarms;
+        view.machine = self.machine;
+        view.host.lateness = self.lateness;
+    }
+}
+
+/// Returns the cycle's end of the channel, `None` without a screen; `view` shows what comes through it until that end is
+/// dropped, when the returned future ends.
+pub fn snapshots(
+    view: watch::Sender<View>,
+) -> (Option<mpsc::Sender<Snapshot>>, impl Future<Output = ()>) {
+    let (sender, mut receiver) = mpsc::channel::<Snapshot>(WAITING);
+    let is_seen = view.receiver_count() > 0;
+    let showing = async move {
+        while let Some(snapshot) = receiver.recv().await {
+            view.send_modify(|view| snapshot.show(view));
+        }
+    };
+    (is_seen.then_some(sender), showing)
+}
