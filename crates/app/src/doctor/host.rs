@@ -40,9 +40,9 @@ struct Privileges {
     locked: u64,
 }
 
-/// Checks the rights of the installed service, or of this process where none is installed.
+/// Checks the rights of the running service, of the installed one, or of this process where none is installed.
 pub(super) fn check_privileges() -> Vec<Finding> {
-    match of_service().or_else(of_process) {
+    match of_service().or_else(|| of_process("this process", "self")) {
         Some(privileges) => privileges.findings().into(),
         None => Vec::new(),
     }
@@ -79,16 +79,23 @@ impl Privileges {
 }
 
 fn of_service() -> Option<Privileges> {
-    let wanted = "--property=LoadState,AmbientCapabilities,LimitRTPRIO,LimitMEMLOCK";
-    parse_service(&output("systemctl", &["show", SERVICE, wanted])?)
+    let wanted = "--property=LoadState,MainPID,AmbientCapabilities,LimitRTPRIO,LimitMEMLOCK";
+    let text = output("systemctl", &["show", SERVICE, wanted])?;
+    let process = property(&text, "MainPID").filter(|it| *it != "0");
+    // The system may have granted less than the unit asks for.
+    let granted = process.and_then(|process| of_process(SERVICE, process));
+    granted.or_else(|| parse_service(&text))
+}
+
+/// Returns a property from the answer of `systemctl show`.
+fn property<'a>(text: &'a str, key: &str) -> Option<&'a str> {
+    let value = |line: &'a str| line.strip_prefix(key)?.strip_prefix('=');
+    text.lines().find_map(value)
 }
 
 /// Reads the answer of `systemctl show`; `None` when the service is not installed.
 fn parse_service(text: &str) -> Option<Privileges> {
-    let value = |key: &str| {
-        text.lines()
-            .find_map(|line| line.strip_prefix(key)?.strip_prefix('='))
-    };
+    let value = |key| property(text, key);
     if value("LoadState") != Some("loaded") {
         return None;
     }
@@ -98,14 +105,13 @@ fn parse_service(text: &str) -> Option<Privileges> {
     Some(Privileges::new(SERVICE, limits, lifted))
 }
 
-fn of_process() -> Option<Privileges> {
-    let limits = fs::read_to_string("/proc/self/limits").ok()?;
-    let status = fs::read_to_string("/proc/self/status").ok()?;
-    parse_process(&limits, &status)
+fn of_process(of: &'static str, process: &str) -> Option<Privileges> {
+    let read = |file| fs::read_to_string(format!("/proc/{process}/{file}")).ok();
+    parse_process(of, &read("limits")?, &read("status")?)
 }
 
 /// Reads the files `limits` and `status` of a process.
-fn parse_process(limits: &str, status: &str) -> Option<Privileges> {
+fn parse_process(of: &'static str, limits: &str, status: &str) -> Option<Privileges> {
     let soft = |name: &str| {
         let line = limits.lines().find_map(|line| line.strip_prefix(name))?;
         limit(line.split_whitespace().next()?)
@@ -115,7 +121,7 @@ fn parse_process(limits: &str, status: &str) -> Option<Privileges> {
     let is_root = value("Uid:")?.split_whitespace().nth(1) == Some("0");
     let limits = ["Max realtime priority", "Max locked memory"].map(soft);
     let lifted = [effective & (1 << SYS_NICE) != 0, is_root];
-    Some(Privileges::new("this process", limits, lifted))
+    Some(Privileges::new(of, limits, lifted))
 }
 
 fn limit(text: &str) -> Option<u64> {
@@ -146,11 +152,11 @@ mod tests {
                       Max locked memory         8388608              8388608              bytes\n\
                       Max realtime priority     0                    0                    \n";
         let user = "Uid:\t101\t101\t101\t101\nCapEff:\t0000000000000000\n";
-        let found = parse_process(limits, user).unwrap();
+        let found = parse_process("", limits, user).unwrap();
         assert_eq!((found.priority, found.locked), (0, 8_388_608));
         assert_eq!(found.findings().map(|it| it.health), [Health::Warning; 2]);
         let root = "Uid:\t0\t0\t0\t0\nCapEff:\t0000000000800000\n";
-        let root = parse_process(limits, root).unwrap();
+        let root = parse_process("", limits, root).unwrap();
         assert_eq!((root.priority, root.locked), (99, u64::MAX));
     }
 }
