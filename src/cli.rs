@@ -8,9 +8,11 @@ pub mod check;
 pub mod config;
 #[cfg(feature = "sim")]
 pub mod demo;
+pub mod doctor;
 pub mod history;
 pub mod host;
 pub mod init;
+mod installed;
 pub mod lot;
 mod output;
 pub mod rig;
@@ -29,15 +31,9 @@ pub mod wear;
 
 use ::config::Folder;
 use app::exit::Exit;
-use app::order::Files;
 use clap::{Parser, Subcommand};
 use machine::view::By;
-#[cfg(feature = "sim")]
-use std::path::Path;
 use std::path::PathBuf;
-
-/// Directory of the configuration without `--config`.
-const CONFIG: &str = "config";
 
 /// Controller of a JZC-22F relay performance tester with automatic feed and discharge.
 #[derive(Debug, Parser)]
@@ -55,10 +51,12 @@ const CONFIG: &str = "config";
 Exit status: 0 done, 1 done and the answer is no, 2 bad input, 3 the rig has trouble, 4 stopped by the operator."
 )]
 pub struct Cli {
-    /// Directory of the configuration, as `init` writes it [default: config; demo: the one inside this program]
+    /// Directory of the configuration, as `init` writes it [default: config; demo: the one inside this program;
+    /// /etc/relayrig of an installed rig where the working folder has neither config nor relayrig.db]
     #[arg(long, global = true, value_name = "DIR")]
     pub config: Option<PathBuf>,
-    /// History file of one rig, real or simulated [default: relayrig.db, or relayrig-demo.db for demo]
+    /// History file of one rig, real or simulated [default: relayrig.db; relayrig-demo.db for demo;
+    /// /var/lib/relayrig/relayrig.db with --config /etc/relayrig by default]
     #[arg(long, global = true, value_name = "FILE")]
     pub db: Option<PathBuf>,
     /// Level of the log on stderr: error, warn, info, debug, or a filter per module
@@ -97,6 +95,8 @@ pub enum Command {
     /// Whether this computer keeps the rig's time
     #[command(subcommand)]
     Host(host::Args),
+    /// What is wrong with this installation, and what to do
+    Doctor(doctor::DoctorArgs),
     /// Find modules, send one command, watch a line
     Bus(bus::BusArgs),
     /// Collision answers for a scene, no rig
@@ -118,24 +118,24 @@ pub enum Command {
 }
 
 impl Command {
-    /// Returns the name of the history file without `--db`.
-    const fn own_history(&self) -> &'static str {
+    /// Returns the history file of a command that has its own; `None` for the history of the rig.
+    const fn own_history(&self) -> Option<&'static str> {
         match self {
             #[cfg(feature = "sim")]
-            Self::Demo(_) => "relayrig-demo.db",
-            _ => "relayrig.db",
+            Self::Demo(_) => Some("relayrig-demo.db"),
+            _ => None,
         }
     }
 
-    /// Returns the configuration without `--config`. A demo does not read the directory `config`, so that it is the same
-    /// everywhere.
-    fn own_config(&self) -> Folder {
+    /// Returns the configuration of a command that has its own; `None` for that of the rig. A demo does not read the
+    /// directory `config`, so that it is the same everywhere.
+    fn own_config(&self) -> Option<Folder> {
         match self {
             #[cfg(feature = "sim")]
-            Self::Demo(_) => Folder::built_in(),
+            Self::Demo(_) => Some(Folder::built_in()),
             #[cfg(feature = "sim")]
-            Self::Sim(args) if args.faults && !Path::new(CONFIG).exists() => Folder::built_in(),
-            _ => Folder::Directory(CONFIG.into()),
+            Self::Sim(args) if args.faults && !installed::has_config() => Some(Folder::built_in()),
+            _ => None,
         }
     }
 }
@@ -143,11 +143,10 @@ impl Command {
 impl Cli {
     /// Runs the command. An error is bad input; the caller prints it once.
     pub fn execute(self) -> anyhow::Result<Exit> {
-        let (own_config, own_history) = (self.command.own_config(), self.command.own_history());
-        let files = Files {
-            config: self.config.clone().map_or(own_config, Folder::Directory),
-            db: self.db.unwrap_or_else(|| own_history.into()),
-        };
+        let config = self.config.clone().map(Folder::Directory);
+        let config = config.or_else(|| self.command.own_config());
+        let own_history = self.command.own_history().map(PathBuf::from);
+        let files = installed::files(config, self.db.or(own_history));
         let (config, db) = (&files.config, &files.db);
         match self.command {
             #[cfg(feature = "sim")]
@@ -159,12 +158,16 @@ impl Cli {
             Command::Sim(args) => sim::run(config, &args),
             #[cfg(feature = "sim")]
             Command::Story(args) => story::run(&files, &args),
-            Command::Study(args) => {
-                study::run(&self.config.unwrap_or_else(|| CONFIG.into()), &args)
-            }
+            Command::Study(args) => study::run(
+                &self
+                    .config
+                    .unwrap_or_else(|| installed::LOCAL_CONFIG.into()),
+                &args,
+            ),
             Command::Init(args) => init::run(&args),
             Command::Config(args) => config::run(config, &args),
             Command::Host(args) => unless_pipe_closed(host::run(&files, &args)),
+            Command::Doctor(args) => doctor::run(&files, &args),
             Command::Bus(args) => bus::run(&args),
             Command::Check(args) => check::run(args),
             Command::History(args) => history::run(config, db, args),

@@ -2,6 +2,7 @@
 //!
 //! Data goes to stdout, remarks to stderr. A closed pipe (`| head`) is no error.
 
+mod backup;
 mod export;
 mod filter;
 mod generate;
@@ -21,13 +22,12 @@ mod stats;
 pub use quality::{QualityArgs, run_quality};
 
 use super::output::Output;
-use app::copies;
 use app::exit::Exit;
 use clap::{Args, Subcommand};
 use config::Folder;
 use history::Archive;
 use history::inquiry::InquiryError;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Arguments of `history`.
 #[derive(Debug, Args)]
@@ -92,12 +92,12 @@ enum Command {
     /// Delete the parts of old runs that a backup or an export holds whole
     #[command(after_help = "Example: relayrig history prune --older-than-days 365 --yes")]
     Prune(prune::PruneArgs),
-    /// Copy the history while it is in use
-    #[command(after_help = "Example: relayrig history backup /mnt/backup/relayrig-2026-03.db")]
-    Backup {
-        /// File to make; must not exist
-        file: PathBuf,
-    },
+    /// Copy the history, or the whole rig, while it is in use
+    #[command(
+        after_help = "Examples:\n  relayrig history backup /mnt/backup/relayrig-2026-03.db\n  \
+        relayrig history backup --into /mnt/backup --keep 30"
+    )]
+    Backup(backup::BackupArgs),
     /// Fill the history with random parts, for trying queries and reports
     #[command(after_help = "Example: relayrig --db big.db history generate --parts 1000000")]
     Generate(generate::GenerateArgs),
@@ -134,10 +134,7 @@ fn dispatch(config: &Folder, db: &Path, command: Command) -> anyhow::Result<Exit
         Command::Report(args) => report::run(&Archive::open(db)?, &args)?,
         Command::Rejudge(args) => rejudge::run(config, &Archive::open(db)?, &args)?,
         Command::Export(args) => export::run(db, &args)?,
-        Command::Backup { file } => {
-            let bytes = copies::backup(db, &file)?;
-            eprintln!("{}: {bytes} bytes, checked", file.display());
-        }
+        Command::Backup(args) => backup::run(config, db, &args)?,
     }
     Ok(Exit::Done)
 }

@@ -79,7 +79,8 @@ impl RigArgs {
     }
 }
 
-fn port(text: &String) -> anyhow::Result<LinePort> {
+/// Reads `NAME=PORT`.
+pub(super) fn port(text: &String) -> anyhow::Result<LinePort> {
     let (line, port) = text
         .split_once('=')
         .with_context(|| format!("--line: found \"{text}\", expected NAME=PORT"))?;

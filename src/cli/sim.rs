@@ -1,6 +1,7 @@
 //! `relayrig sim`: only the simulated rig, on pseudo-terminals in real time.
 
 use anyhow::Context;
+use app::controls::Interrupts;
 use app::exit::Exit;
 use app::simulated;
 use app::truth_file::TruthFile;
@@ -139,13 +140,11 @@ fn wait(mut meanwhile: impl FnMut() -> anyhow::Result<()>) -> anyhow::Result<()>
         .enable_all()
         .build()?;
     runtime.block_on(async {
-        let mut terminate =
-            tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate())?;
+        let mut interrupts = Interrupts::listen()?;
         let mut beat = tokio::time::interval(Duration::from_millis(500));
         loop {
             tokio::select! {
-                interrupted = tokio::signal::ctrl_c() => return Ok(interrupted?),
-                _ = terminate.recv() => return Ok(()),
+                () = interrupts.next() => return Ok(()),
                 _ = beat.tick() => meanwhile()?,
             }
         }

@@ -67,6 +67,14 @@ fn ctrl_c_finishes_parts_inside_and_keeps_rows() {
 }
 
 #[test]
+fn sigterm_ends_a_lot_as_ctrl_c_does() {
+    let workshop = Workshop::new("sigterm");
+    let ended = interrupted(&workshop, "TERM", 3);
+    assert_eq!(ended.status, Some(4));
+    assert_eq!(ended.told.last().unwrap()["type"], "summary");
+}
+
+#[test]
 fn reported_parts_have_their_rows_once_after_a_kill() {
     let workshop = Workshop::new("killed");
     let ended = interrupted(&workshop, "KILL", 3);

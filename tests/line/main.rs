@@ -1,9 +1,11 @@
 //! Tests of the built program, and rules about the source tree.
 //!
 //! - [`layout`]: rules about imports, pure modules, places of files, and references in documents.
+//! - `backup`: a backup of the whole rig, and its restoration.
 //! - `bus`: the bus tools on the modules of a bench file, and traces of alarms.
 //! - `calibrate`: storing and verifying factors, and refusing lots without them.
 //! - [`commands`]: wrong files and simple orders.
+//! - `doctor`: a fresh folder, and spoiled ones.
 //! - [`first_steps`]: a demo in an empty directory, and `init`.
 //! - `full_disk`: a history file that reaches its size limit.
 //! - `gates`: reference checks, suspect parts, reject-rate limit, first articles, retests, wear.
@@ -11,6 +13,8 @@
 //! - `interruptions`: rows of stopped and killed lots.
 //! - `killed`: outputs become safe in time after a kill.
 //! - [`lots`]: whole lots on the simulated rig in virtual time, compared with the truth of its world.
+//! - `notify`: notifications of the service to systemd.
+//! - `packaging`: units, scripts and contents of the Debian package.
 //! - `paper`: printing, export, rejudging, retention.
 //! - [`picture`]: the drawing in README.md matches `config/scene.toml`.
 //! - `protocol`: every command of every module, written, answered and read; settings, INIT*.
@@ -24,12 +28,16 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[cfg(feature = "sim")]
+mod backup;
 #[cfg(all(feature = "sim", unix))]
 mod bus;
 #[cfg(feature = "sim")]
 mod calibrate;
 mod check;
 mod commands;
+#[cfg(feature = "sim")]
+mod doctor;
 mod first_steps;
 #[cfg(all(feature = "sim", unix))]
 mod full_disk;
@@ -44,6 +52,9 @@ mod killed;
 mod layout;
 #[cfg(feature = "sim")]
 mod lots;
+#[cfg(all(feature = "sim", unix))]
+mod notify;
+mod packaging;
 #[cfg(feature = "sim")]
 mod paper;
 mod picture;

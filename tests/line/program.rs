@@ -130,7 +130,8 @@ impl Workshop {
             .unwrap()
     }
 
-    fn command(&self, line: &str) -> Command {
+    /// Returns the command of `relayrig` with the words of `line`.
+    pub fn command(&self, line: &str) -> Command {
         self.worded(Command::new(env!("CARGO_BIN_EXE_relayrig")), line)
     }
 

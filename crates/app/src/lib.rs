@@ -17,10 +17,12 @@
 
 pub mod admission;
 pub mod alarm_order;
+pub mod backup_folder;
 pub mod calibration;
 pub mod collision;
 pub mod controls;
 pub mod copies;
+pub mod doctor;
 pub mod exit;
 pub mod follower;
 pub mod gauge_study;

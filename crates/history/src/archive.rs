@@ -36,6 +36,14 @@ impl Archive {
         })
     }
 
+    /// Opens an existing history to check or copy it, whatever its schema; writes nothing to the file.
+    pub fn open_unchanged(path: &Path) -> Result<Self> {
+        Ok(Self {
+            connection: open::unchanged(path)?.0,
+            path: path.to_owned(),
+        })
+    }
+
     /// Calls `each` for every selected part, in order of judgement; the memory needed does not grow with their number.
     /// Stops at the first error of `each` and returns it.
     pub fn each<E>(

@@ -27,6 +27,7 @@ pub mod csv;
 mod curve;
 mod decision;
 mod error;
+mod examine;
 mod filter;
 mod gates;
 mod import;
@@ -59,6 +60,7 @@ pub use archive::Archive;
 pub use curve::CurveRecord;
 pub use decision::Decision;
 pub use error::{HistoryError, Result};
+pub use examine::{Examination, examine};
 pub use filter::Filter;
 pub use gates::{
     LotState, LotStateRecord, LotStatus, LotYield, ReferenceCheck, ReferenceCheckRecord,

@@ -73,6 +73,19 @@ pub(super) fn reader(path: &Path) -> Result<Connection> {
     Ok(connection)
 }
 
+/// Opens an existing file without changing it; returns its schema too, which may be older than this program's.
+pub(super) fn unchanged(path: &Path) -> Result<(Connection, i64)> {
+    if !path.exists() {
+        return Err(HistoryError::Missing {
+            path: path.to_owned(),
+        });
+    }
+    let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let connection = connected(path, flags).doing("opening the history")?;
+    let schema = check(&connection, path)?;
+    Ok((connection, schema))
+}
+
 fn connected(path: &Path, flags: OpenFlags) -> rusqlite::Result<Connection> {
     let connection = Connection::open_with_flags(path, flags)?;
     connection.busy_timeout(BUSY)?;

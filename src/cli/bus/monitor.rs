@@ -4,6 +4,7 @@
 use super::{PortArgs, print};
 use crate::cli::output::input;
 use anyhow::{Context, bail};
+use app::controls::Interrupts;
 use app::exit::Exit;
 use app::follower::{self, Update, UpdateContent};
 use bus::{Direction, Entry, Meaning, Pace, Recorded, arrow, escaped, unescaped};
@@ -71,9 +72,10 @@ pub(super) async fn run(args: &MonitorArgs) -> anyhow::Result<Exit> {
         return Ok(Exit::Done);
     }
     let seconds = Duration::from_secs(args.seconds.unwrap_or(u64::from(u32::MAX)));
+    let mut interrupts = Interrupts::listen()?;
     tokio::select! {
         ended = watch(args) => ended?,
-        _ = tokio::signal::ctrl_c() => {}
+        () = interrupts.next() => {}
         () = tokio::time::sleep(seconds) => {}
     }
     Ok(Exit::Done)

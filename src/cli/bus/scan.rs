@@ -3,6 +3,7 @@
 use super::found::{Found, listing};
 use super::{PortArgs, print};
 use anyhow::{Context, anyhow, bail};
+use app::controls::Interrupts;
 use app::exit::Exit;
 use app::progress::progress;
 use bus::{Answer, LineLog, Pace, Request};
@@ -93,9 +94,10 @@ const REPETITIONS: usize = 16;
 
 pub(super) async fn run(args: &ScanArgs) -> anyhow::Result<Exit> {
     let mut found: Vec<Found> = Vec::new();
+    let mut interrupts = Interrupts::listen()?;
     let interrupted = tokio::select! {
         asked = scan_all(args, &mut found) => asked.map(|()| false)?,
-        pressed = tokio::signal::ctrl_c() => pressed.map(|()| true)?,
+        () = interrupts.next() => true,
     };
     found.sort_by_key(|module| module.asked);
     print(&listing(&found, args.json))?;

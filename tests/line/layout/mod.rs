@@ -7,4 +7,4 @@ mod kinds;
 mod places;
 mod purity;
 mod texts;
-mod tree;
+pub mod tree;

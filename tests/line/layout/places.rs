@@ -18,6 +18,7 @@ const TOP: &[&str] = &[
     "crates",
     "docs",
     "locale",
+    "packaging",
     "sim",
     "src",
     "tests",
@@ -132,9 +133,17 @@ fn documents_name_no_private_path_or_person() {
         concat!("WI", "P"),
     ];
     let mut broken = Vec::new();
-    for source in files(&["src", "crates", "sim", "tests", "config", ".ci"])
-        .iter()
-        .chain(&super::documents::documents())
+    for source in files(&[
+        "src",
+        "crates",
+        "sim",
+        "tests",
+        "config",
+        ".ci",
+        "packaging",
+    ])
+    .iter()
+    .chain(&super::documents::documents())
     {
         for (line, text) in source.text.lines().enumerate() {
             let word = homes

@@ -19,6 +19,7 @@
 //! A simulated rig stays the same throughout. Before every lot the program empties its magazine and loads it, reference
 //! parts first, as a person would.
 
+mod notify;
 mod page;
 mod router;
 
@@ -130,6 +131,7 @@ impl Service {
         let exit = super::block_on(&source, async {
             self.controls.stop_on_signals();
             tokio::spawn(self.router.clone().work(asked));
+            tokio::spawn(notify::notify_systemd(self.controls.clone()));
             self.work(outer).await
         });
         self.page.end();

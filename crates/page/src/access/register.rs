@@ -79,6 +79,18 @@ impl Register {
         Ok(Self { connection })
     }
 
+    /// Copies the file to `target`, which must not exist and gets the same access rights.
+    ///
+    /// # Errors
+    /// Fails when `target` is not empty, or cannot be written.
+    pub fn copy_to(&self, target: &Path) -> Result<()> {
+        own(target);
+        self.connection
+            .execute("VACUUM INTO ?1", [target.to_string_lossy()])
+            .doing("copying the list of people")?;
+        Ok(())
+    }
+
     /// Adds an engineer to a file without people; returns name and password, of which the file holds only the hash.
     pub fn first_engineer(&mut self, now_us: i64) -> Result<Option<(String, String)>> {
         if !self.people()?.is_empty() {

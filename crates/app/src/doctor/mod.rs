@@ -1,0 +1,65 @@
+//! What is wrong with an installation, and what to do.
+//!
+//! The doctor reads files, rights and the state of the computer. It opens no port and writes nothing, so it may look while
+//! the rig works. It judges rights for the account that runs the rig, which owns the data, not for root or another reader.
+
+mod account;
+mod calibration;
+mod finding;
+mod host;
+mod ports;
+mod storage;
+
+use crate::order::Files;
+use crate::source::LinePort;
+use account::Account;
+use config::{ConfigFaults, Folder, Plant, check_all, recipe_names};
+use finding::Subject;
+pub use finding::{Check, Finding, Health};
+use jiff::Timestamp;
+use std::path::Path;
+
+/// An installation to look at.
+#[derive(Debug, Clone, Copy)]
+pub struct Installation<'a> {
+    /// Configuration and history.
+    pub files: &'a Files,
+    /// Ports that replace those of `rig.toml`; `None` for a simulated rig, which has no ports.
+    pub lines: Option<&'a [LinePort]>,
+    /// Folder of the backups; `None`: not checked. Without a history no backup is expected.
+    pub backups: Option<&'a Path>,
+}
+
+/// Returns what was found, in the order of [`Check`].
+pub fn examine(installation: &Installation<'_>) -> Vec<Finding> {
+    let files = installation.files;
+    let account = Account::of_rig(&storage::folder_of(&files.db));
+    let plant = check_all(&files.config);
+    let now = Timestamp::now();
+    let (history, facts) = storage::check_history(&files.db, &account);
+    let mut findings = vec![configuration(&files.config, &plant)];
+    findings.extend(storage::check_disk(&files.db, &account));
+    findings.push(history);
+    findings.extend(storage::check_people(&files.db, &account));
+    let backups = installation.backups.filter(|_| files.db.exists());
+    findings.extend(backups.map(|folder| storage::check_backup(folder, &account, now)));
+    if let (Some(given), Ok(plant)) = (installation.lines, &plant) {
+        findings.extend(ports::check(&plant.wiring, given, &account));
+    }
+    findings.push(host::check_clock());
+    let facts = facts.filter(|_| installation.lines.is_some());
+    findings.extend(facts.iter().flat_map(|it| calibration::check(it, now)));
+    findings.extend(host::check_privileges());
+    findings
+}
+
+fn configuration(folder: &Folder, plant: &Result<Plant, ConfigFaults>) -> Finding {
+    let subject = Subject::new(Check::Configuration, folder.path("").display(), "no fault");
+    match plant {
+        Ok(_) => subject.ok(format!("{} recipes, no fault", recipe_names(folder).len())),
+        Err(faults) => subject.fault(
+            faults.to_string().replace('\n', "; "),
+            "correct the files, then `relayrig config check`; the ports were not checked",
+        ),
+    }
+}

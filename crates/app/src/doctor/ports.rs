@@ -1,0 +1,123 @@
+//! Checks of the serial ports. No port is opened: opening one changes its control lines, which disturbs a running rig.
+
+use super::account::{Account, group, rights};
+use super::finding::{Check, Finding, Subject};
+use crate::source::LinePort;
+use machine::rig::wiring::Wiring;
+use std::fs::{self, Metadata};
+use std::os::unix::fs::FileTypeExt;
+use std::path::{Path, PathBuf};
+
+/// Names that the kernel gives in the order of plugging in.
+const UNSTABLE: [&str; 2] = ["/dev/ttyUSB", "/dev/ttyACM"];
+
+/// Latency timer of a USB converter that suits the protocol, ms.
+const LATENCY_MS: u32 = 1;
+
+/// A line with the port that it is to open.
+#[derive(Debug)]
+struct Wired {
+    line: String,
+    port: PathBuf,
+    /// The port behind all links; `None` when there is none.
+    device: Option<PathBuf>,
+}
+
+/// Checks the port of every line; `given` replaces those of the wiring.
+pub(super) fn check(wiring: &Wiring, given: &[LinePort], account: &Account) -> Vec<Finding> {
+    let wired = wiring.lines.iter().map(|line| {
+        let other = given.iter().find(|it| it.line == line.name);
+        let port = PathBuf::from(other.map_or(&line.port, |it| &it.port));
+        Wired {
+            line: line.name.clone(),
+            device: fs::canonicalize(&port).ok(),
+            port,
+        }
+    });
+    let wired: Vec<Wired> = wired.collect();
+    let mut findings = Vec::new();
+    for (index, one) in wired.iter().enumerate() {
+        let same = |other: &&Wired| other.device.is_some() && other.device == one.device;
+        let twin = wired[..index].iter().find(same);
+        findings.push(check_port(one, twin, account));
+        let device = one.device.as_deref();
+        findings.extend(device.and_then(|device| check_latency(Path::new("/sys"), device)));
+    }
+    findings
+}
+
+fn check_port(wired: &Wired, twin: Option<&Wired>, account: &Account) -> Finding {
+    let (line, port) = (&wired.line, wired.port.display());
+    let expected = format!("a serial port that {} may open", account.name);
+    let subject = Subject::new(Check::Port, format!("{port} of line {line}"), expected);
+    let Some(meta) = wired.device.as_ref().and_then(|it| fs::metadata(it).ok()) else {
+        let remedy = format!(
+            "plug the converter in, or correct `port` of [line.{line}] in rig.toml (ls -l /dev/serial/by-id)"
+        );
+        return subject.fault("nothing", remedy);
+    };
+    if !meta.file_type().is_char_device() {
+        let remedy = format!("correct `port` of [line.{line}] in rig.toml");
+        return subject.fault("no device", remedy);
+    }
+    if let Some(twin) = twin {
+        let remedy = "give each line its own converter";
+        return subject.fault(format!("the port of line {} too", twin.line), remedy);
+    }
+    if !account.may_write(&meta) {
+        return subject.fault(rights(&meta), open_up(&meta, account));
+    }
+    let name = port.to_string();
+    match UNSTABLE.iter().any(|start| name.starts_with(start)) {
+        true => subject.warning(
+            "a name that may change at the next start",
+            "use a link of /dev/serial/by-id, or name the converter in /etc/udev/rules.d/70-relayrig.rules",
+        ),
+        false => subject.ok(rights(&meta)),
+    }
+}
+
+/// Returns how the account gets the right to open the device.
+fn open_up(device: &Metadata, account: &Account) -> String {
+    match group(device).as_str() {
+        "root" => "look for another program's udev rule".to_owned(),
+        group => format!("adduser {} {group}, then restart the service", account.name),
+    }
+}
+
+/// Checks the latency timer of a USB converter; no finding for a port without one. `sys` is the mount point of sysfs.
+fn check_latency(sys: &Path, device: &Path) -> Option<Finding> {
+    let name = device.file_name()?;
+    let file = sys
+        .join("class/tty")
+        .join(name)
+        .join("device/latency_timer");
+    let found: u32 = fs::read_to_string(file).ok()?.trim().parse().ok()?;
+    let expected = format!("{LATENCY_MS} ms");
+    let subject = Subject::new(Check::Latency, device.display(), expected);
+    let remedy = "install /etc/udev/rules.d/70-relayrig.rules, then plug the converter in again";
+    Some(match found {
+        ..=LATENCY_MS => subject.ok(format!("{found} ms")),
+        _ => subject.warning(format!("{found} ms, which every request waits"), remedy),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::finding::Health;
+    use super::*;
+
+    #[test]
+    fn a_slow_latency_timer_is_a_warning() {
+        let sys = tempfile::tempdir().unwrap();
+        let folder = sys.path().join("class/tty/ttyUSB0/device");
+        fs::create_dir_all(&folder).unwrap();
+        for (text, health) in [("16\n", Health::Warning), ("1\n", Health::Ok)] {
+            fs::write(folder.join("latency_timer"), text).unwrap();
+            let found = check_latency(sys.path(), Path::new("/dev/ttyUSB0")).unwrap();
+            assert_eq!(found.health, health, "{found:?}");
+        }
+        assert_eq!(check_latency(sys.path(), Path::new("/dev/ttyS0")), None);
+    }
+}

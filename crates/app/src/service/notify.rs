@@ -1,0 +1,200 @@
+//! Tells systemd how the service is: ready, alive, state in words, stopping.
+//!
+//! The proof of life is the view, because a cycle that turns publishes it at least once a second, and so does the wait for
+//! a history that cannot be written. A program that only keeps its threads sends nothing, and systemd restarts it.
+//!
+//! - `READY=1` follows the first view of a cycle: page and lines are open by then.
+//! - `WATCHDOG=1` follows a view, at most four times within `WatchdogSec`.
+//! - `STATUS=` is the state in words, when it changes.
+//! - `STOPPING=1` follows the first signal.
+//!
+//! Without `NOTIFY_SOCKET` nothing is sent.
+
+use crate::controls::Controls;
+use machine::view::View;
+use sd_notify::NotifyState;
+use std::time::{Duration, Instant};
+
+/// Pings within the time after which systemd takes the service for dead.
+const PINGS: u32 = 4;
+
+/// What systemd knows of the service.
+#[derive(Debug, Default)]
+struct Notifier {
+    is_ready: bool,
+    is_stopping: bool,
+    status: String,
+    pinged: Option<Instant>,
+    /// Longest time between two pings; `None` without a watchdog.
+    every: Option<Duration>,
+}
+
+/// A message to systemd.
+#[derive(Debug, PartialEq, Eq)]
+enum Message {
+    Ready,
+    Watchdog,
+    Status(String),
+    Stopping,
+}
+
+/// Tells systemd about every view of the rig until the program ends.
+pub(super) async fn notify_systemd(controls: Controls) {
+    let mut views = controls.view.subscribe();
+    let mut notifier = Notifier {
+        every: sd_notify::watchdog_enabled().map(|limit| limit / PINGS),
+        ..Notifier::default()
+    };
+    while views.changed().await.is_ok() {
+        let messages = {
+            let view = views.borrow_and_update();
+            notifier.messages(&view, controls.is_stopping(), Instant::now())
+        };
+        send(&messages);
+    }
+}
+
+fn send(messages: &[Message]) {
+    let states = messages.iter().map(Message::state).collect::<Vec<_>>();
+    if states.is_empty() {
+        return;
+    }
+    if let Err(error) = sd_notify::notify(&states) {
+        tracing::warn!("systemd cannot be notified: {error}");
+    }
+}
+
+impl Message {
+    fn state(&self) -> NotifyState<'_> {
+        match self {
+            Self::Ready => NotifyState::Ready,
+            Self::Watchdog => NotifyState::Watchdog,
+            Self::Status(text) => NotifyState::Status(text),
+            Self::Stopping => NotifyState::Stopping,
+        }
+    }
+}
+
+impl Notifier {
+    /// Returns the messages that follow a view at `now`.
+    fn messages(&mut self, view: &View, is_stopping: bool, now: Instant) -> Vec<Message> {
+        let mut messages = Vec::new();
+        // Only a cycle dates the view.
+        if view.at_us > 0 && !std::mem::replace(&mut self.is_ready, true) {
+            messages.push(Message::Ready);
+        }
+        if is_stopping && !std::mem::replace(&mut self.is_stopping, true) {
+            messages.push(Message::Stopping);
+        }
+        if self.is_ping_due(now) {
+            self.pinged = Some(now);
+            messages.push(Message::Watchdog);
+        }
+        let status = status(view, is_stopping);
+        if status != self.status {
+            self.status.clone_from(&status);
+            messages.push(Message::Status(status));
+        }
+        messages
+    }
+
+    fn is_ping_due(&self, now: Instant) -> bool {
+        let waited = |every| {
+            let since = self.pinged.map(|pinged| now.duration_since(pinged));
+            since.is_none_or(|since| since >= every)
+        };
+        self.is_ready && self.every.is_some_and(waited)
+    }
+}
+
+/// Returns the state in words, for `systemctl status`.
+fn status(view: &View, is_stopping: bool) -> String {
+    let mut words = vec![match (view.under_way, view.count) {
+        (false, _) => "between lots".to_owned(),
+        (true, Some(count)) => format!("lot {}, {} of {count} judged", view.lot, view.judged),
+        (true, None) => format!("lot {}, {} judged", view.lot, view.judged),
+    }];
+    words.push(view.machine.state.to_lowercase());
+    words.extend(view.alarms.first().map(|it| format!("alarm {}", it.code)));
+    words.extend(is_stopping.then(|| "stopping".to_owned()));
+    words.retain(|word| !word.is_empty());
+    words.join("; ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use machine::view::AlarmLine;
+
+    fn view(at_us: i64) -> View {
+        let mut view = View {
+            at_us,
+            ..View::default()
+        };
+        view.machine.state = "Stopped".into();
+        view
+    }
+
+    fn notifier() -> Notifier {
+        Notifier {
+            every: Some(Duration::from_secs(5)),
+            ..Notifier::default()
+        }
+    }
+
+    #[test]
+    fn ready_waits_for_the_first_view_of_a_cycle() {
+        let (mut notifier, now) = (notifier(), Instant::now());
+        let text = Message::Status("between lots; stopped".into());
+        assert_eq!(notifier.messages(&view(0), false, now), [text]);
+        let ready = [Message::Ready, Message::Watchdog];
+        assert_eq!(notifier.messages(&view(1), false, now), ready);
+    }
+
+    #[test]
+    fn a_ping_follows_a_view_once_it_is_due() {
+        let (mut notifier, start) = (notifier(), Instant::now());
+        notifier.messages(&view(1), false, start);
+        let at = |seconds| start + Duration::from_secs(seconds);
+        assert_eq!(notifier.messages(&view(2), false, at(4)), []);
+        let ping = [Message::Watchdog];
+        assert_eq!(notifier.messages(&view(3), false, at(5)), ping);
+        assert_eq!(notifier.messages(&view(4), false, at(6)), []);
+    }
+
+    #[test]
+    fn without_a_watchdog_no_ping_is_sent() {
+        let mut notifier = Notifier::default();
+        let messages = notifier.messages(&view(1), false, Instant::now());
+        assert!(!messages.contains(&Message::Watchdog), "{messages:?}");
+    }
+
+    #[test]
+    fn stopping_is_sent_once() {
+        let (mut notifier, now) = (notifier(), Instant::now());
+        notifier.messages(&view(1), false, now);
+        let said = notifier.messages(&view(2), true, now);
+        let text = Message::Status("between lots; stopped; stopping".into());
+        assert_eq!(said, [Message::Stopping, text]);
+        assert_eq!(notifier.messages(&view(3), true, now), []);
+    }
+
+    #[test]
+    fn the_status_names_lot_and_first_alarm() {
+        let alarm = AlarmLine {
+            code: "door_open".into(),
+            ..AlarmLine::default()
+        };
+        let mut view = View {
+            lot: "A".into(),
+            under_way: true,
+            judged: 3,
+            count: Some(20),
+            alarms: vec![alarm],
+            ..View::default()
+        };
+        view.machine.state = "Execute".into();
+        let expected = "lot A, 3 of 20 judged; execute; alarm door_open";
+        assert_eq!(status(&view, false), expected);
+    }
+}

@@ -1,0 +1,46 @@
+//! Looks at a history without changing it. A reader would migrate an older schema, and a writer would create the file.
+
+use super::error::{Doing, Result};
+use super::{Archive, CalibrationRecord, SCHEMA, open};
+use rusqlite::OptionalExtension;
+use std::path::Path;
+
+/// Facts about a history whose pages are whole.
+#[derive(Debug)]
+pub struct Examination {
+    /// Schema of the file, from 1 to [`SCHEMA`]; 0 for an empty file.
+    pub schema: i64,
+    /// True when the history belongs to the simulated rig; `None` before its first run, and with an older schema.
+    pub is_simulated: Option<bool>,
+    /// Newest calibration of the real rig for each coil voltage; empty with an older schema.
+    pub calibrations: Vec<CalibrationRecord>,
+}
+
+/// Checks the pages of the file and reads its facts, while other processes may write.
+///
+/// # Errors
+/// Fails when the file is missing, locked, damaged, of another program or of a newer one.
+pub fn examine(path: &Path) -> Result<Examination> {
+    let (connection, schema) = open::unchanged(path)?;
+    let archive = Archive {
+        connection,
+        path: path.to_owned(),
+    };
+    archive.quick_check()?;
+    if schema < SCHEMA {
+        return Ok(Examination {
+            schema,
+            is_simulated: None,
+            calibrations: Vec::new(),
+        });
+    }
+    let source = "SELECT source = 'simulated' FROM rig";
+    let is_simulated = archive.connection.query_row(source, [], |row| row.get(0));
+    Ok(Examination {
+        schema,
+        is_simulated: is_simulated
+            .optional()
+            .doing("reading the rig of the history")?,
+        calibrations: archive.calibrations(false)?,
+    })
+}
