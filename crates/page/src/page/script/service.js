@@ -31,7 +31,7 @@ function showHost() {
     bar.max = Math.log10(1 + lateness.waits);
     bar.value = Math.log10(1 + it.count);
     const element = row(it.up_to_ms.toFixed(3), integerText(it.count), shareText(it.count, lateness.waits));
-    element.lastElementChild.append(" ", bar);
+    element.lastElementChild.prepend(bar, " ");
     return element;
   }));
 }
