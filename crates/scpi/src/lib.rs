@@ -1,0 +1,73 @@
+//! SCPI, the protocol of measuring instruments, over streams and Prologix-type GPIB adapters: one query at a time, in
+//! bounded time, and never a reply that belongs to another query. Without clock and stream; `bus::instrument` has them.
+//!
+//! A [`Program`] is a list of commands and queries; its values are delivered together or not at all.
+//!
+//! ```
+//! use scpi::{Form, number, ErrorEntry, ReplyError};
+//!
+//! assert_eq!(number("+1.5E+00"), Ok(1.5));
+//! assert_eq!(number("9.9E37"), Err(ReplyError::OverRange), "never a value");
+//! assert_eq!(ErrorEntry::read("-113,\"Undefined header\"").map(|it| it.code), Ok(-113));
+//! ```
+//!
+//! # Why a reply is the reply of its query
+//!
+//! A stream keeps the order of its bytes but numbers no reply, so the link counts on order and proves it:
+//!
+//! 1. One query is outstanding. Bytes before a query, or behind its reply, are a failure.
+//! 2. Every program ends with the error queue, read until it is empty, with `*ESR?`, which shows a loss of power, and with
+//!    `*ESE?`: the instrument must return the number that the program before left there. Each differs from the last 127, so
+//!    a reply too many or too few puts another reply in its place.
+//! 3. A reply that equals the reply before it may be a copy of it, so the query is repeated once.
+//! 4. After a failure that leaves doubt, nothing is delivered before a resynchronisation: a new connection (serial ports:
+//!    the end of a message; adapters: a device clear), silence, two numbers through `*ESE` with every other reply discarded,
+//!    the same identity as before, `*ESR?` for a loss of power, `*CLS`, and the whole set-up again. It begins with the
+//!    next program, so a caller opens its contactor before.
+//! 5. Behind an adapter each message carries its GPIB address, and the adapter says its address after each.
+//!
+//! What no host can notice: a number that lost digits and kept its end of line, and a command that was lost without a
+//! query that reads the setting back ([`Step::Ask`] with `expect`).
+//!
+//! # Files
+//!
+//! | file | what it does |
+//! |---|---|
+//! | `reply.rs`, `status.rs` | numbers, strings, blocks; error queue, event register, identity |
+//! | `reader.rs` | cuts bytes into replies, with a bound on each |
+//! | `program.rs`, `profile.rs` | programs; instrument profiles that build them |
+//! | `session.rs`, `run.rs`, `nonce.rs` | the state machine of a link; a program on its way; numbers that prove the step |
+//! | `framing.rs`, `address.rs`, `settings.rs` | ends of messages and adapters; places; times |
+//! | `failure.rs` | every reason why there is no value |
+
+mod address;
+mod failure;
+mod framing;
+mod nonce;
+mod profile;
+mod program;
+mod reader;
+mod reply;
+mod run;
+mod session;
+mod settings;
+mod status;
+
+#[cfg(test)]
+mod tests;
+
+pub use address::{Flow, LinkAddress, LinkAddressError, Transport};
+pub use failure::Failure;
+pub use framing::{Framing, Terminator};
+pub use profile::{Profile, ProfileFault, ProgramError};
+pub use program::{Program, Step};
+pub use reader::Reader;
+pub use reply::{BLOCK_LIMIT, Form, LINE_LIMIT, Raw, Reply, ReplyError, number, string};
+pub use session::{Move, Question, Session};
+pub use settings::{Echo, ExpectedIdentity, LinkSettings};
+pub use status::{ErrorClass, ErrorEntry, Identity, StandardEvents};
+
+/// Makes `cargo test` compile the example of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,120 @@
+//! Settings of a link: what the instrument must be, and how long each thing may take.
+
+use super::framing::{Framing, Terminator};
+use super::program::Program;
+use super::status::Identity;
+use serde::Deserialize;
+use std::fmt;
+use units::Span;
+
+/// How a link proves that replies and queries are in step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Echo {
+    /// A number in the standard event status enable register, which the instrument returns and loses when it is
+    /// switched off.
+    #[default]
+    Ese,
+    /// The identity alone, for an instrument without that register. After doubt the link waits for a silence as long as
+    /// the usual time of a query.
+    Identity,
+}
+
+/// Instruments that a link accepts, by the first two fields of `*IDN?`.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+pub struct ExpectedIdentity {
+    /// Beginnings of the maker's name, any of them; capitals and small letters are the same.
+    pub makers: Vec<String>,
+    /// Beginnings of the model, any of them.
+    pub models: Vec<String>,
+}
+
+impl ExpectedIdentity {
+    /// Returns true when the identity is one of these.
+    pub fn accepts(&self, identity: &Identity) -> bool {
+        let begins = |found: &str, wanted: &[String]| {
+            let head = |it: &String| {
+                found
+                    .get(..it.len())
+                    .is_some_and(|head| head.eq_ignore_ascii_case(it))
+            };
+            wanted.iter().any(head)
+        };
+        begins(&identity.maker, &self.makers) && begins(&identity.model, &self.models)
+    }
+}
+
+impl fmt::Display for ExpectedIdentity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} {}",
+            self.makers.join(" or "),
+            self.models.join(" or ")
+        )
+    }
+}
+
+/// Settings of a link. The instrument keeps nothing that the set-up does not say.
+#[derive(Debug, Clone)]
+pub struct LinkSettings {
+    /// What the instrument must be; `None` for any.
+    pub identity: Option<ExpectedIdentity>,
+    /// Command that ends local mode, sent first; many instruments need it on RS-232.
+    pub remote: Option<String>,
+    /// Set-up, sent after every resynchronisation.
+    pub set_up: Program,
+    /// Proof that the link is in step.
+    pub echo: Echo,
+    /// Number of entries that the error queue holds.
+    pub error_depth: u8,
+    /// What stands between stream and instrument.
+    pub framing: Framing,
+    /// True when a new connection is opened after doubt; false on serial ports.
+    pub reopen: bool,
+    /// Usual time for the reply to a query.
+    pub limit: Span,
+    /// Time for opening a connection.
+    pub open_limit: Span,
+    /// Silence that ends the discarding of old replies.
+    pub silence: Span,
+    /// Time for a whole resynchronisation with all its attempts.
+    pub sync_limit: Span,
+    /// Attempts of a resynchronisation.
+    pub attempts: u8,
+    /// Wait after the first failed attempt to open; it doubles with each failure.
+    pub backoff_first: Span,
+    /// Longest such wait.
+    pub backoff_longest: Span,
+}
+
+impl Default for LinkSettings {
+    fn default() -> Self {
+        Self {
+            identity: None,
+            remote: None,
+            set_up: Program::default(),
+            echo: Echo::Ese,
+            error_depth: 32,
+            framing: Framing::Direct(Terminator::Lf),
+            reopen: true,
+            limit: Span::ms(1000),
+            open_limit: Span::ms(2000),
+            silence: Span::ms(50),
+            sync_limit: Span::ms(15_000),
+            attempts: 3,
+            backoff_first: Span::ms(200),
+            backoff_longest: Span::ms(5000),
+        }
+    }
+}
+
+impl LinkSettings {
+    /// Returns the longest time that `program` can take, with a resynchronisation and the set-up before it.
+    pub fn longest(&self, program: &Program) -> Span {
+        let usual = self.limit;
+        let ending = Span(usual.0 * (u64::from(self.error_depth) + 4));
+        let steps = self.set_up.longest(usual) + program.longest(usual);
+        self.sync_limit + steps + ending + ending
+    }
+}
