@@ -1,8 +1,10 @@
-//! The request that a line takes, the answer that it returns, and the reasons why it has no reply.
+//! The request that a line takes, the answer that it returns, and the reasons why there is no reply.
 
-use super::PortError;
+use super::{PortError, words};
 use dcon::{Command, Reply, ReplyError};
-use thiserror::Error;
+use std::fmt;
+use std::io;
+use texts::{Lang, Message};
 use units::{RigTime, Span};
 
 /// A command for the line to carry out.
@@ -36,82 +38,83 @@ pub struct Answer {
     pub tries_used: u8,
 }
 
-/// Reason why a transaction brought no valid reply. Each message names line, module, command and cause in one sentence,
+/// A transaction that brought no valid reply. Its message names line, module, command and failure in one sentence,
 /// because alarms and pages show only the message.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum LineError {
-    /// No complete reply arrived in time.
-    #[error("line {line}, {command}: no whole reply within {} ms", limit.0 as f64 / 1000.0)]
-    TimeOut {
-        /// Name of the line.
-        line: String,
-        /// Command that was sent.
-        command: Command,
-        /// Time allowed for the reply.
-        limit: Span,
-    },
+#[derive(Debug, Clone, PartialEq)]
+pub struct LineError {
+    /// Name of the line.
+    pub line: String,
+    /// Command that was sent, or was to be sent.
+    pub command: Command,
+    /// Reason why there is no valid reply.
+    pub failure: Failure,
+}
+
+/// Reason why there is no valid reply.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Failure {
+    /// No complete reply arrived within this time.
+    TimeOut(Span),
     /// The module refused the command, or the bytes received are not a reply to it.
-    #[error("line {line}, {command}: {reason}")]
-    Reply {
-        /// Name of the line.
-        line: String,
-        /// Command that was sent.
-        command: Command,
-        /// What is wrong with the reply, or the refusal of the module.
-        reason: ReplyError,
-    },
+    Reply(ReplyError),
     /// The line received its own request: the converter does not mute its receiver while it sends.
-    #[error("line {line}, {command}: the line received its own request (echo)")]
-    Echo {
-        /// Name of the line.
-        line: String,
-        /// Command that was sent.
-        command: Command,
-    },
+    Echo,
     /// Characters followed the reply. Two modules share the address, or another module replied late; the line rejects
     /// the reply either way.
-    #[error("line {line}, {command}: more characters follow the reply")]
-    SecondReply {
-        /// Name of the line.
-        line: String,
-        /// Command that was sent.
-        command: Command,
-    },
+    SecondReply,
     /// The reply may belong to an earlier request that timed out, and the module did not confirm it.
-    #[error("line {line}, {command}: reply rejected, it may be a late reply to an earlier request")]
-    OutOfStep {
-        /// Name of the line.
-        line: String,
-        /// Command that was sent.
-        command: Command,
-    },
+    OutOfStep,
     /// After a damaged reply from this address, the repeated reads disagree: two modules share the address, the line
     /// is disturbed, or the quantity changes faster than the line reads it.
-    #[error(
-        "line {line}, {command}: reply rejected, repeated reads disagree after damaged replies"
-    )]
-    Contradicted {
-        /// Name of the line.
-        line: String,
-        /// Command that was sent.
-        command: Command,
-    },
+    Contradicted,
     /// Bytes kept arriving without a request since earlier trouble, so the line did not send the command.
-    #[error("line {line}, {command}: not sent, the line never falls silent")]
-    NeverSilent {
-        /// Name of the line.
-        line: String,
-        /// Command that was not sent.
-        command: Command,
-    },
+    NeverSilent,
     /// The port was lost, or could not be opened.
-    #[error("line {line}, {command}: port lost: {reason}")]
-    PortLost {
-        /// Name of the line.
-        line: String,
-        /// Command that was sent, or was to be sent.
-        command: Command,
-        /// Reason why the port is unusable; its text names the path.
-        reason: PortError,
-    },
+    PortLost(PortError),
+}
+
+impl Failure {
+    /// Returns true when the module understood the command and refused it, so that a repetition changes nothing.
+    pub fn is_answer(&self) -> bool {
+        matches!(self, Self::Reply(reason) if reason.is_answer())
+    }
+}
+
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        let kind = error.kind();
+        Self::PortLost(PortError::Broken { kind })
+    }
+}
+
+impl std::error::Error for LineError {}
+
+impl fmt::Display for LineError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message().say(Lang::En))
+    }
+}
+
+impl LineError {
+    /// Returns the message of family `transaction`, which names line, module, request and failure.
+    pub fn message(&self) -> Message {
+        let address = self.command.address();
+        let address = address.map_or("**".to_owned(), |it| it.to_string());
+        let of = |code| {
+            Message::new("transaction", code)
+                .with("line", &self.line)
+                .with("address", &address)
+                .with_inner("request", &words::request(&self.command))
+        };
+        match &self.failure {
+            Failure::TimeOut(limit) => of("no_reply").with("limit_ms", limit.0 as f64 / 1000.0),
+            Failure::Reply(why) => of("rejected").with_inner("rejection", &words::rejection(*why)),
+            Failure::Echo => of("echo"),
+            Failure::SecondReply => of("second_reply"),
+            Failure::OutOfStep => of("out_of_step"),
+            Failure::Contradicted => of("contradicted"),
+            Failure::NeverSilent => of("never_silent"),
+            Failure::PortLost(why) => of("port_lost").with("said", why),
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! Bytes of one exchange: writes a request, reads until CR or the deadline, waits for silence.
 
 use super::trace::{Direction, Entry};
-use super::{LineLog, Pace, Port};
+use super::{LineLog, Pace, Port, Timer};
 use dcon::{Command, FRAME_LIMIT};
 use std::future::poll_fn;
 use std::io;
@@ -93,10 +93,12 @@ pub(super) enum SilenceEnd {
     Noisy,
 }
 
-/// A port, with the clock and the log of its line.
+/// A port, with the clock, the timer and the log of its line.
 pub(super) struct Exchange<'a> {
     pub(super) port: &'a mut dyn Port,
     pub(super) pace: Pace,
+    /// Timer that ends the turnaround after each transaction.
+    pub(super) timer: &'a Timer,
     pub(super) log: &'a LineLog,
 }
 

@@ -1,7 +1,7 @@
 //! Counts of transactions and latencies of each module, since the start of the line's task.
 
-use super::LineError;
-use dcon::{Address, Reply, ReplyError};
+use super::{Failure, LineError};
+use dcon::{Address, Reply};
 use std::collections::BTreeMap;
 use units::Span;
 
@@ -121,20 +121,18 @@ impl Health {
                     module.resets += 1;
                 }
             }
-            Err(LineError::Reply { reason, .. }) if reason.is_answer() => module.refusals += 1,
-            Err(LineError::Reply { reason, .. }) if ReplyError::is_checksum(*reason) => {
-                module.checksum_errors += 1
-            }
-            Err(LineError::TimeOut { .. }) => module.time_outs += 1,
-            Err(LineError::PortLost { .. }) => self.ports_lost += 1,
-            Err(
-                LineError::Reply { .. }
-                | LineError::Echo { .. }
-                | LineError::SecondReply { .. }
-                | LineError::OutOfStep { .. }
-                | LineError::Contradicted { .. }
-                | LineError::NeverSilent { .. },
-            ) => module.other_errors += 1,
+            Err(error) => match &error.failure {
+                Failure::Reply(reason) if reason.is_answer() => module.refusals += 1,
+                Failure::Reply(reason) if reason.is_checksum() => module.checksum_errors += 1,
+                Failure::TimeOut(_) => module.time_outs += 1,
+                Failure::PortLost(_) => self.ports_lost += 1,
+                Failure::Reply(_)
+                | Failure::Echo
+                | Failure::SecondReply
+                | Failure::OutOfStep
+                | Failure::Contradicted
+                | Failure::NeverSilent => module.other_errors += 1,
+            },
         }
     }
 }

@@ -47,8 +47,8 @@
 //! 6. It repeats only commands that change nothing, at most as often as the request allows.
 //! 7. Before it writes a setting to an EEPROM, it reads the setting and skips the write if the value is there already.
 //!
-//! A line that does not fall silent answers [`LineError::NeverSilent`]. A line whose port is lost answers
-//! [`LineError::PortLost`], after the time that a silent module would take, and reopens the port at growing intervals.
+//! A line that does not fall silent answers [`Failure::NeverSilent`]. A line whose port is lost answers
+//! [`Failure::PortLost`], after the time that a silent module would take, and reopens the port at growing intervals.
 //!
 //! # Files
 //!
@@ -61,11 +61,15 @@
 //! | `pace.rs` | rig time on tokio's timers, real or virtual |
 //! | `settings.rs`, `wire.rs` | time-outs, and the time that characters take |
 //! | `trace.rs`, `recorded.rs`, `health.rs`, `log.rs` | the last bytes, their text format, counts by module, shared log |
+//! | `instrument/` | links to SCPI instruments over TCP, serial ports and GPIB adapters |
+//! | `meaning.rs`, `words.rs` | texts of requests and replies, English and Chinese |
 //! | `port.rs`, `raw.rs` | serial ports; single frames for tools |
+//! | `reader.rs` | the line of a code reader, which speaks by itself |
 
 mod answer;
 mod exchange;
 mod health;
+pub mod instrument;
 mod line;
 mod log;
 mod meaning;
@@ -74,27 +78,33 @@ mod pace;
 mod port;
 mod probation;
 mod raw;
+mod reader;
 mod recorded;
 mod settings;
 mod timer;
 mod trace;
 mod transaction;
 mod wire;
+mod words;
 
 #[cfg(test)]
 mod tests;
 
-pub use answer::{Answer, LineError, Request};
+pub use answer::{Answer, Failure, LineError, Request};
 pub use health::{Health, Histogram, ModuleHealth};
 pub use line::{run, run_reopening};
 pub use log::LineLog;
-pub use meaning::Meaning;
+pub use meaning::{Meaning, meanings};
 pub use pace::Pace;
-pub use port::{OpenPort, Port, PortError, from_streams, open_serial, serial_port};
+pub use port::{
+    OpenPort, Port, PortError, from_streams, open_serial, open_serial_with, serial_port,
+};
 pub use probation::PROBATION_ANSWERS;
 pub use raw::{RawReply, send_raw};
+pub use reader::{Reading, run_reader};
 pub use recorded::{Recorded, RecordedError, arrow, escaped, unescaped};
 pub use settings::{LineSettings, longest_transaction};
 pub use timer::Timer;
 pub use trace::{Direction, Entry, Trace};
 pub use wire::Wire;
+pub use words::{reply, request};

@@ -5,8 +5,10 @@ use super::from_streams;
 use super::log::Records;
 use super::outstanding::OutstandingReplies;
 use super::probation::Probation;
-use super::transaction::{Times, Transaction, Trouble};
-use super::{Answer, LineError, LineSettings, OpenPort, Pace, Port, PortError, Request};
+use super::transaction::{Times, Transaction};
+use super::{
+    Answer, Failure, LineError, LineSettings, OpenPort, Pace, Port, PortError, Request, Timer,
+};
 use dcon::{Command, Common, FRAME_LIMIT, Reply};
 use tokio::sync::mpsc;
 use units::{RigTime, Span};
@@ -39,6 +41,7 @@ pub async fn run_reopening(
         port: None,
         settings,
         pace,
+        timer: Timer::new(pace),
         request: Vec::with_capacity(24),
         frame: Frame::new(),
         silent: true,
@@ -69,6 +72,7 @@ struct Line {
     port: Option<Box<dyn Port>>,
     settings: LineSettings,
     pace: Pace,
+    timer: Timer,
     request: Vec<u8>,
     frame: Frame,
     /// False after trouble, until the line has been silent for long enough.
@@ -103,7 +107,7 @@ impl Line {
         let outcome = match found.outcome {
             Ok(reply) if request.command.is_in_effect(&reply) => Ok(Reply::Accepted),
             Ok(_) => return self.carry_out(request).await,
-            Err(LineError::Reply { reason, .. }) if reason.is_answer() => {
+            Err(error) if error.failure.is_answer() => {
                 return self.carry_out(request).await;
             }
             Err(error) => Err(error),
@@ -170,27 +174,32 @@ impl Line {
             answered_at: None,
         };
         let result = self.transact(command, &mut times).await;
-        match result {
-            Err(Trouble::Broken(kind)) => self.lost(PortError::Broken { kind }),
+        match &result {
+            Err(Failure::PortLost(why)) if self.port.is_some() => self.lost(why.clone()),
             Ok(_) => self.backoff = Span::ms(self.settings.reopen_first_ms),
             Err(_) => {}
         }
         Try {
             requested_at: times.requested_at,
             answered_at: times.answered_at.unwrap_or_else(|| self.pace.now()),
-            outcome: result.map_err(|trouble| self.explain(*command, trouble)),
+            outcome: result.map_err(|failure| LineError {
+                line: self.settings.name.clone(),
+                command: *command,
+                failure,
+            }),
         }
     }
 
-    async fn transact(&mut self, command: &Command, times: &mut Times) -> Result<Reply, Trouble> {
+    async fn transact(&mut self, command: &Command, times: &mut Times) -> Result<Reply, Failure> {
         self.reopened(command).await?;
         let Some(port) = &mut self.port else {
-            return Err(Trouble::NoPort);
+            return Err(Failure::PortLost(self.lost_because.clone()));
         };
         let mut transaction = Transaction {
             exchange: Exchange {
                 port: port.as_mut(),
                 pace: self.pace,
+                timer: &self.timer,
                 log: &self.settings.log,
             },
             settings: &self.settings,
@@ -205,7 +214,7 @@ impl Line {
 
     /// Opens the port if none is open. Without a port a request takes as long as with a silent module, so that a caller
     /// that repeats requests does not spin.
-    async fn reopened(&mut self, command: &Command) -> Result<(), Trouble> {
+    async fn reopened(&mut self, command: &Command) -> Result<(), Failure> {
         if self.port.is_some() {
             return Ok(());
         }
@@ -222,7 +231,7 @@ impl Line {
         self.pace
             .sleep_until(self.pace.now() + self.settings.time_out(command))
             .await;
-        Err(Trouble::NoPort)
+        Err(Failure::PortLost(self.lost_because.clone()))
     }
 
     /// Drops the port. The line reopens it after the back-off time, which doubles until a transaction succeeds.
@@ -233,32 +242,6 @@ impl Line {
         let longest = Span::ms(self.settings.reopen_longest_ms);
         assert!(self.backoff > Span(0), "the back-off is zero");
         self.backoff = (self.backoff + self.backoff).min(longest);
-    }
-
-    fn explain(&self, command: Command, trouble: Trouble) -> LineError {
-        let line = self.settings.name.clone();
-        match trouble {
-            Trouble::TimeOut => LineError::TimeOut {
-                line,
-                command,
-                limit: self.settings.time_out(&command),
-            },
-            Trouble::Reply(reason) => LineError::Reply {
-                line,
-                command,
-                reason,
-            },
-            Trouble::Echo => LineError::Echo { line, command },
-            Trouble::OutOfStep => LineError::OutOfStep { line, command },
-            Trouble::Contradicted => LineError::Contradicted { line, command },
-            Trouble::SecondReply => LineError::SecondReply { line, command },
-            Trouble::NeverSilent => LineError::NeverSilent { line, command },
-            Trouble::Broken(_) | Trouble::NoPort => LineError::PortLost {
-                line,
-                command,
-                reason: self.lost_because.clone(),
-            },
-        }
     }
 
     fn count(&self, command: &Command, attempt: &Try) {
@@ -281,12 +264,9 @@ impl Line {
 
 /// Returns true when the command only reads and a repetition may cure its failure.
 fn may_repeat(command: &Command, outcome: &Result<Reply, LineError>) -> bool {
-    command.repeatable()
-        && match outcome {
-            Ok(_) | Err(LineError::PortLost { .. }) => false,
-            Err(LineError::Reply { reason, .. }) => !reason.is_answer(),
-            Err(LineError::TimeOut { .. } | LineError::Echo { .. }) => true,
-            Err(LineError::SecondReply { .. } | LineError::OutOfStep { .. }) => true,
-            Err(LineError::NeverSilent { .. } | LineError::Contradicted { .. }) => true,
-        }
+    let may_be_cured = |error: &LineError| {
+        let lost = matches!(error.failure, Failure::PortLost(_));
+        !lost && !error.failure.is_answer()
+    };
+    command.repeatable() && outcome.as_ref().is_err_and(may_be_cured)
 }

@@ -1,6 +1,6 @@
-//! Trace and health of a line; the task of the line writes them and others read them.
+//! Records of a line or link; its task writes them and others read them.
 //!
-//! The task of the line never waits for a reader: a reader that holds the records may have lost the processor for many
+//! The task never waits for a reader: a reader that holds the records may have lost the processor for many
 //! milliseconds, and the modules' replies do not wait.
 
 use super::{Health, Trace};
@@ -9,16 +9,20 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
 /// A shared handle: all clones refer to the same records. Only one task writes.
 #[derive(Clone, Default)]
-pub struct LineLog {
-    records: Arc<Mutex<Records>>,
+pub struct Log<R> {
+    records: Arc<Mutex<R>>,
     /// Changes that found the records locked, oldest first; only the writing task locks this list.
-    deferred: Arc<Mutex<Vec<Change>>>,
+    deferred: Arc<Mutex<Vec<Change<R>>>>,
 }
 
-type Change = Box<dyn FnOnce(&mut Records) + Send>;
+type Change<R> = Box<dyn FnOnce(&mut R) + Send>;
 
-#[derive(Debug, Default)]
-pub(super) struct Records {
+/// A shared handle to trace and health of a line.
+pub type LineLog = Log<Records>;
+
+/// Trace and health of a line.
+#[derive(Debug, Clone, Default)]
+pub struct Records {
     pub(super) trace: Trace,
     pub(super) health: Health,
 }
@@ -50,9 +54,11 @@ impl LineLog {
     pub fn health(&self) -> Health {
         self.records().health.clone()
     }
+}
 
+impl<R> Log<R> {
     /// Changes the records, or, while a reader holds them, defers the change to the next call.
-    pub(super) fn write(&self, change: impl FnOnce(&mut Records) + Send + 'static) {
+    pub(super) fn write(&self, change: impl FnOnce(&mut R) + Send + 'static) {
         let mut deferred = self.deferred.lock().unwrap_or_else(PoisonError::into_inner);
         let mut records = match self.records.try_lock() {
             Ok(records) => records,
@@ -63,16 +69,16 @@ impl LineLog {
         change(&mut records);
     }
 
-    fn records(&self) -> MutexGuard<'_, Records> {
+    pub(super) fn records(&self) -> MutexGuard<'_, R> {
         // The records are plain counts, which stay valid even if the holder of the lock panicked.
         self.records.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl fmt::Debug for LineLog {
+impl<R: fmt::Debug> fmt::Debug for Log<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let records = &self.records;
-        f.debug_struct("LineLog").field("records", records).finish()
+        f.debug_struct("Log").field("records", records).finish()
     }
 }
 

@@ -1,8 +1,13 @@
-//! Puts replies into words; what a reply means depends on its request.
+//! Texts of the traffic of a line; the meaning of a reply depends on its request.
 
-use super::{Direction, Entry};
+use super::{Direction, Entry, words};
+use dcon::{Command, Model, Reply, ReplyError};
+use texts::{Lang, Message};
 
-/// Puts replies into words; remembers the last request for that.
+/// Largest number of meanings of one reply that a text lists; of more, it gives the first and the number of others.
+const LISTED: usize = 3;
+
+/// Decodes each reply with the last request, which it remembers.
 #[derive(Debug)]
 pub struct Meaning {
     checksum: bool,
@@ -18,30 +23,45 @@ impl Meaning {
         }
     }
 
-    /// Returns the meaning of a reply in words; an empty text for a request.
-    pub fn of(&mut self, entry: &Entry) -> String {
-        match entry.direction {
+    /// Returns the text of an entry in each language of `langs`: a reply together with its request, or a request to all
+    /// modules, which has no reply. The text of any other request is empty.
+    pub fn of<const N: usize>(&mut self, entry: &Entry, langs: [Lang; N]) -> [String; N] {
+        let reply: &[u8] = match entry.direction {
+            Direction::Stray => return langs.map(|it| it.text("exchange-unsolicited").to_owned()),
+            Direction::Received => entry.bytes(),
             Direction::Sent => {
                 self.request = entry.bytes().to_vec();
-                String::new()
-            }
-            Direction::Stray => "unsolicited, discarded".to_owned(),
-            Direction::Received => {
-                let mut words: Vec<String> =
-                    dcon::interpret(&self.request, entry.bytes(), self.checksum)
-                        .into_iter()
-                        .map(|(command, reply)| match reply {
-                            Ok(reply) => format!("{command} = {reply}"),
-                            Err(reason) => format!("{command}: {reason}"),
-                        })
-                        .collect();
-                words.dedup();
-                match words.len() {
-                    0 => "no known command".to_owned(),
-                    1..=3 => words.join(" | "),
-                    more => format!("{} | and {} other meanings", words[0], more - 1),
+                if self.request.get(1..3) != Some(b"**") {
+                    return langs.map(|_| String::new());
                 }
+                b""
             }
-        }
+        };
+        let found = dcon::interpret(&self.request, reply, self.checksum, None);
+        langs.map(|lang| listed(lang, &meanings(&found, None, lang)))
+    }
+}
+
+/// Returns a text for each meaning in `found`, the result of [`dcon::interpret`]; merges equal neighbours. With
+/// `model`, the texts separate digital inputs from outputs.
+pub fn meanings(
+    found: &[(Command, Result<Reply, ReplyError>)],
+    model: Option<Model>,
+    lang: Lang,
+) -> Vec<String> {
+    let words = |(command, outcome): &(_, _)| words::exchange(lang, command, outcome, model);
+    let mut said: Vec<String> = found.iter().map(words).collect();
+    said.dedup();
+    said
+}
+
+fn listed(lang: Lang, words: &[String]) -> String {
+    match words.len() {
+        0 => lang.text("exchange-unknown").to_owned(),
+        1..=LISTED => words.join(" | "),
+        more => Message::new("exchange", "several")
+            .with("first", &words[0])
+            .with("more", more - 1)
+            .say(lang),
     }
 }

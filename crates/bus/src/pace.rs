@@ -16,8 +16,6 @@ pub struct Pace {
     is_virtual: bool,
 }
 
-/// Greatest lateness of tokio's timer; for this last part of a wait, [`Pace::rest_until`] blocks the thread instead.
-const FINE: Span = Span(2_000);
 /// Rig time between two pauses by which [`Pace::limit_speed`] slows virtual time: half the time of a screen frame.
 const HOLD: Span = Span(10_000);
 
@@ -67,21 +65,6 @@ impl Pace {
     pub async fn sleep_until(&self, until: RigTime) {
         if self.now() < until {
             self.sleep(until).await;
-        }
-    }
-
-    /// Waits as [`Pace::sleep_until`] does, but at real pace is late by only some 0.1 ms, because it blocks the thread
-    /// for the last two milliseconds. Serves for turnarounds.
-    pub async fn rest_until(&self, until: RigTime) {
-        if self.is_virtual {
-            return self.sleep_until(until).await;
-        }
-        if until.since(self.now()) > FINE {
-            self.sleep(RigTime(until.0 - FINE.0)).await;
-        }
-        let left = until.since(self.now());
-        if left > Span(0) {
-            std::thread::sleep(Duration::from_micros(left.0));
         }
     }
 

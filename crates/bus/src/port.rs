@@ -71,11 +71,20 @@ pub enum PortError {
 
 /// Opens `path` for this program alone: 8N1, no flow control. Panics outside a tokio runtime with I/O.
 pub fn open_serial(path: &str, baud: u32) -> Result<SerialStream, PortError> {
+    open_serial_with(path, baud, FlowControl::None)
+}
+
+/// Opens `path` as [`open_serial`] does, with flow control.
+pub fn open_serial_with(
+    path: &str,
+    baud: u32,
+    flow: FlowControl,
+) -> Result<SerialStream, PortError> {
     tokio_serial::new(path, baud)
         .data_bits(DataBits::Eight)
         .parity(Parity::None)
         .stop_bits(StopBits::One)
-        .flow_control(FlowControl::None)
+        .flow_control(flow)
         .exclusive(true)
         .open_native_async()
         .map_err(|error| port_error(path, baud, &error))

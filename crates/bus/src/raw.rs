@@ -1,7 +1,7 @@
 //! Sends one raw frame, for tools. It may hold any command, so nothing is repeated or checked.
 
 use super::exchange::{Exchange, Frame, FrameEnd};
-use super::{LineSettings, Pace, Port};
+use super::{LineSettings, Pace, Port, Timer};
 use dcon::FRAME_LIMIT;
 use std::io;
 use units::Span;
@@ -28,7 +28,13 @@ pub async fn send_raw(
     request: &[u8],
 ) -> io::Result<RawReply> {
     let log = &settings.log;
-    let mut exchange = Exchange { port, pace, log };
+    let timer = &Timer::new(pace);
+    let mut exchange = Exchange {
+        port,
+        pace,
+        timer,
+        log,
+    };
     exchange.discard().await?;
     let begun = pace.now();
     let limit =
@@ -36,7 +42,7 @@ pub async fn send_raw(
     let mut frame = Frame::new();
     let heard = exchange.ask(request, begun + limit, &mut frame).await?;
     let taken = pace.now().since(begun);
-    pace.rest_until(pace.now() + settings.turnaround()).await;
+    timer.until(pace.now() + settings.turnaround()).await;
     let behind = exchange.discard().await?;
     Ok(RawReply {
         bytes: frame.bytes().to_vec(),

@@ -159,7 +159,13 @@ fn a_late_reply_never_counts_for_the_next_request() {
         let (got, sent) =
             in_virtual_time(played(settings(), script, &[(count(), 1), (count(), 1)]));
         assert!(
-            matches!(got[0].outcome, Err(LineError::TimeOut { .. })),
+            matches!(
+                got[0].outcome,
+                Err(LineError {
+                    failure: Failure::TimeOut(_),
+                    ..
+                })
+            ),
             "{late}: {:?}",
             got[0].outcome
         );
@@ -177,7 +183,8 @@ fn a_silent_module_times_out_after_every_allowed_try() {
     assert_eq!(got[0].answered_at.since(got[0].requested_at), limit);
     let text = got[0].outcome.as_ref().unwrap_err().to_string();
     assert!(
-        text.starts_with("line measure, 03: ") && text.contains("no whole reply within"),
+        text.starts_with("line measure, module 03, read counter 0: ")
+            && text.contains("no whole reply within"),
         "{text}"
     );
 }
@@ -224,16 +231,16 @@ fn a_refusal_causes_neither_a_repetition_nor_a_silence() {
     ));
     assert!(matches!(
         got[0].outcome,
-        Err(LineError::Reply {
-            reason: ReplyError::ChecksumWrong { .. },
+        Err(LineError {
+            failure: Failure::Reply(ReplyError::ChecksumWrong { .. }),
             ..
         })
     ));
     assert!(
         matches!(
             got[1].outcome,
-            Err(LineError::Reply {
-                reason: ReplyError::Refused,
+            Err(LineError {
+                failure: Failure::Reply(ReplyError::Refused),
                 ..
             })
         ),
@@ -261,7 +268,13 @@ fn replies_of_two_modules_at_one_address_are_rejected() {
             &[(count(), 1), (count(), 1)],
         ));
         assert!(
-            matches!(got[0].outcome, Err(LineError::SecondReply { .. })),
+            matches!(
+                got[0].outcome,
+                Err(LineError {
+                    failure: Failure::SecondReply,
+                    ..
+                })
+            ),
             "{:?}",
             got[0].outcome
         );
@@ -277,7 +290,13 @@ fn an_echo_is_reported_as_an_echo() {
         &[(count(), 1)],
     ));
     assert!(
-        matches!(got[0].outcome, Err(LineError::Echo { .. })),
+        matches!(
+            got[0].outcome,
+            Err(LineError {
+                failure: Failure::Echo,
+                ..
+            })
+        ),
         "{:?}",
         got[0].outcome
     );
@@ -293,8 +312,8 @@ fn more_characters_than_a_frame_has_are_dropped() {
     ));
     assert!(matches!(
         got[0].outcome,
-        Err(LineError::Reply {
-            reason: ReplyError::TooLong { .. },
+        Err(LineError {
+            failure: Failure::Reply(ReplyError::TooLong { .. }),
             ..
         })
     ));
@@ -310,7 +329,15 @@ fn a_line_that_never_falls_silent_gets_no_request() {
     let longest = longest_transaction(&settings(), &[count()]);
     let unsent = got
         .iter()
-        .filter(|a| matches!(a.outcome, Err(LineError::NeverSilent { .. })))
+        .filter(|a| {
+            matches!(
+                a.outcome,
+                Err(LineError {
+                    failure: Failure::NeverSilent,
+                    ..
+                })
+            )
+        })
         .count();
     // After the stray bytes the line reads each count that it does request twice.
     assert!(unsent > 0 && sent.len() < 2 * (10 - unsent), "{sent:?}");

@@ -51,7 +51,6 @@ pub struct Trace {
     ring: VecDeque<Entry>,
     capacity: usize,
     fingerprint: u64,
-    bytes: u64,
 }
 
 impl Default for Trace {
@@ -69,7 +68,6 @@ impl Trace {
             ring: VecDeque::new(),
             capacity,
             fingerprint: 0xCBF2_9CE4_8422_2325,
-            bytes: 0,
         }
     }
 
@@ -89,7 +87,6 @@ impl Trace {
         let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(PRIME);
         let hash = step(self.fingerprint, direction as u8);
         self.fingerprint = bytes.iter().fold(hash, |hash, byte| step(hash, *byte));
-        self.bytes += bytes.len() as u64;
     }
 
     /// Yields the entries, oldest first.
@@ -100,10 +97,5 @@ impl Trace {
     /// Returns a hash of all bytes so far, with their order and direction but without their times.
     pub fn fingerprint(&self) -> u64 {
         self.fingerprint
-    }
-
-    /// Returns the number of bytes added so far.
-    pub fn byte_count(&self) -> u64 {
-        self.bytes
     }
 }

@@ -8,41 +8,18 @@
 //! 3. while resynchronising: [`Transaction::resynchronise`] discards what arrives before the module names itself, or
 //!    before the line falls silent.
 
-use super::LineSettings;
 use super::exchange::{Exchange, Frame, FrameEnd, SilenceEnd};
 use super::outstanding::{OutstandingReplies, identification};
 use super::probation::Probation;
+use super::{Failure, LineSettings};
 use dcon::{Address, Command, Reply, ReplyError};
 use std::io;
 use std::mem::{replace, take};
 use units::RigTime;
 
-/// Reason why a try failed; the line adds its name and the command to make a [`super::LineError`].
-pub(super) enum Trouble {
-    Reply(ReplyError),
-    TimeOut,
-    Echo,
-    SecondReply,
-    OutOfStep,
-    Contradicted,
-    NeverSilent,
-    Broken(io::ErrorKind),
-    NoPort,
-}
-
-impl From<io::Error> for Trouble {
-    fn from(error: io::Error) -> Self {
-        Self::Broken(error.kind())
-    }
-}
-
 /// Returns true when the module understood the request: it replied or refused.
-fn is_answer(result: &Result<Reply, Trouble>) -> bool {
-    match result {
-        Ok(_) => true,
-        Err(Trouble::Reply(reason)) => reason.is_answer(),
-        Err(_) => false,
-    }
+fn is_answer(result: &Result<Reply, Failure>) -> bool {
+    result.as_ref().map_or_else(Failure::is_answer, |_| true)
 }
 
 /// Times at which a try began and was answered.
@@ -70,7 +47,7 @@ impl Transaction<'_> {
         request: &[u8],
         frame: &mut Frame,
         times: &mut Times,
-    ) -> Result<Reply, Trouble> {
+    ) -> Result<Reply, Failure> {
         if !*self.silent {
             let rest = self.settings.silence(command);
             let now = self.now();
@@ -79,7 +56,7 @@ impl Transaction<'_> {
                 .silence(rest, now, now + rest + rest, |_| false)
                 .await?;
             *self.silent = quiet != SilenceEnd::Noisy;
-            return Err(Trouble::NeverSilent);
+            return Err(Failure::NeverSilent);
         }
         self.exchange.discard().await?;
         let Some(address) = command.address() else {
@@ -97,7 +74,7 @@ impl Transaction<'_> {
         {
             return match self.confirm(command, address, request, frame).await? {
                 true => result,
-                false => Err(Trouble::OutOfStep),
+                false => Err(Failure::OutOfStep),
             };
         }
         match result {
@@ -117,11 +94,11 @@ impl Transaction<'_> {
         request: &[u8],
         frame: &mut Frame,
         times: &mut Times,
-    ) -> Result<Reply, Trouble> {
+    ) -> Result<Reply, Failure> {
         times.requested_at = self.now();
         let result = self.ask(command, request, frame, times).await;
         self.update_probation(address, frame, &result);
-        if !is_answer(&result) && !matches!(result, Err(Trouble::Broken(_))) {
+        if !is_answer(&result) && !matches!(result, Err(Failure::PortLost(_))) {
             self.resynchronise(command, address).await?;
         }
         result
@@ -133,11 +110,11 @@ impl Transaction<'_> {
         &mut self,
         address: Address,
         frame: &Frame,
-        result: &Result<Reply, Trouble>,
+        result: &Result<Reply, Failure>,
     ) {
         if is_answer(result) {
             self.probation.count_whole(address);
-        } else if !frame.bytes().is_empty() && !matches!(result, Err(Trouble::Echo)) {
+        } else if !frame.bytes().is_empty() && !matches!(result, Err(Failure::Echo)) {
             self.probation.start(address);
         }
     }
@@ -152,7 +129,7 @@ impl Transaction<'_> {
         frame: &mut Frame,
         times: &mut Times,
         first: Reply,
-    ) -> Result<Reply, Trouble> {
+    ) -> Result<Reply, Failure> {
         let begun = times.requested_at;
         let third_until = begun + self.settings.time_out(command) + self.settings.turnaround();
         let mut answers = vec![first];
@@ -179,7 +156,7 @@ impl Transaction<'_> {
             }
             if answers.len() == 3 || self.now() > third_until {
                 self.probation.start(address);
-                return Err(Trouble::Contradicted);
+                return Err(Failure::Contradicted);
             }
         }
     }
@@ -188,11 +165,11 @@ impl Transaction<'_> {
         self.exchange.pace.now()
     }
 
-    async fn broadcast(&mut self, request: &[u8]) -> Result<Reply, Trouble> {
+    async fn broadcast(&mut self, request: &[u8]) -> Result<Reply, Failure> {
         let wire = self.settings.wire().time(request.len());
         let over = self.now() + wire + self.settings.turnaround();
         self.exchange.broadcast(request, over).await?;
-        self.exchange.pace.rest_until(over).await;
+        self.exchange.timer.until(over).await;
         Ok(Reply::Sent)
     }
 
@@ -203,24 +180,24 @@ impl Transaction<'_> {
         request: &[u8],
         frame: &mut Frame,
         times: &mut Times,
-    ) -> Result<Reply, Trouble> {
+    ) -> Result<Reply, Failure> {
         let limit = self.settings.time_out_of(command, request.len());
         let heard = self
             .exchange
             .ask(request, self.now() + limit, frame)
             .await?;
         times.answered_at = Some(self.now());
-        let result = decode(command, self.settings.checksum, request, frame, heard);
+        let result = decode(command, self.settings, request, frame, heard);
         if self.rest().await? || !is_answer(&result) {
             return result;
         }
-        Err(Trouble::SecondReply)
+        Err(Failure::SecondReply)
     }
 
     /// Waits for the turnaround; returns false when bytes arrived during it, and discards them.
     async fn rest(&mut self) -> io::Result<bool> {
         let over = self.now() + self.settings.turnaround();
-        self.exchange.pace.rest_until(over).await;
+        self.exchange.timer.until(over).await;
         Ok(self.exchange.discard().await? == 0)
     }
 
@@ -232,15 +209,15 @@ impl Transaction<'_> {
         address: Address,
         request: &[u8],
         first: &Frame,
-    ) -> Result<bool, Trouble> {
+    ) -> Result<bool, Failure> {
         let mut same = false;
         if command.repeatable() {
             let mut second = Frame::new();
             let again = self
                 .ask(command, request, &mut second, &mut Times::default())
                 .await;
-            if let Err(Trouble::Broken(kind)) = again {
-                return Err(Trouble::Broken(kind));
+            if let Err(lost @ Failure::PortLost(_)) = again {
+                return Err(lost);
             }
             same = is_answer(&again) && second.bytes() == first.bytes();
         }
@@ -253,7 +230,7 @@ impl Transaction<'_> {
         &mut self,
         command: &Command,
         address: Address,
-    ) -> Result<bool, Trouble> {
+    ) -> Result<bool, Failure> {
         self.outstanding.add(*command, self.now());
         let checksum = self.settings.checksum;
         let mut alone = true;
@@ -302,20 +279,22 @@ impl Transaction<'_> {
 /// Decodes the frame received as the reply to `command`.
 fn decode(
     command: &Command,
-    checksum: bool,
+    settings: &LineSettings,
     request: &[u8],
     frame: &Frame,
     heard: FrameEnd,
-) -> Result<Reply, Trouble> {
+) -> Result<Reply, Failure> {
     match heard {
-        FrameEnd::TimedOut => Err(Trouble::TimeOut),
-        FrameEnd::TooLong => Err(Trouble::Reply(ReplyError::TooLong {
+        FrameEnd::TimedOut => Err(Failure::TimeOut(
+            settings.time_out_of(command, request.len()),
+        )),
+        FrameEnd::TooLong => Err(Failure::Reply(ReplyError::TooLong {
             length: frame.bytes().len(),
         })),
-        FrameEnd::Whole | FrameEnd::More if frame.bytes() == request => Err(Trouble::Echo),
-        FrameEnd::More => Err(Trouble::SecondReply),
+        FrameEnd::Whole | FrameEnd::More if frame.bytes() == request => Err(Failure::Echo),
+        FrameEnd::More => Err(Failure::SecondReply),
         FrameEnd::Whole => command
-            .decode(frame.bytes(), checksum)
-            .map_err(Trouble::Reply),
+            .decode(frame.bytes(), settings.checksum)
+            .map_err(Failure::Reply),
     }
 }

@@ -1,4 +1,5 @@
-//! Analog inputs: 7017, 7017F, 7017R, 7018 (eight channels) and 7033 (three resistance thermometers).
+//! Analog inputs: 7017, 7017F, 7017R, 7018, 7019 (eight channels), 7015 (six), 7033 (three resistance thermometers),
+//! 7011, 7012, 7013, 7014, 7016 (one channel; they take `#AA` but not `#AAN`).
 
 use super::command::Effect::{self, Read, Store};
 use super::request::Request;

@@ -5,9 +5,10 @@ use super::request::Request;
 /// Two bytes as a digital module sends them; their meaning depends on the module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bits {
-    /// Outputs of a module that has outputs and inputs; high byte (8..15) of a 16-bit module.
+    /// The outputs if the module has outputs and inputs; channels 8 to 15 if it has more than eight of one kind; else
+    /// all channels, such as the inputs of a 7052.
     pub first: u8,
-    /// Inputs of a module that has outputs and inputs; low byte (0..7) of a 16-bit module.
+    /// The inputs if the module has outputs and inputs; channels 0 to 7 if it has more than eight of one kind; else 0.
     pub second: u8,
 }
 

@@ -3,7 +3,8 @@
 //! A host should compare the reply to `$AA2` with the wanted configuration and write only a difference, because
 //! each write wears the EEPROM.
 
-use super::{TypeCode, UpTo};
+use super::{TypeCode, Unit, UpTo};
+use std::fmt;
 
 /// Type, baud and format of a module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -121,6 +122,16 @@ impl SlewCode {
             code => Some(0.0625 * f64::from(1u32 << (code - 1))),
         }
     }
+
+    /// Returns the slew rate of an output of this range with its unit; `None` when the output steps at once.
+    pub(super) fn in_units(self, range: TypeCode) -> Option<String> {
+        let rate = self.volt_per_second()?;
+        let unit = range.full_scale().map(|scale| scale.unit);
+        Some(match unit {
+            Some(Unit::Milliampere) => format!("{} mA/s", 2.0 * rate),
+            Some(Unit::Volt | Unit::Millivolt | Unit::Celsius) | None => format!("{rate} V/s"),
+        })
+    }
 }
 
 /// Name of a module: one to six printable characters.
@@ -148,5 +159,11 @@ impl ModuleName {
 
     pub(super) fn as_bytes(&self) -> &[u8] {
         &self.bytes[..usize::from(self.length)]
+    }
+}
+
+impl fmt::Display for ModuleName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(std::str::from_utf8(self.as_bytes()).unwrap_or_default())
     }
 }

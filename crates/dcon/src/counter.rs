@@ -4,6 +4,7 @@ use super::command::Effect::{self, Act, Output, Read, Store};
 use super::request::Request;
 use super::shape::Shape;
 use super::{Address, Channel, UpTo};
+use std::fmt;
 
 /// Gate level at which the counters count; both counters share the setting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,11 +57,29 @@ pub enum AlarmKind {
     Momentary,
 }
 
+/// Alarm mode: what the alarms of a 7080 watch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AlarmMode {
+    /// Mode 0: one limit for each counter.
+    PerCounter,
+    /// Mode 1: two limits, high and high-high, for counter 0.
+    HighHigh,
+}
+
+/// Alarms that are on, from field S of the reply to `@AADI`; the alarm mode decides what S means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Alarms {
+    /// Mode 0: true for each counter whose alarm is on, counter 0 first.
+    PerCounter([bool; 2]),
+    /// Mode 1: how the alarm of counter 0 behaves; `None` when it is off.
+    HighHigh(Option<AlarmKind>),
+}
+
 /// Reply to `@AADI`: alarms of the counters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AlarmState {
-    /// 0 = alarms are off; 1 = on, momentary; 2 = on, latched.
-    pub state: u8,
+    /// Alarms that are on.
+    pub alarms: Alarms,
     /// States of the two open-collector outputs, bit n = output n.
     pub outputs: u8,
 }
@@ -111,10 +130,12 @@ pub enum Counter {
     /// `$AA1H(data)`, `$AA1L(data)`: sets the TTL threshold, tenths of a volt; the high one must stay above the low
     /// one.
     WriteThreshold(Edge, UpTo<50>),
-    /// `@AADI`: reads the state of the alarm and of the outputs.
-    ReadAlarm,
-    /// `~AAAS`: sets the alarm mode; true = both limits on counter 0 (mode 1), false = one limit per counter (mode 0).
-    WriteAlarmMode(bool),
+    /// `@AADI` of a module in this alarm mode: reads which alarms and outputs are on.
+    ReadAlarm(AlarmMode),
+    /// `~AAA`: reads the alarm mode. No manual has this command, but a library of the vendor sends it.
+    ReadAlarmMode,
+    /// `~AAAS`: sets the alarm mode.
+    WriteAlarmMode(AlarmMode),
     /// `@AAEAT`, mode 1: enables the alarm.
     EnableAlarm(AlarmKind),
     /// `@AADA`, mode 1: disables the alarm.
@@ -137,8 +158,47 @@ pub enum Counter {
     /// `$AA8V` of the 7080D: selects the source of the displayed number: 0 or 1 a counter, 2 the number that the host
     /// sets.
     WriteDisplay(Channel),
-    /// `$AA9(data)` of the 7080D: sets the number for the display, five digits.
-    WriteDisplayed(u16),
+    /// `$AA9(data)` of the 7080D: sets the number for the display.
+    WriteDisplayed(DisplayNumber),
+}
+
+/// Number on the display of a 7080D: five digits and a point after one of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DisplayNumber {
+    digits: u32,
+    places: UpTo<4>,
+}
+
+impl DisplayNumber {
+    /// Creates the number `digits` / 10^`places`; returns `None` for more than five digits.
+    pub const fn new(digits: u32, places: UpTo<4>) -> Option<Self> {
+        if digits <= 99_999 {
+            Some(Self { digits, places })
+        } else {
+            None
+        }
+    }
+
+    /// Parses five digits and a point after one of them: `0.0000` to `99999.`.
+    pub(super) fn parse(text: &[u8]) -> Option<Self> {
+        let point = text.iter().position(|byte| *byte == b'.')?;
+        let digits = [&text[..point], &text[point + 1..]].concat();
+        let is_number = digits.len() == 5 && digits.iter().all(u8::is_ascii_digit);
+        let number = std::str::from_utf8(&digits).ok().filter(|_| is_number);
+        Self::new(number?.parse().ok()?, UpTo::new((5 - point) as u8)?)
+    }
+}
+
+impl fmt::Display for DisplayNumber {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let unit = 10u32.pow(u32::from(self.places.get()));
+        let (whole, part) = (self.digits / unit, self.digits % unit);
+        let places = usize::from(self.places.get());
+        match places {
+            0 => write!(f, "{whole:05}."),
+            _ => write!(f, "{whole:0width$}.{part:0places$}", width = 5 - places),
+        }
+    }
 }
 
 impl Counter {
@@ -171,8 +231,12 @@ impl Counter {
                 .text(b"1")
                 .text(side.letter())
                 .decimal(u32::from(tenths.get()), 2),
-            Self::ReadAlarm => request.to(b'@', to).text(b"DI"),
-            Self::WriteAlarmMode(both) => request.to(b'~', to).text(b"A").flag(both),
+            Self::ReadAlarm(_) => request.to(b'@', to).text(b"DI"),
+            Self::ReadAlarmMode => request.to(b'~', to).text(b"A"),
+            Self::WriteAlarmMode(mode) => request
+                .to(b'~', to)
+                .text(b"A")
+                .flag(mode == AlarmMode::HighHigh),
             Self::EnableAlarm(AlarmKind::Latched) => request.to(b'@', to).text(b"EAL"),
             Self::EnableAlarm(AlarmKind::Momentary) => request.to(b'@', to).text(b"EAM"),
             Self::DisableAlarm => request.to(b'@', to).text(b"DA"),
@@ -192,7 +256,7 @@ impl Counter {
             Self::WriteDisplayed(number) => request
                 .to(b'$', to)
                 .text(b"9")
-                .decimal(u32::from(number), 5),
+                .text(number.to_string().as_bytes()),
         };
     }
 
@@ -214,7 +278,8 @@ impl Counter {
                 },
             ),
             Self::ReadThreshold(_) => (Read, Shape::Decimal { digits: 2, max: 50 }),
-            Self::ReadAlarm => (Read, Shape::Alarm),
+            Self::ReadAlarm(mode) => (Read, Shape::Alarm(mode)),
+            Self::ReadAlarmMode => (Read, Shape::AlarmMode),
             Self::ReadDisplay => (Read, Shape::Decimal { digits: 1, max: 2 }),
             Self::Reset(_) | Self::Run(..) | Self::ClearAlarm | Self::WriteDisplayed(_) => {
                 (Act, Shape::Accepted)

@@ -6,22 +6,21 @@
 
 use super::frame::{hex_digit, hex_number};
 use super::{
-    Address, AlarmKind, AnalogIn, AnalogOut, BaudCode, Channel, Command, Common, Config, Counter,
-    DataFormat, Digital, Edge, FormatByte, GateMode, GroupWrite, InputForm, InputMode, Level,
-    ModuleName, OutputForm, OutputWord, SlewCode, Stored, TypeCode, UpTo, Width,
+    Address, AlarmKind, AlarmMode, AnalogIn, AnalogOut, BaudCode, Channel, Command, Common, Config,
+    Counter, DataFormat, Digital, DisplayNumber, Edge, FormatByte, GateMode, GroupWrite, InputForm,
+    InputMode, Level, ModuleName, OutputForm, OutputWord, SlewCode, Stored, TypeCode, UpTo, Width,
 };
 
 /// A type code that no module has; with it, a reading is checked against no range.
 const UNKNOWN: TypeCode = TypeCode(0xFF);
 
-/// Notations and channel counts that an input module may have when nothing is known about it.
-const INPUT_FORMS: [InputForm; 6] = [
-    InputForm::eight(DataFormat::Engineering, UNKNOWN),
-    InputForm::eight(DataFormat::Percent, UNKNOWN),
-    InputForm::eight(DataFormat::Hex, UNKNOWN),
-    InputForm::three(DataFormat::Engineering, UNKNOWN),
-    InputForm::three(DataFormat::Percent, UNKNOWN),
-    InputForm::three(DataFormat::Hex, UNKNOWN),
+/// Numbers of inputs that analog modules have; the decoder tries each, because a request does not name its model.
+const INPUTS: [u8; 4] = [8, 6, 3, 1];
+
+const NOTATIONS: [DataFormat; 3] = [
+    DataFormat::Engineering,
+    DataFormat::Percent,
+    DataFormat::Hex,
 ];
 
 const OUTPUT_FORMS: [OutputForm; 5] = [
@@ -140,14 +139,21 @@ fn analog_in(rest: &[u8]) -> Vec<AnalogIn> {
         AnalogIn::ReadColdJunction,
         AnalogIn::ReadDiagnosis,
     ];
-    found.extend(INPUT_FORMS.map(AnalogIn::ReadAll));
-    found.push(AnalogIn::ReadAllHex(INPUT_FORMS[2]));
-    found.push(AnalogIn::ReadAllHex(INPUT_FORMS[5]));
+    for inputs in INPUTS {
+        let form = |format| InputForm::new(inputs, format, UNKNOWN);
+        found.extend(
+            NOTATIONS
+                .into_iter()
+                .filter_map(form)
+                .map(AnalogIn::ReadAll),
+        );
+        found.extend(form(DataFormat::Hex).map(AnalogIn::ReadAllHex));
+    }
     match rest {
         [n] => {
             if let Some(channel) = digit(*n) {
                 let one = |form| AnalogIn::ReadOne { channel, form };
-                found.extend(INPUT_FORMS[..3].iter().copied().map(one));
+                found.extend(NOTATIONS.map(|format| one(InputForm::eight(format, UNKNOWN))));
             }
         }
         [b'5', mask @ ..] => found.extend(byte(mask).map(AnalogIn::WriteMask)),
@@ -257,22 +263,21 @@ fn counter(rest: &[u8]) -> Vec<Counter> {
         Counter::ReadGate,
         Counter::ReadInputs,
         Counter::ReadFilter,
-        Counter::ReadAlarm,
+        Counter::ReadAlarm(AlarmMode::PerCounter),
+        Counter::ReadAlarm(AlarmMode::HighHigh),
+        Counter::ReadAlarmMode,
+        Counter::WriteAlarmMode(AlarmMode::PerCounter),
+        Counter::WriteAlarmMode(AlarmMode::HighHigh),
+        Counter::WriteFilter(true),
+        Counter::WriteFilter(false),
         Counter::DisableAlarm,
         Counter::ClearAlarm,
         Counter::ReadDisplay,
         Counter::EnableAlarm(AlarmKind::Latched),
         Counter::EnableAlarm(AlarmKind::Momentary),
     ];
-    let shown = rest.get(1..).and_then(decimal);
-    found.extend(
-        shown
-            .and_then(|shown| u16::try_from(shown).ok())
-            .map(Counter::WriteDisplayed),
-    );
-    for on in [true, false] {
-        found.extend([Counter::WriteFilter(on), Counter::WriteAlarmMode(on)]);
-    }
+    let shown = rest.get(1..).and_then(DisplayNumber::parse);
+    found.extend(shown.map(Counter::WriteDisplayed));
     for side in [Edge::High, Edge::Low] {
         found.extend([Counter::ReadFilterWidth(side), Counter::ReadThreshold(side)]);
         let data = decimal(rest.get(2..).unwrap_or_default());

@@ -1,36 +1,30 @@
 //! Reasons why a reply is not accepted.
 
 use super::Address;
-use thiserror::Error;
+use super::describe::Description;
+use std::fmt;
 
 /// Reason why a reply is not accepted. [`ReplyError::is_answer`] distinguishes a refusal by the module from a damaged
 /// reply.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ReplyError {
     /// `?AA`: the module understood the command but refused it (no such channel, out of range, needs INIT*, an
     /// alarm controls the output).
-    #[error("the module refused the command")]
     Refused,
     /// `!` alone: the host watchdog has tripped; outputs keep their safe values until its status is cleared.
-    #[error("the module ignored the output: its host watchdog has tripped")]
     Ignored,
     /// The command is a broadcast, which has no reply.
-    #[error("a broadcast has no reply")]
     Broadcast,
     /// The frame has no characters before its end.
-    #[error("empty reply")]
     Empty,
     /// The frame does not end in CR, and only the CR could prove it complete.
-    #[error("the reply does not end in CR")]
     NotEnded,
     /// The frame is longer than any reply of the protocol.
-    #[error("{length} characters, more than any reply has")]
     TooLong {
         /// Number of characters received.
         length: usize,
     },
     /// A byte is not printable ASCII.
-    #[error("byte {byte:#04x} at position {at} is not a printable ASCII character")]
     NotText {
         /// Position of the byte in the reply, from 0.
         at: usize,
@@ -38,10 +32,8 @@ pub enum ReplyError {
         byte: u8,
     },
     /// The frame is too short for a checksum, or does not end in two upper-case hex digits.
-    #[error("no checksum at the end of the reply")]
     ChecksumMissing,
     /// The checksum does not match the characters.
-    #[error("checksum {found:02X} received, {expected:02X} computed")]
     ChecksumWrong {
         /// Checksum received.
         found: u8,
@@ -49,7 +41,6 @@ pub enum ReplyError {
         expected: u8,
     },
     /// The first character (lead) is that of another kind of reply.
-    #[error("lead `{}` received, `{}` expected", *found as char, *expected as char)]
     WrongLead {
         /// First character received.
         found: u8,
@@ -57,7 +48,6 @@ pub enum ReplyError {
         expected: u8,
     },
     /// Another module answered.
-    #[error("reply from address {found}, expected {expected}")]
     WrongAddress {
         /// Address in the reply.
         found: Address,
@@ -65,30 +55,64 @@ pub enum ReplyError {
         expected: Address,
     },
     /// The reply has more or fewer characters than this command allows.
-    #[error("{found} characters before the checksum, not a valid length of this reply")]
     WrongLength {
         /// Number of characters received, without checksum and CR.
         found: usize,
     },
     /// A field does not have the form that the protocol prescribes.
-    #[error("no {expected} at position {at}")]
     BadField {
         /// Position of the field in the reply, from 0.
         at: usize,
-        /// Name of the expected field.
+        /// Characters that may stand there.
         expected: &'static str,
     },
     /// A field has the right form, but a value that the module cannot send.
-    #[error("{what} out of range at position {at}")]
     OutOfRange {
         /// Position of the field in the reply, from 0.
         at: usize,
-        /// Quantity that the field holds.
-        what: &'static str,
     },
 }
 
+impl std::error::Error for ReplyError {}
+
+impl fmt::Display for ReplyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.describe().fmt(f)
+    }
+}
+
 impl ReplyError {
+    /// Describes the reason by a code and its arguments.
+    pub fn describe(self) -> Description {
+        let one = Description::new;
+        match self {
+            Self::Refused => one("refused"),
+            Self::Ignored => one("ignored"),
+            Self::Broadcast => one("no_reply_to_all"),
+            Self::Empty => one("empty"),
+            Self::NotEnded => one("not_ended"),
+            Self::TooLong { length } => one("too_long").with("length", length),
+            Self::NotText { at, byte } => one("not_text")
+                .with("position", at)
+                .with("found", format_args!("{byte:02X}")),
+            Self::ChecksumMissing => one("checksum_missing"),
+            Self::ChecksumWrong { found, expected } => one("checksum_wrong")
+                .with("found", format_args!("{found:02X}"))
+                .with("expected", format_args!("{expected:02X}")),
+            Self::WrongLead { found, expected } => one("wrong_lead")
+                .with("found", char::from(found))
+                .with("expected", char::from(expected)),
+            Self::WrongAddress { found, expected } => one("wrong_address")
+                .with("found", found)
+                .with("expected", expected),
+            Self::WrongLength { found } => one("wrong_length").with("length", found),
+            Self::BadField { at, expected } => one("bad_field")
+                .with("position", at)
+                .with("expected", expected),
+            Self::OutOfRange { at } => one("out_of_range").with("position", at),
+        }
+    }
+
     /// Returns true when the module understood and refused: the line works, and a repetition changes nothing.
     pub fn is_answer(self) -> bool {
         matches!(self, Self::Refused | Self::Ignored)

@@ -58,11 +58,12 @@ pub enum Common {
         /// True for Modbus RTU, false for DCON.
         modbus: bool,
     },
-    /// `~AAI`: enters soft INIT; the module accepts it only for the time that [`Common::OpenSoftInit`] sets.
+    /// `~AAI`: opens soft INIT: for the seconds that [`Common::OpenSoftInit`] set, `%AANNTTCCFF` may change baud rate
+    /// and checksum without a wire on INIT*.
     EnterSoftInit,
-    /// `~AATnn`: permits soft INIT for some time.
+    /// `~AATnn`: sets how long soft INIT lasts after `~AAI`.
     OpenSoftInit {
-        /// How long soft INIT is permitted, seconds.
+        /// Duration, seconds; 0, the value at power-on, does not permit soft INIT.
         seconds: UpTo<60>,
     },
 }

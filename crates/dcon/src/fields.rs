@@ -84,7 +84,7 @@ impl<'a> Fields<'a> {
         let at = self.at;
         hex_number(self.take(width)?).ok_or(ReplyError::BadField {
             at,
-            expected: "hex number",
+            expected: "0-9 A-F",
         })
     }
 
@@ -102,16 +102,13 @@ impl<'a> Fields<'a> {
                 b'0'..=b'9' => Ok(value * 10 + u32::from(byte - b'0')),
                 _ => Err(ReplyError::BadField {
                     at,
-                    expected: "decimal number",
+                    expected: "0-9",
                 }),
             })?;
         if value <= max {
             Ok(value)
         } else {
-            Err(ReplyError::OutOfRange {
-                at,
-                what: "decimal number",
-            })
+            Err(ReplyError::OutOfRange { at })
         }
     }
 
@@ -123,19 +120,15 @@ impl<'a> Fields<'a> {
             b"1" => Ok(true),
             _ => Err(ReplyError::BadField {
                 at,
-                expected: "flag (0 or 1)",
+                expected: "0 1",
             }),
         }
     }
 
     /// Consumes fixed characters that carry no information.
-    pub(super) fn filler(
-        &mut self,
-        filler: &[u8],
-        expected: &'static str,
-    ) -> Result<(), ReplyError> {
+    pub(super) fn filler(&mut self, expected: &'static str) -> Result<(), ReplyError> {
         let at = self.at;
-        if self.take(filler.len())? == filler {
+        if self.take(expected.len())? == expected.as_bytes() {
             Ok(())
         } else {
             Err(ReplyError::BadField { at, expected })

@@ -3,6 +3,7 @@
 use super::fields::Fields;
 use super::request::Request;
 use super::{ReplyError, TypeCode};
+use std::fmt;
 use thiserror::Error;
 
 /// Notation of the output levels of a module; model and configuration word decide it.
@@ -154,10 +155,24 @@ impl Level {
             OutputForm::EngineeringSigned => signed(fields)? * joined(fields, 2, 3)?,
             OutputForm::Percent => signed(fields)? * joined(fields, 3, 2)?,
         };
-        Self::from_steps(form, steps).ok_or(ReplyError::OutOfRange {
-            at,
-            what: "output level",
-        })
+        Self::from_steps(form, steps).ok_or(ReplyError::OutOfRange { at })
+    }
+}
+
+impl fmt::Display for Level {
+    /// Writes `5.000`, `50.00 %`, or hex digits with their share of the span: `7FFF (50.00 %)`. It writes no unit,
+    /// which depends on the range of the output.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let steps = f64::from(self.steps);
+        let share = 100.0 * steps / f64::from(self.form.limits().1);
+        match self.form {
+            OutputForm::Engineering | OutputForm::EngineeringSigned => {
+                write!(f, "{:.3}", steps / 1000.0)
+            }
+            OutputForm::Percent => write!(f, "{share:.2} %"),
+            OutputForm::Hex12 => write!(f, "{:03X} ({share:.2} %)", self.steps),
+            OutputForm::Hex16 => write!(f, "{:04X} ({share:.2} %)", self.steps),
+        }
     }
 }
 
@@ -189,7 +204,7 @@ fn split<'r, 'a>(
 
 fn joined(fields: &mut Fields<'_>, whole: usize, places: usize) -> Result<i32, ReplyError> {
     let before = fields.decimal(whole, 999)?;
-    fields.filler(b".", "decimal point")?;
+    fields.filler(".")?;
     let after = fields.decimal(places, 999)?;
     Ok((before * 10u32.pow(places as u32) + after) as i32)
 }
@@ -201,7 +216,7 @@ fn signed(fields: &mut Fields<'_>) -> Result<i32, ReplyError> {
         b"-" => Ok(-1),
         _ => Err(ReplyError::BadField {
             at,
-            expected: "sign",
+            expected: "+ -",
         }),
     }
 }

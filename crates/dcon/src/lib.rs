@@ -25,7 +25,7 @@
 //! | family | modules | file |
 //! |---|---|---|
 //! | [`Common`] | all | `every_module.rs` |
-//! | [`AnalogIn`] | 7017, 7017F, 7017R, 7018, 7033 | `analog_in.rs` |
+//! | [`AnalogIn`] | 7011 to 7019, 7033 | `analog_in.rs` |
 //! | [`AnalogOut`] | 7021, 7021P, 7022, 7024 | `analog_out.rs` |
 //! | [`Digital`] | 7041, 7043, 7045, 7050, 7051, 7060, 7063, 7065, 7067 | `digital.rs` |
 //! | [`Counter`] | 7080 | `counter.rs` |
@@ -37,7 +37,8 @@
 //! | `reading.rs`, `level.rs`, `bits.rs`, `bounded.rs`, `type_code.rs`, `config.rs` | values, ranges, configuration |
 //! | `setting.rs` | whether a module already has a setting, because writing wears the EEPROM |
 //! | `agreement.rs` | selection of one answer among several to the same request |
-//! | `decode_request.rs`, `interpret.rs`, `words.rs` | from a request back to commands, meaning, words |
+//! | `decode_request.rs`, `interpret.rs` | commands that a request may be; models; meaning of an exchange |
+//! | `describe.rs` | descriptions of requests, replies and errors: codes with arguments, without texts |
 //!
 //! # Absent by design
 //! Factory calibration and trim (`$AA0`, `$AA1`, `$AA3` of outputs, `~AAE`) have no representation in these types,
@@ -52,6 +53,7 @@ mod command;
 mod config;
 mod counter;
 mod decode_request;
+mod describe;
 mod digital;
 mod error;
 mod every_module;
@@ -65,7 +67,6 @@ mod request;
 mod setting;
 mod shape;
 mod type_code;
-mod words;
 
 #[cfg(test)]
 mod tests;
@@ -76,13 +77,16 @@ pub use bits::{Bits, OutputWord, Width};
 pub use bounded::{Address, Channel, UpTo};
 pub use command::{Command, Effect};
 pub use config::{BaudCode, Config, DataFormat, FormatByte, ModuleName, SlewCode};
-pub use counter::{AlarmKind, AlarmState, Counter, Edge, GateMode, InputMode};
+pub use counter::{
+    AlarmKind, AlarmMode, AlarmState, Alarms, Counter, DisplayNumber, Edge, GateMode, InputMode,
+};
 pub use decode_request::decode_request;
+pub use describe::Description;
 pub use digital::{Digital, GroupWrite, Stored};
 pub use error::ReplyError;
 pub use every_module::Common;
 pub use frame::{FRAME_LIMIT, checksum};
-pub use interpret::{Family, factory_command, interpret};
+pub use interpret::{Family, Model, factory_command, interpret};
 pub use level::{Level, LevelError, OutputForm};
 pub use reading::{Reading, Readings, Value};
 pub use reply::{Reply, Text};

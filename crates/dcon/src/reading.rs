@@ -75,7 +75,7 @@ impl Reading {
             match form.format {
                 DataFormat::Hex => hex(field, form.range).ok_or(ReplyError::BadField {
                     at,
-                    expected: "hex reading",
+                    expected: "0-9 A-F",
                 }),
                 DataFormat::Engineering => engineering(field, form.range, at),
                 DataFormat::Percent => percent(field, at),
@@ -142,7 +142,7 @@ fn engineering(field: &[u8], range: TypeCode, at: usize) -> Result<Value, ReplyE
         None => {
             return Err(ReplyError::BadField {
                 at,
-                expected: "reading (sign, digits, point)",
+                expected: "±00.000",
             });
         }
     };
@@ -154,24 +154,18 @@ fn engineering(field: &[u8], range: TypeCode, at: usize) -> Result<Value, ReplyE
     if plausible {
         Ok(Value::Engineering(number))
     } else {
-        Err(ReplyError::OutOfRange {
-            at,
-            what: "reading",
-        })
+        Err(ReplyError::OutOfRange { at })
     }
 }
 
 fn percent(field: &[u8], at: usize) -> Result<Value, ReplyError> {
     match decimal(field) {
         Some(Decimal::Nines { negative }) => Ok(beyond(negative)),
-        Some(Decimal::Number(number)) if number.abs() > 125.0 => Err(ReplyError::OutOfRange {
-            at,
-            what: "per cent",
-        }),
+        Some(Decimal::Number(number)) if number.abs() > 125.0 => Err(ReplyError::OutOfRange { at }),
         Some(Decimal::Number(number)) if field.get(4) == Some(&b'.') => Ok(Value::Percent(number)),
         Some(Decimal::Number(_)) | None => Err(ReplyError::BadField {
             at,
-            expected: "per cent (sign, ddd.dd)",
+            expected: "±000.00",
         }),
     }
 }

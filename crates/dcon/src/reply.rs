@@ -1,8 +1,8 @@
 //! Meaning of replies, decoded by the command that asked.
 
 use super::{
-    Address, AlarmState, Bits, Channel, Config, GateMode, InputMode, Level, Reading, Readings,
-    SlewCode, TypeCode,
+    Address, AlarmMode, AlarmState, Bits, Channel, Config, GateMode, InputMode, Level, Reading,
+    Readings, SlewCode, TypeCode,
 };
 use std::fmt;
 
@@ -56,6 +56,8 @@ pub enum Reply {
     Inputs(InputMode),
     /// Alarm state and outputs of a counter module.
     Alarm(AlarmState),
+    /// Alarm mode of a counter module.
+    AlarmMode(AlarmMode),
     /// Reading of one analog input.
     Reading(Reading),
     /// Readings of all analog inputs.

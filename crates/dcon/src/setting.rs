@@ -7,9 +7,12 @@
 //! - Stored outputs. A comparison needs the stored and the present pattern, and which half of the present one belongs
 //!   to outputs depends on the model, which the request does not name.
 //! - Alarms of a 7080, when they are switched on, and their mode. What the reply to `@AADI` means depends on the mode,
-//!   which cannot be read. An alarm that is off reads the same in both modes.
+//!   and no manual has the command that reads the mode. Only the digit for all alarms off is the same in both modes.
 
-use super::{AnalogIn, AnalogOut, Command, Common, Config, Counter, FormatByte, Reply, TypeCode};
+use super::{
+    AlarmMode, Alarms, AnalogIn, AnalogOut, Command, Common, Config, Counter, FormatByte, Reply,
+    TypeCode,
+};
 
 /// Bit of the watchdog status that says that the watchdog has tripped.
 const TRIPPED: u8 = 0x04;
@@ -156,7 +159,10 @@ fn counter(ask: Counter) -> Option<Counter> {
         Counter::WriteThreshold(side, _) => Some(Counter::ReadThreshold(side)),
         Counter::WriteLimit(n, _) => Some(Counter::ReadLimit(n)),
         Counter::WriteDisplay(_) => Some(Counter::ReadDisplay),
-        Counter::DisableAlarm | Counter::DisableAlarmOf(_) => Some(Counter::ReadAlarm),
+        // Reads as in mode 0, which accepts every digit that a module sends in either mode; 0 means off in both.
+        Counter::DisableAlarm | Counter::DisableAlarmOf(_) => {
+            Some(Counter::ReadAlarm(AlarmMode::PerCounter))
+        }
         Counter::Read(_)
         | Counter::ReadFrequency(_)
         | Counter::Reset(_)
@@ -170,7 +176,8 @@ fn counter(ask: Counter) -> Option<Counter> {
         | Counter::ReadFilter
         | Counter::ReadFilterWidth(_)
         | Counter::ReadThreshold(_)
-        | Counter::ReadAlarm
+        | Counter::ReadAlarm(_)
+        | Counter::ReadAlarmMode
         | Counter::WriteAlarmMode(_)
         | Counter::EnableAlarm(_)
         | Counter::ClearAlarm
@@ -200,7 +207,7 @@ fn is_counter_in_effect(ask: Counter, found: Reply) -> bool {
             u32::from(tenths.get()) == found
         }
         (Counter::DisableAlarm | Counter::DisableAlarmOf(_), Reply::Alarm(found)) => {
-            found.state == 0
+            found.alarms == Alarms::PerCounter([false, false])
         }
         (Counter::WriteDisplay(what), Reply::Decimal(found)) => u32::from(what.get()) == found,
         (_, _) => false,

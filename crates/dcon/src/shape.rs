@@ -5,9 +5,9 @@ use super::command::Effect;
 use super::fields::Fields;
 use super::reading::width;
 use super::{
-    Address, AlarmState, BaudCode, Bits, Channel, Config, FormatByte, GateMode, InputForm,
-    InputMode, Level, OutputForm, Reading, Readings, Reply, ReplyError, SlewCode, Text, TypeCode,
-    UpTo,
+    Address, AlarmKind, AlarmMode, AlarmState, Alarms, BaudCode, Bits, Channel, Config, FormatByte,
+    GateMode, InputForm, InputMode, Level, OutputForm, Reading, Readings, Reply, ReplyError,
+    SlewCode, Text, TypeCode, UpTo,
 };
 
 /// Form of a valid reply. Below, AA is the address in the request.
@@ -54,7 +54,9 @@ pub(super) enum Shape {
     /// `!AAS`
     Inputs,
     /// `!AAS0D00`
-    Alarm,
+    Alarm(AlarmMode),
+    /// `!AA0` or `!AA1`
+    AlarmMode,
     /// `>` and one field
     Reading(InputForm),
     /// `>` and one field per channel
@@ -108,7 +110,8 @@ impl Shape {
             | Self::Setting32
             | Self::Gate
             | Self::Inputs
-            | Self::Alarm
+            | Self::Alarm(_)
+            | Self::AlarmMode
             | Self::Level(_)
             | Self::OutputChannel
             | Self::ChannelRange(_) => b'!',
@@ -120,11 +123,11 @@ impl Shape {
         match self {
             Self::Output => 1,
             Self::Accepted | Self::AcceptedAs(_) => 3,
-            Self::Flag | Self::Gate | Self::Inputs => 4,
+            Self::Flag | Self::Gate | Self::Inputs | Self::AlarmMode => 4,
             Self::Byte | Self::OutputChannel | Self::PortBits => 5,
             Self::Watchdog => 6,
             Self::Bits | Self::StoredBits => 7,
-            Self::Sampled | Self::Events | Self::Alarm | Self::ChannelRange(_) => 8,
+            Self::Sampled | Self::Events | Self::Alarm(_) | Self::ChannelRange(_) => 8,
             Self::Config | Self::Latched | Self::Count | Self::Frequency => 9,
             Self::Setting32 => 11,
             Self::Text => 3 + Text::LONGEST,
@@ -193,11 +196,16 @@ impl Shape {
             Self::Text => text_of(fields),
             Self::StoredBits => stored_bits(fields),
             Self::Events => Ok(Reply::Events(fields.decimal(5, 65_535)? as u16)),
-            Self::Gate => code(fields, GateMode::from_code, "gate mode (0 to 2)").map(Reply::Gate),
-            Self::Inputs => {
-                code(fields, InputMode::from_code, "input mode (0 to 3)").map(Reply::Inputs)
-            }
-            Self::Alarm => alarm(fields),
+            Self::Gate => code(fields, GateMode::from_code, "0 1 2").map(Reply::Gate),
+            Self::Inputs => code(fields, InputMode::from_code, "0 1 2 3").map(Reply::Inputs),
+            Self::Alarm(mode) => alarm(fields, mode),
+            Self::AlarmMode => fields.flag().map(|both| {
+                Reply::AlarmMode(if both {
+                    AlarmMode::HighHigh
+                } else {
+                    AlarmMode::PerCounter
+                })
+            }),
             Self::Level(form) => Level::decode(form, fields).map(Reply::Level),
             Self::OutputChannel => output_channel(fields),
             Self::ChannelRange(channel) => channel_range(fields, channel),
@@ -216,7 +224,7 @@ impl Shape {
         };
         let bits = two_bytes(fields)?;
         if self != Self::PortBits {
-            fields.filler(b"00", "filler 00")?;
+            fields.filler("00")?;
         }
         fields.end()?;
         Ok(match first_read {
@@ -248,10 +256,7 @@ fn config(fields: &mut Fields<'_>, expected: Address) -> Result<Reply, ReplyErro
     let at = fields.at();
     let baud = BaudCode(fields.byte()?);
     if baud.rate().is_none() {
-        return Err(ReplyError::OutOfRange {
-            at,
-            what: "baud code",
-        });
+        return Err(ReplyError::OutOfRange { at });
     }
     let config = Config {
         type_code,
@@ -278,27 +283,29 @@ fn watchdog(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
 }
 
 fn text_of(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
-    let at = fields.at();
     Text::new(fields.rest())
         .map(Reply::Text)
-        .ok_or(ReplyError::BadField {
-            at,
-            expected: "text",
-        })
+        .ok_or(fields.wrong_length())
 }
 
-fn alarm(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
+fn alarm(fields: &mut Fields<'_>, mode: AlarmMode) -> Result<Reply, ReplyError> {
     let at = fields.at();
-    let state = fields.hex(1)? as u8;
+    let state = fields.hex(1)?;
     let outputs = fields.byte()?;
-    fields.filler(b"00", "filler 00")?;
-    if state > 2 || outputs > 3 {
-        return Err(ReplyError::OutOfRange {
-            at,
-            what: "alarm state",
-        });
+    fields.filler("00")?;
+    let alarms = match (mode, state) {
+        (AlarmMode::PerCounter, 0..=3) => Alarms::PerCounter([state & 1 != 0, state & 2 != 0]),
+        (AlarmMode::HighHigh, 0) => Alarms::HighHigh(None),
+        (AlarmMode::HighHigh, 1) => Alarms::HighHigh(Some(AlarmKind::Momentary)),
+        (AlarmMode::HighHigh, 2) => Alarms::HighHigh(Some(AlarmKind::Latched)),
+        (AlarmMode::PerCounter | AlarmMode::HighHigh, _) => {
+            return Err(ReplyError::OutOfRange { at });
+        }
+    };
+    if outputs > 3 {
+        return Err(ReplyError::OutOfRange { at });
     }
-    Ok(Reply::Alarm(AlarmState { state, outputs }))
+    Ok(Reply::Alarm(AlarmState { alarms, outputs }))
 }
 
 fn output_channel(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
@@ -309,23 +316,17 @@ fn output_channel(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
             range: output_range(range),
             slew: SlewCode(slew),
         }),
-        Some(_) | None => Err(ReplyError::OutOfRange {
-            at,
-            what: "output range",
-        }),
+        Some(_) | None => Err(ReplyError::OutOfRange { at }),
     }
 }
 
 fn channel_range(fields: &mut Fields<'_>, channel: Channel) -> Result<Reply, ReplyError> {
-    fields.filler(b"C", "letter C")?;
+    fields.filler("C")?;
     let at = fields.at();
     if fields.hex(1)? != u32::from(channel.get()) {
-        return Err(ReplyError::BadField {
-            at,
-            expected: "channel of the request",
-        });
+        return Err(ReplyError::OutOfRange { at });
     }
-    fields.filler(b"R", "letter R")?;
+    fields.filler("R")?;
     Ok(Reply::ChannelRange {
         channel,
         range: TypeCode(fields.byte()?),

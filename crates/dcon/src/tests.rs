@@ -227,7 +227,7 @@ fn replies_of_another_kind_or_module_are_refused() {
         Digital::ReadAll.to(A1).decode(b"!010A0B\r", false),
         Err(ReplyError::BadField {
             at: 5,
-            expected: "filler 00"
+            expected: "00"
         })
     );
 }

@@ -1,5 +1,7 @@
 //! Type codes (TT): each stands for the range that a module measures or drives, and for its scale.
 
+use std::fmt;
+
 /// Type code, the field TT of the configuration word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct TypeCode(pub u8);
@@ -15,6 +17,17 @@ pub enum Unit {
     Milliampere,
     /// Degrees Celsius.
     Celsius,
+}
+
+impl fmt::Display for Unit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Volt => "V",
+            Self::Millivolt => "mV",
+            Self::Milliampere => "mA",
+            Self::Celsius => "°C",
+        })
+    }
 }
 
 /// Both ends of a range, in its unit.
@@ -100,5 +113,17 @@ impl TypeCode {
     /// instead of being two's complement.
     pub fn unipolar_input(self) -> bool {
         matches!(self.0, 0x07 | 0x1A)
+    }
+}
+
+impl fmt::Display for TypeCode {
+    /// Writes the code and its range: `08 (±10 V)`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:02X}", self.0)?;
+        match self.full_scale() {
+            Some(FullScale { low, high, unit }) if low == -high => write!(f, " (±{high} {unit})"),
+            Some(FullScale { low, high, unit }) => write!(f, " ({low}…{high} {unit})"),
+            None => Ok(()),
+        }
     }
 }

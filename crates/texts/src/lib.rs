@@ -12,15 +12,17 @@
 //! ```
 
 mod catalogue;
+mod json_form;
 mod message;
 
 pub use catalogue::{Plain, arguments, attributes, ids, plain};
 pub use message::{Args, Message};
 
 use serde::Deserialize;
+use utoipa::ToSchema;
 
 /// Language of a text.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Lang {
     /// English.
@@ -38,6 +40,30 @@ impl Lang {
         match self {
             Self::En => "en",
             Self::Zh => "zh-CN",
+        }
+    }
+
+    /// Returns the separator of a list: a comma and a blank, in Chinese the enumeration comma alone.
+    pub const fn comma(self) -> &'static str {
+        match self {
+            Self::En => ", ",
+            Self::Zh => "\u{3001}",
+        }
+    }
+
+    /// Returns the separator of clauses: a semicolon, and in English a blank.
+    pub const fn semicolon(self) -> &'static str {
+        match self {
+            Self::En => "; ",
+            Self::Zh => "\u{ff1b}",
+        }
+    }
+
+    /// Returns the mark before an explanation: a colon, and in English a blank.
+    pub const fn colon(self) -> &'static str {
+        match self {
+            Self::En => ": ",
+            Self::Zh => "\u{ff1a}",
         }
     }
 

@@ -1,34 +1,56 @@
 //! Messages: a code with arguments, which programs can compare and the catalogue turns into text.
 
 use crate::catalogue::Text as Pattern;
-use crate::{Lang, catalogue};
+use crate::{Lang, catalogue, json_form};
 use fluent_bundle::FluentArgs;
-use serde::ser::SerializeStruct;
-use serde::{Deserialize, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use utoipa::ToSchema;
 
 /// Arguments by name. The value of an argument in [`NAMES`] is a code; the text shows the name of this code.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(transparent)]
 pub struct Args(BTreeMap<Cow<'static, str>, String>);
 
-/// Arguments whose values are codes: `bin` = `coil` shows the text `bin-coil`; `needed_role` shows a text of family
-/// `role`.
-const NAMES: [&str; 12] = [
-    "alarm",
-    "bin",
-    "characteristic",
-    "fault",
-    "interruption",
-    "place",
-    "motion",
-    "promise",
-    "side",
-    "wears",
-    "found_role",
-    "needed_role",
+/// Arguments whose values are codes, with the family of their texts: `bin` = `coil` shows the text `bin-coil`.
+const NAMES: [(&str, &str); 32] = [
+    ("actuator", "actuator"),
+    ("alarm", "alarm"),
+    ("bin", "bin"),
+    ("blocker", "body"),
+    ("cause", "cause"),
+    ("characteristic", "characteristic"),
+    ("detail", "detail"),
+    ("expects", "signal"),
+    ("fault", "fault"),
+    ("found_role", "role"),
+    ("input", "signal"),
+    ("interruption", "interruption"),
+    ("line", "line"),
+    ("member", "member"),
+    ("missed", "detail"),
+    ("module", "module"),
+    ("motion", "motion"),
+    ("mover", "body"),
+    ("needed", "mode"),
+    ("needed_role", "role"),
+    ("next", "next"),
+    ("pins", "pin"),
+    ("place", "place"),
+    ("promise", "promise"),
+    ("reason", "reason"),
+    ("refusal", "refusal"),
+    ("rejection", "rejection"),
+    ("request", "request"),
+    ("side", "side"),
+    ("step", "step"),
+    ("transaction", "transaction"),
+    ("wears", "wears"),
 ];
+
+/// Families whose codes may come as a list: `pusher_extended=1, pusher_retracted=0`.
+const LISTS: [&str; 4] = ["member", "module", "pin", "signal"];
 
 /// Name of the argument that selects an attribute of a text in place of the text itself.
 const CASE: &str = "case";
@@ -64,10 +86,23 @@ impl Args {
         self
     }
 
+    /// Adds the code of `inner` as argument `name`, for which texts show the text of `inner`; adds its arguments too.
+    /// Panics when texts show another family for `name`, or when an argument has another value already.
+    #[must_use]
+    pub fn with_inner(mut self, name: &'static str, inner: &Message) -> Self {
+        assert_eq!(family(name), Some(inner.family), "family of {name}");
+        for (arg, value) in &inner.args.0 {
+            let own = self.0.insert(arg.clone(), value.clone());
+            assert!(own.is_none_or(|own| own == *value), "two values of {arg}");
+        }
+        self.with(name, inner.code())
+    }
+
     fn fluent(&self, lang: Lang) -> FluentArgs<'_> {
-        let said = |name: &str, code| match NAMES.contains(&name) {
-            true => self.named(lang, name, code),
-            false => Cow::Borrowed(code),
+        let said = |name: &str, code| match family(name) {
+            Some(family) if LISTS.contains(&family) => Cow::Owned(listed(lang, family, code)),
+            Some(family) => self.named(lang, name, family, code),
+            None => Cow::Borrowed(code),
         };
         let pairs = self.0.iter();
         pairs
@@ -77,8 +112,7 @@ impl Args {
 
     /// Returns the text that replaces `code`, the value of argument `name`; it may contain the other arguments, as
     /// `motion-axis_bin` contains `bin`.
-    fn named<'a>(&'a self, lang: Lang, name: &str, code: &'a str) -> Cow<'a, str> {
-        let family = name.rsplit('_').next().unwrap_or(name);
+    fn named<'a>(&'a self, lang: Lang, name: &str, family: &str, code: &'a str) -> Cow<'a, str> {
         let id = format!("{family}-{code}");
         let case = catalogue::pattern(lang, &id, self.get(CASE));
         let Some(pattern) = case.or_else(|| catalogue::pattern(lang, &id, None)) else {
@@ -89,6 +123,26 @@ impl Args {
         let text = catalogue::filled(lang, pattern, &others.fluent(lang));
         Cow::Owned(text.unwrap_or_default())
     }
+}
+
+/// Returns the family of the codes that are values of the argument `name`; `None` for an argument with other values.
+fn family(name: &str) -> Option<&'static str> {
+    NAMES.iter().find(|it| it.0 == name).map(|it| it.1)
+}
+
+/// Replaces each code of a list by its name; keeps a state after the name, as in `door_closed=1`.
+fn listed(lang: Lang, family: &str, codes: &str) -> String {
+    let name = |code: &str| {
+        let id = code.replace(' ', "_");
+        let name = lang.name(family, &id);
+        if name == id { code } else { name }.to_owned()
+    };
+    let piece = |piece: &str| match piece.split_once('=') {
+        Some((code, state)) => format!("{} = {state}", name(code)),
+        None => name(piece),
+    };
+    let pieces: Vec<String> = codes.split(", ").map(piece).collect();
+    pieces.join(lang.comma())
 }
 
 impl Message {
@@ -110,6 +164,19 @@ impl Message {
     #[must_use]
     pub fn with(mut self, name: &'static str, value: impl ToString) -> Self {
         self.args = self.args.with(name, value);
+        self
+    }
+
+    /// Makes a message of family `detail`. The English text shows `said`, English words of a library, the system or the
+    /// plant; the Chinese text uses the other arguments.
+    pub fn detail(code: &'static str, said: impl ToString) -> Self {
+        Self::new("detail", code).with("said", said)
+    }
+
+    /// Adds the code of `inner` as argument `name`, for which texts show the text of `inner`; adds its arguments too.
+    #[must_use]
+    pub fn with_inner(mut self, name: &'static str, inner: &Self) -> Self {
+        self.args = self.args.with_inner(name, inner);
         self
     }
 
@@ -165,13 +232,29 @@ impl Message {
     }
 }
 
-impl Serialize for Message {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut object = serializer.serialize_struct("Message", 4)?;
-        object.serialize_field("code", &self.code)?;
-        object.serialize_field("args", &self.args)?;
-        object.serialize_field("en", &self.say(Lang::En))?;
-        object.serialize_field("zh", &self.say(Lang::Zh))?;
-        object.end()
+/// JSON form of a [`Message`].
+#[derive(Serialize, ToSchema)]
+#[schema(as = Message)]
+struct Shown<'a> {
+    /// Code, unique within its family.
+    code: &'a str,
+    /// Arguments by name.
+    args: &'a Args,
+    /// English text.
+    en: String,
+    /// Chinese text.
+    zh: String,
+}
+
+impl<'a> From<&'a Message> for Shown<'a> {
+    fn from(message: &'a Message) -> Self {
+        Self {
+            code: &message.code,
+            args: &message.args,
+            en: message.say(Lang::En),
+            zh: message.say(Lang::Zh),
+        }
     }
 }
+
+json_form!(Message, Shown);

@@ -89,7 +89,7 @@ struct Row {
     characters: f64,
     /// Utilisation of the line, 0 to 1.
     share: f64,
-    /// Utilisation if nothing but a pause of two characters came between two transactions, 0 to 1.
+    /// Utilisation if only a pause of two characters came between two transactions, 0 to 1.
     bound: f64,
     /// Utilisation of the bare client, 0 to 1.
     peer: f64,
@@ -100,7 +100,7 @@ struct Row {
 /// Measures and prints every workload at every baud rate.
 pub fn print() {
     println!(
-        "line kept busy, no checksum, modules of 2 ms, pseudo-terminal; bound: nothing but a rest of two characters, \
+        "line kept busy, no checksum, modules of 2 ms, pseudo-terminal; bound: only the pause of two characters, \
          peer: a bare client that spins"
     );
     println!(

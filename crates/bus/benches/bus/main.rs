@@ -7,8 +7,8 @@ mod bare;
 mod busy;
 
 use dcon::{
-    self, Address, AnalogIn, Command, Common, Counter, DataFormat, Digital, InputForm, TypeCode,
-    UpTo,
+    self, Address, AlarmMode, AnalogIn, Command, Common, Counter, DataFormat, Digital, InputForm,
+    TypeCode, UpTo,
 };
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
@@ -71,7 +71,7 @@ fn fuzz() {
         Common::ReadWatchdog.to(Address(1)),
         AnalogIn::ReadAll(VOLTS).to(Address(1)),
         Digital::ReadSampled.to(Address(1)),
-        Counter::ReadAlarm.to(Address(1)),
+        Counter::ReadAlarm(AlarmMode::HighHigh).to(Address(1)),
         Counter::Read(UpTo::new(1).expect("1 is a counter")).to(Address(1)),
     ];
     let begun = Instant::now();

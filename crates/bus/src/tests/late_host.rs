@@ -89,14 +89,17 @@ fn a_reply_that_waited_for_the_host_counts() {
     assert_eq!(heard.answered_at.since(heard.requested_at), limit);
     assert!(matches!(
         answer(b"").outcome,
-        Err(LineError::TimeOut { .. })
+        Err(LineError {
+            failure: Failure::TimeOut(_),
+            ..
+        })
     ));
 }
 
 #[test]
 fn a_silent_module_must_name_itself_in_real_time() {
     let name_requests = tokio::runtime::Builder::new_current_thread()
-        .enable_time()
+        .enable_all()
         .build()
         .unwrap()
         .block_on(async {
@@ -113,7 +116,13 @@ fn a_silent_module_must_name_itself_in_real_time() {
                 names
             };
             let (names, answer) = tokio::join!(module, exchange(ours, pace, count()));
-            assert!(matches!(answer.outcome, Err(LineError::TimeOut { .. })));
+            assert!(matches!(
+                answer.outcome,
+                Err(LineError {
+                    failure: Failure::TimeOut(_),
+                    ..
+                })
+            ));
             names
         });
     assert_eq!(name_requests, 1);

@@ -28,8 +28,13 @@ fn a_closed_stream_takes_the_time_of_a_silent_module() {
         (got, pace.now())
     });
     assert!(
-        got.iter()
-            .all(|answer| matches!(answer.outcome, Err(LineError::PortLost { .. }))),
+        got.iter().all(|answer| matches!(
+            answer.outcome,
+            Err(LineError {
+                failure: Failure::PortLost(_),
+                ..
+            })
+        )),
         "{got:?}"
     );
     assert_eq!(pace, RigTime(2 * settings().time_out(&count()).0));
@@ -86,7 +91,9 @@ fn a_lost_port_is_opened_again_after_its_back_off() {
     let missing = PortError::Missing {
         path: "/dev/none".to_owned(),
     };
-    assert!(matches!(&outcomes[0], Err(LineError::PortLost { reason, .. }) if *reason == missing));
+    assert!(
+        matches!(&outcomes[0], Err(LineError { failure: Failure::PortLost(reason), .. }) if *reason == missing)
+    );
     assert!(
         outcomes
             .iter()
@@ -97,8 +104,8 @@ fn a_lost_port_is_opened_again_after_its_back_off() {
     );
     assert!(outcomes.iter().any(|o| matches!(
         o,
-        Err(LineError::PortLost {
-            reason: PortError::Broken { .. },
+        Err(LineError {
+            failure: Failure::PortLost(PortError::Broken { .. }),
             ..
         })
     )));
@@ -162,5 +169,14 @@ async fn a_line_holds_its_terminal_exclusively_at_real_pace() {
     .await
     .unwrap();
     let lost = answers.recv().await.unwrap().outcome;
-    assert!(matches!(lost, Err(LineError::PortLost { .. })), "{lost:?}");
+    assert!(
+        matches!(
+            lost,
+            Err(LineError {
+                failure: Failure::PortLost(_),
+                ..
+            })
+        ),
+        "{lost:?}"
+    );
 }

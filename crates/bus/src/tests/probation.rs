@@ -22,7 +22,13 @@ fn played_count(script: Vec<Vec<Say>>, requests: &[(Command, u8)]) -> (Vec<Answe
 fn after_a_damaged_reply_an_address_is_read_twice() {
     let script = vec![say(DAMAGED), say(THIRTY), say(THIRTY)];
     let (got, sent) = played_count(script, &[(count(), 1), (count(), 1)]);
-    assert!(matches!(got[0].outcome, Err(LineError::Reply { .. })));
+    assert!(matches!(
+        got[0].outcome,
+        Err(LineError {
+            failure: Failure::Reply(_),
+            ..
+        })
+    ));
     assert_eq!((got[1].outcome.clone(), sent), (Ok(Reply::Count(30)), 3));
     assert_eq!(got[1].raw, ">0000001ED4");
 }
@@ -40,7 +46,8 @@ fn three_different_answers_to_one_request_are_rejected() {
     let (got, sent) = played_count(script, &[(count(), 1), (count(), 1), (count(), 1)]);
     let text = got[1].outcome.as_ref().unwrap_err().to_string();
     assert!(
-        text.starts_with("line measure, 03: ") && text.contains("repeated reads disagree"),
+        text.starts_with("line measure, module 03, read counter 0: ")
+            && text.contains("repeated reads disagree"),
         "{text}"
     );
     assert_eq!((got[2].outcome.clone(), sent), (Ok(Reply::Count(30)), 6));
@@ -70,7 +77,10 @@ fn a_switched_input_needs_a_third_answer_that_agrees() {
     let (got, _) = answers_to(b">3B3F2C\r");
     assert!(matches!(
         got[1].outcome,
-        Err(LineError::Contradicted { .. })
+        Err(LineError {
+            failure: Failure::Contradicted,
+            ..
+        })
     ));
 }
 
@@ -103,7 +113,10 @@ fn a_slow_module_is_not_read_a_third_time() {
     let (got, sent) = played_count(script, &[(count(), 1), (count(), 1)]);
     assert!(matches!(
         got[1].outcome,
-        Err(LineError::Contradicted { .. })
+        Err(LineError {
+            failure: Failure::Contradicted,
+            ..
+        })
     ));
     assert_eq!(sent, 3);
 }
@@ -139,7 +152,13 @@ fn read_of(said: [&'static [u8]; 3]) -> (Answer, usize) {
     let mut script = vec![say(b">1000FE\r")];
     script.extend(said.map(say));
     let (mut got, sent) = played_count(script, &[(volts(), 1), (volts(), 1)]);
-    assert!(matches!(got[0].outcome, Err(LineError::Reply { .. })));
+    assert!(matches!(
+        got[0].outcome,
+        Err(LineError {
+            failure: Failure::Reply(_),
+            ..
+        })
+    ));
     (got.remove(1), sent)
 }
 

@@ -61,7 +61,6 @@ fn the_trace_keeps_the_last_entries_only() {
         &[(count(), 1); 9],
     ));
     assert_eq!(log.trace().entries().count(), 4);
-    assert_eq!(log.trace().byte_count(), 9 * 19);
 }
 
 #[test]
@@ -85,7 +84,7 @@ fn a_virtual_second_passes_without_a_real_one() {
         let pace = Pace::virtual_time();
         pace.sleep_until(RigTime(3_560)).await;
         assert_eq!(pace.now(), RigTime(3_560));
-        pace.rest_until(RigTime(3_600_000_000)).await;
+        pace.sleep_until(RigTime(3_600_000_000)).await;
         assert_eq!(pace.now(), RigTime(3_600_000_000));
     });
 }

@@ -115,6 +115,7 @@ fn a_trace_as_text_parses_back_byte_for_byte() {
         back.entries[0].bytes(),
         back.entries[1].bytes(),
         back.checksum,
+        None,
     );
     assert!(said.contains(&(count(), Ok(Reply::Count(30)))), "{said:?}");
 }

@@ -71,6 +71,10 @@ pub(super) fn digital_rows() -> Vec<(Command, &'static str, &'static str, Reply)
     ]
 }
 
+fn shown(digits: u32, places: u8) -> DisplayNumber {
+    DisplayNumber::new(digits, UpTo::new(places).unwrap()).unwrap()
+}
+
 pub(super) fn counter_rows() -> Vec<(Command, &'static str, &'static str, Reply)> {
     let done = Reply::Accepted;
     let five = |value| Reply::Decimal(value);
@@ -187,13 +191,34 @@ pub(super) fn counter_rows() -> Vec<(Command, &'static str, &'static str, Reply)
             done,
         ),
         (
-            Counter::ReadAlarm.to(A1),
+            Counter::ReadAlarm(AlarmMode::HighHigh).to(A1),
             "@01DI",
             "!0110300",
             Reply::Alarm(AlarmState {
-                state: 1,
+                alarms: Alarms::HighHigh(Some(AlarmKind::Momentary)),
                 outputs: 3,
             }),
+        ),
+        (
+            Counter::ReadAlarm(AlarmMode::PerCounter).to(A1),
+            "@01DI",
+            "!0130000",
+            Reply::Alarm(AlarmState {
+                alarms: Alarms::PerCounter([true, true]),
+                outputs: 0,
+            }),
+        ),
+        (
+            Counter::ReadAlarmMode.to(A1),
+            "~01A",
+            "!011",
+            Reply::AlarmMode(AlarmMode::HighHigh),
+        ),
+        (
+            Counter::WriteAlarmMode(AlarmMode::PerCounter).to(A1),
+            "~01A0",
+            "!01",
+            done,
         ),
         (
             Counter::WriteOutputs(UpTo::new(1).unwrap()).to(Address(2)),
@@ -233,9 +258,21 @@ pub(super) fn counter_rows() -> Vec<(Command, &'static str, &'static str, Reply)
             done,
         ),
         (
-            Counter::WriteDisplayed(12_345).to(Address(3)),
-            "$03912345",
+            Counter::WriteDisplayed(shown(12_345, 3)).to(Address(3)),
+            "$03912.345",
             "!03",
+            done,
+        ),
+        (
+            Counter::WriteDisplayed(shown(99_999, 0)).to(A1),
+            "$01999999.",
+            "!01",
+            done,
+        ),
+        (
+            Counter::WriteDisplayed(shown(0, 4)).to(Address(2)),
+            "$0290.0000",
+            "!02",
             done,
         ),
     ]

@@ -2,7 +2,7 @@
 //! damaged.
 
 use super::sealed;
-use crate::{Family, ReplyError, decode_request, interpret};
+use crate::{Model, decode_request, interpret};
 use proptest::prelude::*;
 
 /// Model, request, reply and meaning, separated by tabs; frames without checksum and CR.
@@ -34,16 +34,13 @@ fn vectors() -> Vec<Vector> {
 
 /// Returns what the reply may mean when a module of this model sends it, each meaning once.
 fn said(vector: &Vector, reply: &[u8], checksum: bool) -> Vec<String> {
-    let family = Family::of_name(vector.model).unwrap();
+    let model = Model::of_name(vector.model).unwrap();
     let request = sealed(vector.request, checksum);
-    let mut said: Vec<String> = interpret(&request, reply, checksum)
+    let mut said: Vec<String> = interpret(&request, reply, checksum, Some(model))
         .into_iter()
-        .filter(|(command, _)| family.has_command(command))
-        .map(|(_, reply)| match reply {
-            Ok(reply) => reply.to_string(),
-            Err(ReplyError::Refused) => "refused".to_owned(),
-            Err(ReplyError::Ignored) => "ignored".to_owned(),
-            Err(reason) => format!("error: {reason}"),
+        .map(|(command, reply)| match reply {
+            Ok(reply) => command.describe_reply(&reply, Some(model)).to_string(),
+            Err(reason) => reason.to_string(),
         })
         .collect();
     said.sort();
@@ -71,12 +68,12 @@ fn every_vector_decodes_as_its_manual_states() {
 #[test]
 fn no_truncated_vector_decodes_to_a_value() {
     for vector in vectors() {
-        let family = Family::of_name(vector.model).unwrap();
+        let model = Model::of_name(vector.model).unwrap();
         for checksum in [false, true] {
             let whole = sealed(vector.reply, checksum);
             for command in decode_request(vector.request.as_bytes())
                 .into_iter()
-                .filter(|it| family.has_command(it))
+                .filter(|it| model.has_command(it))
             {
                 // Skips commands that refuse even the whole reply.
                 if command.decode(&whole, checksum).is_err() {
@@ -178,6 +175,6 @@ proptest! {
             prop_assert!(written == request.as_bytes() || request.len() == 7);
             prop_assert!(decode_request(written).contains(&command));
         }
-        let _ = interpret(request.as_bytes(), reply.as_bytes(), sum);
+        let _ = interpret(request.as_bytes(), reply.as_bytes(), sum, None);
     }
 }
