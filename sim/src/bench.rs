@@ -3,15 +3,15 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use serde::Deserialize;
-
-use crate::config::LineSpec;
+use crate::config::{ConfigError, LineSpec};
 use crate::error::SimError;
 use crate::fault::LineFaults;
 use crate::module::base::Commissioning;
 use crate::module::tolerances::{self, Tolerances};
 use crate::module::{Module, setting};
 use crate::rig::Rig;
+use crate::shared::check_targets;
+use crate::table::Table;
 use crate::terminal::{ModuleSpec, Plant};
 use crate::truth::WorldRecord;
 
@@ -21,83 +21,15 @@ pub const LINE: &str = "bench";
 /// Default time-out of an enabled watchdog, milliseconds.
 const WATCHDOG_MS: f64 = 1_000.0;
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct BenchFile {
-    #[serde(default = "default_baud")]
-    baud: u32,
-    #[serde(default = "default_latency")]
-    latency_ms: f64,
-    #[serde(default)]
-    latency_sd_ms: f64,
-    module: Vec<BenchModule>,
-}
-
-#[derive(Deserialize)]
-struct BenchModule {
-    address: u8,
-    model: String,
-    #[serde(flatten)]
-    settings: BTreeMap<String, toml::Value>,
-}
-
-fn default_baud() -> u32 {
-    115_200
-}
-
-fn default_latency() -> f64 {
-    2.0
-}
-
-/// Keys of a bench module besides `address` and `model`.
-const KEYS: [&str; 32] = [
-    "checksum",
-    "format",
-    "range",
-    "type",
-    "inputs",
-    "name",
-    "firmware",
-    "outputs",
-    "counts",
-    "latches",
-    "enabled",
-    "mask",
-    "fast",
-    "slew",
-    "preset",
-    "gate",
-    "safe",
-    "power_on",
-    "watchdog",
-    "init",
-    "reset_seen",
-    "response_delay_ms",
-    "maximum",
-    "filter",
-    "filter_us",
-    "threshold",
-    "input_mode",
-    "overflow",
-    "led",
-    "baud",
-    "signed",
-    "refusal",
-];
+/// Default and highest latency, milliseconds.
+const LATENCY_MS: (f64, f64) = (2.0, 10_000.0);
 
 /// Builds the bench of a file.
 ///
 /// # Errors
-/// Fails when the file cannot be read, or a module has an unknown key or an unfit value.
+/// Fails when the file cannot be read, a model has no such key, a value does not fit, or a fault has an unknown target.
 pub fn build(file: &Path, faults: LineFaults) -> Result<Rig, SimError> {
-    let text = std::fs::read_to_string(file).map_err(|error| bench(file, error.to_string()))?;
-    parse(&text)
-        .map_err(|why| bench(file, why.to_string().trim().to_owned()))?
-        .build(faults)
-        .map_err(|error| match error {
-            SimError::Bench { why, .. } => bench(file, why),
-            other => bench(file, other.to_string()),
-        })
+    built(&Table::of_file(file)?, faults)
 }
 
 /// Builds a bench without faults from the text of a bench file.
@@ -105,87 +37,59 @@ pub fn build(file: &Path, faults: LineFaults) -> Result<Rig, SimError> {
 /// # Errors
 /// Fails as [`build`] does.
 pub fn build_text(text: &str) -> Result<Rig, SimError> {
-    parse(text)
-        .map_err(|why| bench(Path::new("-"), why.to_string().trim().to_owned()))?
-        .build(LineFaults::none(0))
+    built(&Table::parse(Path::new("-"), text)?, LineFaults::none(0))
 }
 
-fn parse(text: &str) -> Result<BenchFile, toml::de::Error> {
-    toml::from_str(text)
-}
-
-fn bench(file: &Path, why: String) -> SimError {
-    SimError::Bench {
-        file: file.to_path_buf(),
-        why,
+fn built(keys: &Table, faults: LineFaults) -> Result<Rig, SimError> {
+    let baud = setting::baud(keys)?.unwrap_or(115_200);
+    let milliseconds = |key| setting::number(keys, key, 0.0..=LATENCY_MS.1);
+    let latency_ms = milliseconds("latency_ms")?.unwrap_or(LATENCY_MS.0);
+    let tolerances = Tolerances {
+        latency_sd_us: milliseconds("latency_sd_ms")?.unwrap_or(0.0) * 1e3,
+        ..Tolerances::exact(latency_ms * 1e3)
+    };
+    let mut signals = Signals::default();
+    let mut modules = Vec::new();
+    let tables: Vec<Table> = keys.get("module")?;
+    keys.finish()?;
+    for (number, keys) in tables.into_iter().enumerate() {
+        let spec = spec(number, keys)?;
+        let module = module(&spec, baud, &tolerances)?;
+        signals.inputs.insert(spec.id, module.inputs().to_vec());
+        modules.push(module);
     }
+    let known = |target: &str| target == LINE || modules.iter().any(|it| it.id() == target);
+    let expected = format!("a module of the file (module[0], module[1], ...) or the line {LINE}");
+    check_targets(faults.targets(), &expected, known)?;
+    let line = LineSpec {
+        name: LINE.into(),
+        baud,
+        checksum: false,
+    };
+    Ok(Rig::new(Box::new(signals), modules, vec![line], faults))
 }
 
-impl BenchFile {
-    fn build(self, faults: LineFaults) -> Result<Rig, SimError> {
-        let mut signals = Signals::default();
-        let mut modules = Vec::new();
-        for (number, module) in self.module.into_iter().enumerate() {
-            let spec = module.spec(number)?;
-            let commissioning = Commissioning {
-                baud: setting::number(&spec, "baud")?.map_or(self.baud, |baud| baud as u32),
-                checksum: false,
-                host_watchdog_ms: WATCHDOG_MS,
-            };
-            signals
-                .inputs
-                .insert(spec.id.clone(), setting::numbers(&spec, "inputs")?);
-            let tolerances = Tolerances {
-                latency_sd_us: self.latency_sd_ms * 1e3,
-                ..Tolerances::exact(self.latency_ms * 1e3)
-            };
-            let rng = tolerances::stream(0, &spec.id);
-            modules.push(Module::new(&spec, commissioning, tolerances, rng)?);
-        }
-        let line = LineSpec {
-            name: LINE.into(),
-            baud: self.baud,
-            checksum: false,
-        };
-        let known =
-            |target: &str| target == LINE || modules.iter().any(|module| module.id() == target);
-        if let Some(target) = faults.targets().find(|target| !known(target)) {
-            return Err(SimError::FaultValue {
-                name: "target".into(),
-                found: target.into(),
-                expected: format!(
-                    "a module of the file (module[0], module[1], ...) or the line {LINE}"
-                ),
-            });
-        }
-        Ok(Rig::new(Box::new(signals), modules, vec![line], faults))
-    }
+fn spec(number: usize, keys: Table) -> Result<ModuleSpec, ConfigError> {
+    Ok(ModuleSpec {
+        id: format!("module[{number}]"),
+        line: LINE.into(),
+        address: keys.get("address")?,
+        model: keys.get("model")?,
+        settings: keys,
+    })
 }
 
-impl BenchModule {
-    fn spec(self, number: usize) -> Result<ModuleSpec, SimError> {
-        let id = format!("module[{number}]");
-        if let Some(key) = self
-            .settings
-            .keys()
-            .find(|key| !KEYS.contains(&key.as_str()))
-        {
-            return Err(bench(
-                Path::new("-"),
-                format!(
-                    "{id}: key `{key}` is unknown, expected one of {}",
-                    KEYS.join(", ")
-                ),
-            ));
-        }
-        Ok(ModuleSpec {
-            id,
-            line: LINE.into(),
-            address: self.address,
-            model: self.model,
-            settings: self.settings,
-        })
-    }
+/// Builds a module; refuses keys that its model does not read.
+fn module(spec: &ModuleSpec, baud: u32, tolerances: &Tolerances) -> Result<Module, ConfigError> {
+    let commissioning = Commissioning {
+        baud: setting::baud(&spec.settings)?.unwrap_or(baud),
+        checksum: false,
+        host_watchdog_ms: WATCHDOG_MS,
+    };
+    let rng = tolerances::stream(0, &spec.id);
+    let module = Module::new(spec, commissioning, tolerances.clone(), rng)?;
+    spec.settings.finish()?;
+    Ok(module)
 }
 
 /// Terminals with the constant signals of the bench file.

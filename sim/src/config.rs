@@ -8,9 +8,9 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use serde::Deserialize;
-
 pub use crate::files::Files;
+use crate::module::setting;
+use crate::table::{Entry, Read, Table, read_fields};
 use crate::terminal::ModuleSpec;
 pub use crate::world::board::supply::SupplyRange;
 pub use crate::world::table::{DeviceWorld, FaultSpec, WorldTable, read_world};
@@ -26,19 +26,33 @@ pub enum ConfigError {
         /// Reason that the operating system gives.
         source: std::io::Error,
     },
-    /// The file is not TOML, or a key is unknown, missing or of the wrong type.
+    /// The file is not TOML.
     #[error("{path}:{line}: {message}")]
-    Content {
+    Syntax {
         /// The file.
         path: PathBuf,
-        /// Line of the error, from 1; 0 when a key is missing.
+        /// Line of the error, from 1.
         line: usize,
         /// Found and expected content.
         message: String,
     },
-    /// A value has the right type but is impossible.
-    #[error("{path}: {key}: {message}")]
+    /// A key is unknown or missing, or its value is unfit.
+    #[error("{path}:{line}: {key}: found {found}, expected {expected}")]
     Value {
+        /// The file.
+        path: PathBuf,
+        /// Line of the key, from 1; line of its table when the key is missing.
+        line: usize,
+        /// Key as a dotted path.
+        key: String,
+        /// Value as the file has it.
+        found: String,
+        /// Expected form and range.
+        expected: String,
+    },
+    /// A fault does not fit the rig.
+    #[error("{path}: {key}: {message}")]
+    Fault {
         /// The file.
         path: PathBuf,
         /// Key as a dotted path.
@@ -86,7 +100,7 @@ pub struct Bin {
 }
 
 /// References on the interface board, with the values of their labels.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct References {
     /// Coil substitute, ohm.
     pub coil_ohm: f64,
@@ -122,11 +136,25 @@ impl Default for References {
     }
 }
 
+/// Name of the line of the code reader.
+pub const READER: &str = "serial_reader";
+
+/// The code reader at the pocket.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CodeReader {
+    /// Bits per second.
+    pub baud: u32,
+    /// What it sends when it finds no code; empty: nothing.
+    pub no_code: String,
+}
+
 /// Content of `rig.toml` that the simulated rig needs.
 #[derive(Debug, Clone)]
 pub struct RigFile {
-    /// Serial lines in order of name.
+    /// Serial lines in order of name, then that of the code reader.
     pub lines: Vec<LineSpec>,
+    /// Code reader, if the rig has one.
+    pub code_reader: Option<CodeReader>,
     /// Modules in order of identifier.
     pub modules: Vec<ModuleSpec>,
     /// Time after the last host OK at which a watched module sets its safe outputs, milliseconds.
@@ -158,151 +186,114 @@ pub struct RigFile {
 /// # Errors
 /// Fails when the file cannot be read, is not TOML, or lacks a required key.
 pub fn read_rig(files: &Files) -> Result<RigFile, ConfigError> {
-    Ok(resolve(files.read("rig.toml")?.parse()?))
-}
-
-#[derive(Deserialize)]
-struct RawRig {
-    line: BTreeMap<String, RawLine>,
-    bus: RawBus,
-    module: BTreeMap<String, RawModule>,
-    analog_in: BTreeMap<String, RawPoint>,
-    analog_out: BTreeMap<String, RawPoint>,
-    #[serde(default)]
-    supply_range: BTreeMap<String, SupplyRange>,
-    digital_in: BTreeMap<String, RawPoint>,
-    digital_out: BTreeMap<String, RawPoint>,
-    counter: BTreeMap<String, RawPoint>,
-    temperature: BTreeMap<String, RawPoint>,
-    axis: BTreeMap<String, RawStop>,
-    bin: BTreeMap<String, RawStop>,
-    #[serde(default)]
-    reference: References,
-}
-
-#[derive(Deserialize)]
-struct RawBus {
-    host_watchdog_ms: f64,
-}
-
-#[derive(Deserialize)]
-struct RawLine {
-    baud: u32,
-    #[serde(default)]
-    checksum: bool,
-}
-
-#[derive(Deserialize)]
-struct RawModule {
-    line: String,
-    #[serde(deserialize_with = "hex_address")]
-    address: u8,
-    model: String,
-    #[serde(flatten)]
-    settings: BTreeMap<String, toml::Value>,
-}
-
-#[derive(Deserialize)]
-struct RawPoint {
-    module: String,
-    #[serde(default)]
-    channel: u8,
-    #[serde(default)]
-    active: Active,
-    #[serde(default = "unity")]
-    gain: f64,
-}
-
-#[derive(Deserialize, Default, PartialEq)]
-#[serde(rename_all = "lowercase")]
-enum Active {
-    #[default]
-    High,
-    Low,
-}
-
-#[derive(Deserialize)]
-struct RawStop {
-    point: u8,
-    x_mm: f64,
-    #[serde(default)]
-    beam: String,
-}
-
-fn unity() -> f64 {
-    1.0
-}
-
-fn hex_address<'de, D: serde::Deserializer<'de>>(d: D) -> Result<u8, D::Error> {
-    let text = String::deserialize(d)?;
-    u8::from_str_radix(&text, 16).map_err(|_| {
-        serde::de::Error::custom(format!("found address \"{text}\", expected two hex digits"))
+    let rig = files.read("rig.toml")?;
+    let ranges: BTreeMap<String, SupplyRange> = rig.get_or("supply_range", BTreeMap::new())?;
+    let code_reader: Option<CodeReader> = rig.get(READER)?;
+    let mut lines = named(&rig, "line", line)?;
+    lines.extend(code_reader.as_ref().map(|reader| LineSpec {
+        name: READER.into(),
+        baud: reader.baud,
+        checksum: false,
+    }));
+    Ok(RigFile {
+        lines,
+        code_reader,
+        modules: named(&rig, "module", module)?,
+        host_watchdog_ms: rig.get::<Table>("bus")?.get("host_watchdog_ms")?,
+        analog_in: rig.get("analog_in")?,
+        analog_out: rig.get("analog_out")?,
+        supply_ranges: ranges.into_values().collect(),
+        digital_in: rig.get("digital_in")?,
+        digital_out: rig.get("digital_out")?,
+        counter: rig.get("counter")?,
+        temperature: rig.get("temperature")?,
+        axis: named(&rig, "axis", |name, stop| {
+            Ok((name, (stop.get("point")?, stop.get("x_mm")?)))
+        })?
+        .into_iter()
+        .collect(),
+        bins: named(&rig, "bin", bin)?,
+        reference: rig.get_or("reference", References::default())?,
     })
 }
 
-fn resolve(raw: RawRig) -> RigFile {
-    RigFile {
-        lines: raw.line.into_iter().map(line_spec).collect(),
-        modules: raw.module.into_iter().map(module_spec).collect(),
-        host_watchdog_ms: raw.bus.host_watchdog_ms,
-        analog_in: points(raw.analog_in),
-        analog_out: points(raw.analog_out),
-        supply_ranges: raw.supply_range.into_values().collect(),
-        digital_in: points(raw.digital_in),
-        digital_out: points(raw.digital_out),
-        counter: points(raw.counter),
-        temperature: points(raw.temperature),
-        axis: raw
-            .axis
-            .into_iter()
-            .map(|(name, s)| (name, (s.point, s.x_mm)))
-            .collect(),
-        bins: raw.bin.into_iter().map(bin).collect(),
-        reference: raw.reference,
-    }
+/// Reads the tables below a key, in order of name.
+fn named<T>(
+    rig: &Table,
+    key: &'static str,
+    read: impl Fn(String, Table) -> Result<T, ConfigError>,
+) -> Result<Vec<T>, ConfigError> {
+    let tables: BTreeMap<String, Table> = rig.get(key)?;
+    let each = tables.into_iter();
+    each.map(|(name, keys)| read(name, keys)).collect()
 }
 
-fn line_spec((name, raw): (String, RawLine)) -> LineSpec {
-    LineSpec {
+fn line(name: String, keys: Table) -> Result<LineSpec, ConfigError> {
+    Ok(LineSpec {
         name,
-        baud: raw.baud,
-        checksum: raw.checksum,
-    }
+        baud: setting::baud(&keys)?.ok_or_else(|| keys.wrong("baud", "bits per second"))?,
+        checksum: keys.get_or("checksum", false)?,
+    })
 }
 
-fn module_spec((id, raw): (String, RawModule)) -> ModuleSpec {
-    let RawModule {
-        line,
-        address,
-        model,
-        settings,
-    } = raw;
-    ModuleSpec {
+fn module(id: String, keys: Table) -> Result<ModuleSpec, ConfigError> {
+    let address: String = keys.get("address")?;
+    Ok(ModuleSpec {
         id,
-        line,
-        address,
-        model,
-        settings,
-    }
+        line: keys.get("line")?,
+        address: u8::from_str_radix(&address, 16)
+            .map_err(|_| keys.wrong("address", "two hexadecimal digits"))?,
+        model: keys.get("model")?,
+        settings: keys,
+    })
 }
 
-fn bin((name, raw): (String, RawStop)) -> Bin {
-    Bin {
+fn bin(name: String, keys: Table) -> Result<Bin, ConfigError> {
+    Ok(Bin {
         name,
-        point: raw.point,
-        x_mm: raw.x_mm,
-        beam: raw.beam,
+        point: keys.get("point")?,
+        x_mm: keys.get("x_mm")?,
+        beam: keys.get_or("beam", String::new())?,
+    })
+}
+
+impl Read for Terminal {
+    const FORM: &'static str = "a table";
+
+    fn read(entry: &Entry) -> Result<Self, ConfigError> {
+        let keys = entry.table()?;
+        Ok(Self {
+            module: keys.get("module")?,
+            channel: keys.get_or("channel", 0)?,
+            active_low: match keys.get::<Option<String>>("active")?.as_deref() {
+                None | Some("high") => false,
+                Some("low") => true,
+                Some(_) => return Err(keys.wrong("active", "high or low")),
+            },
+            gain: keys.get_or("gain", 1.0)?,
+        })
     }
 }
 
-fn points(raw: BTreeMap<String, RawPoint>) -> BTreeMap<String, Terminal> {
-    let terminal = |p: RawPoint| Terminal {
-        module: p.module,
-        channel: p.channel,
-        active_low: p.active == Active::Low,
-        gain: p.gain,
-    };
-    raw.into_iter()
-        .map(|(name, p)| (name, terminal(p)))
-        .collect()
+impl Read for CodeReader {
+    const FORM: &'static str = "a table";
+
+    fn read(entry: &Entry) -> Result<Self, ConfigError> {
+        let keys = entry.table()?;
+        Ok(Self {
+            baud: setting::baud(keys)?.ok_or_else(|| keys.wrong("baud", "bits per second"))?,
+            no_code: keys.get_or("no_code", String::new())?,
+        })
+    }
 }
+
+read_fields!(References {
+    coil_ohm,
+    coil_tolerance_pct,
+    contact_mohm,
+    contact_tolerance_pct,
+    voltage_v,
+    voltage_tolerance_pct,
+    gate_pulse_ms,
+    counter_clock_hz,
+});

@@ -1,7 +1,5 @@
 //! Reasons why a simulated rig cannot be built or served.
 
-use std::path::PathBuf;
-
 use crate::config::ConfigError;
 
 /// A rig or bench that cannot be built or served.
@@ -26,34 +24,6 @@ pub enum SimError {
         found: String,
         /// Expected form and range.
         expected: String,
-    },
-    /// The model of a module is not simulated.
-    #[error("module `{module}`: model `{model}` is not simulated")]
-    UnknownModel {
-        /// Key of the module's table.
-        module: String,
-        /// Model from the file.
-        model: String,
-    },
-    /// A key of a module's table has an unfit value.
-    #[error("module `{module}`: `{key}` = {found}, expected {expected}")]
-    Setting {
-        /// Key of the module's table.
-        module: String,
-        /// Key inside the table.
-        key: String,
-        /// Value from the file.
-        found: String,
-        /// Expected form and range.
-        expected: &'static str,
-    },
-    /// A bench file cannot be read.
-    #[error("bench file {}: {why}", file.display())]
-    Bench {
-        /// The file.
-        file: PathBuf,
-        /// Found and expected content.
-        why: String,
     },
     /// The operating system refuses a pseudo-terminal or a link.
     #[error("cannot {what}")]

@@ -14,9 +14,10 @@
 //! its output words, so that a test can check them.
 
 use std::collections::{BTreeMap, VecDeque};
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::config::LineSpec;
+use crate::config::{ConfigError, LineSpec};
 use crate::error::SimError;
 use crate::fault::LineFaults;
 use crate::module::Module;
@@ -24,6 +25,7 @@ use crate::module::base::Commissioning;
 use crate::module::tolerances::{self, Tolerances};
 use crate::rig::Rig;
 use crate::shared::{SharedRig, split};
+use crate::table::Table;
 use crate::terminal::{ModuleSpec, Plant};
 use crate::truth::WorldRecord;
 
@@ -182,7 +184,7 @@ fn id(address: u8) -> String {
     format!("{address:02X}")
 }
 
-fn spec(address: u8) -> Result<ModuleSpec, SimError> {
+fn spec(address: u8) -> Result<ModuleSpec, ConfigError> {
     let tag = u32::from(address) << 28;
     let marked = marked(address, 0);
     let volts = f64::from(marked) / 65_535.0 * 10.0;
@@ -208,17 +210,12 @@ fn spec(address: u8) -> Result<ModuleSpec, SimError> {
             format!("format = \"hex\"\npower_on = {volts:?}\nsafe = {volts:?}\nwatchdog = true"),
         ),
     };
-    let settings = toml::from_str(&table).map_err(|error| SimError::FaultValue {
-        name: LINE.into(),
-        found: table.clone(),
-        expected: error.to_string(),
-    })?;
     Ok(ModuleSpec {
         id: id(address),
         line: LINE.into(),
         address,
         model: model.into(),
-        settings,
+        settings: Table::parse(Path::new(LINE), &table)?,
     })
 }
 

@@ -13,6 +13,7 @@
 //! | [`journal`] | record of the outputs, for tests of safety |
 //! | [`wire`], [`pace`], [`pty`] | lines as streams in virtual time, and as pseudo-terminals in real time |
 //! | [`bench`] | modules alone, with fixed signals |
+//! | [`scpi`] | SCPI instruments, their links, and what they measure |
 //! | [`fingerprint`] | a line whose values identify their module and channel |
 //!
 //! ```
@@ -36,7 +37,9 @@ pub mod module;
 pub mod pace;
 pub mod pty;
 pub mod rig;
+pub mod scpi;
 mod shared;
+mod table;
 pub mod terminal;
 pub mod truth;
 mod uart;

@@ -11,7 +11,7 @@
 
 mod server;
 mod socket;
-mod tty;
+pub(crate) mod tty;
 
 use std::io;
 use std::path::{Path, PathBuf};

@@ -9,7 +9,7 @@
 
 use std::sync::mpsc::Receiver;
 
-use crate::config::LineSpec;
+use crate::config::{LineSpec, READER};
 use crate::dcon;
 use crate::error::SimError;
 use crate::fault::{Event, LineFaults};
@@ -146,6 +146,27 @@ impl Rig {
         Some(Reply { at_us, bytes })
     }
 
+    /// Returns what a line sends by itself up to `t_us`: the codes of the code reader. Nothing arrives while the line is
+    /// dead or its port lost.
+    pub fn unprompted(&mut self, line: usize, t_us: u64) -> Vec<Reply> {
+        let is_reader = |spec: &&LineSpec| spec.name == READER;
+        let Some(spec) = self.lines.get(line).filter(is_reader).cloned() else {
+            return Vec::new();
+        };
+        self.advance(t_us);
+        let now_us = self.now_us;
+        let codes = self.record().take_codes();
+        if self.faults.line_dead(READER, now_us) || self.port_back_us(line, now_us).is_some() {
+            return Vec::new();
+        }
+        let sent = codes.into_iter().map(|code| {
+            let bytes = [code.as_bytes(), b"\r"].concat();
+            let at_us = now_us + wire_us(bytes.len(), spec.baud);
+            Reply { at_us, bytes }
+        });
+        sent.collect()
+    }
+
     /// Lets one module answer; returns the delay in microseconds and the bytes.
     fn answer(&mut self, place: usize, text: &[u8]) -> Option<(u64, Vec<u8>)> {
         let now_us = self.now_us;
@@ -225,7 +246,7 @@ impl Rig {
                 self.modules.iter().any(|module| module.id() == target)
                     || self.lines.iter().any(|line| line.name == target)
             };
-            return shared::check_targets(&self.faults, known);
+            return shared::check_targets(self.faults.targets(), shared::RIG_TARGETS, known);
         }
         let number = value.map(|text| shared::number(name, text)).transpose()?;
         self.record().inject(name, number)

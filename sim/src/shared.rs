@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::bench;
-use crate::config::{Files, LineSpec, RigFile, WorldTable, read_rig, read_world};
+use crate::config::{ConfigError, Files, LineSpec, RigFile, WorldTable, read_rig, read_world};
 use crate::error::SimError;
 use crate::fault::{self, FaultInfo, LineFaults};
 use crate::module::Module;
@@ -73,7 +73,7 @@ pub fn build(options: &Options) -> Result<SharedRig, SimError> {
             world_faults.push(world_fault(&table, name, value)?);
         }
     }
-    check_targets(&faults, |target| {
+    check_targets(faults.targets(), RIG_TARGETS, |target| {
         file.modules.iter().any(|module| module.id == target)
             || file.lines.iter().any(|line| line.name == target)
     })?;
@@ -111,7 +111,12 @@ pub fn faults(files: &Files, world: Option<&Path>) -> Result<Vec<FaultInfo>, Sim
         default: spec.default.to_string(),
         what: spec.help.clone(),
     });
-    Ok(fault::list().into_iter().chain(of_the_world).collect())
+    let of_instruments = fault::instrument::list().into_iter();
+    Ok(fault::list()
+        .into_iter()
+        .chain(of_instruments)
+        .chain(of_the_world)
+        .collect())
 }
 
 /// Splits `NAME[=VALUE]`.
@@ -146,17 +151,21 @@ pub(crate) fn number(name: &str, text: &str) -> Result<f64, SimError> {
     }
 }
 
-/// Checks that every module and line that a fault names exists; a misspelt name would have no effect.
-pub(crate) fn check_targets(
-    faults: &LineFaults,
+/// What a fault of a rig may name.
+pub(crate) const RIG_TARGETS: &str = "a module or line of rig.toml";
+
+/// Checks that every module, line or instrument that a fault names exists; a misspelt name would have no effect.
+pub(crate) fn check_targets<'a>(
+    mut targets: impl Iterator<Item = &'a str>,
+    expected: &str,
     known: impl Fn(&str) -> bool,
 ) -> Result<(), SimError> {
-    match faults.targets().find(|target| !known(target)) {
+    match targets.find(|target| !known(target)) {
         None => Ok(()),
         Some(target) => Err(SimError::FaultValue {
             name: "target".into(),
             found: target.into(),
-            expected: "a module or line of rig.toml".into(),
+            expected: expected.into(),
         }),
     }
 }
@@ -167,7 +176,7 @@ fn modules(
     table: &WorldTable,
     seed: u64,
     noise: Option<u64>,
-) -> Result<Vec<Module>, SimError> {
+) -> Result<Vec<Module>, ConfigError> {
     let module = |spec: &ModuleSpec| {
         let line = file.lines.iter().find(|line| line.name == spec.line);
         let commissioning = Commissioning {
@@ -203,6 +212,11 @@ impl SharedRig {
         t_us: u64,
     ) -> Option<Reply> {
         self.rig().exchange_at(line, host_baud, text, t_us)
+    }
+
+    /// See [`Rig::unprompted`].
+    pub fn unprompted(&self, line: usize, t_us: u64) -> Vec<Reply> {
+        self.rig().unprompted(line, t_us)
     }
 
     /// See [`Rig::advance`].

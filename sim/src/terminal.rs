@@ -4,10 +4,10 @@
 //! volts, logic levels and gate times, at integer microseconds of rig time that never run backwards. A module
 //! reads and writes only after [`Plant::advance`] has brought the world to that instant.
 
-use std::collections::BTreeMap;
+use crate::table::Table;
 
 /// One module as `config/rig.toml` describes it (identifier, line, address and commissioning).
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct ModuleSpec {
     /// Key of the table `[module.ID]`.
     pub id: String,
@@ -17,8 +17,8 @@ pub struct ModuleSpec {
     pub address: u8,
     /// Model name as printed on the housing, `I-7017F`.
     pub model: String,
-    /// All other keys of its table (type, format, fast, mask, slew, watchdog, safe ...).
-    pub settings: BTreeMap<String, toml::Value>,
+    /// Its table in the configuration, with the keys of the fields above.
+    pub settings: Table,
 }
 
 /// The world behind the terminals; modules are named by their identifiers in `config/rig.toml`.

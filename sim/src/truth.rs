@@ -25,6 +25,11 @@ pub trait WorldRecord {
         &[]
     }
 
+    /// Removes and returns the texts that the code reader has sent so far.
+    fn take_codes(&mut self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Activates a fault of the world; `value` is the number of a part.
     ///
     /// # Errors
@@ -86,6 +91,9 @@ pub struct PartTruth {
     /// Number of full-voltage operations of a relay, from rest to the first make of NO. Dummies omit this key.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub operations: Option<u64>,
+    /// Serial number that the code on the part holds. A rig without code reader omits this key.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub serial: Option<String>,
     /// Name of the defect, if any.
     pub defect: Option<&'static str>,
     /// Bin in which the body came to rest.

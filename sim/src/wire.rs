@@ -12,12 +12,16 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt, DuplexStream};
 use tokio::time::sleep_until;
 
 use crate::SharedRig;
+use crate::config::READER;
 use crate::line::{Arrival, Receiver};
 use crate::pace::Pace;
 use crate::rig::Reply;
 
 /// Buffer size of a stream in each direction, bytes; a reply has at most 64 characters.
 const ROOM: usize = 4_096;
+
+/// Pause between two looks for a code of the code reader, microseconds.
+const LOOK_US: u64 = 10_000;
 
 /// Source of a line's stream; offers a new stream after the port was lost or closed.
 #[derive(Clone, Default)]
@@ -59,6 +63,7 @@ pub fn plugs(rig: &SharedRig) -> Vec<(String, Plug)> {
             pace,
             from_us,
             baud,
+            is_reader: name == READER,
             plug: plug.clone(),
             receiver: Receiver::new(baud),
             arrivals: VecDeque::new(),
@@ -77,6 +82,8 @@ struct Line {
     pace: Pace,
     from_us: u64,
     baud: u32,
+    /// True for the line of the code reader, which sends by itself.
+    is_reader: bool,
     plug: Plug,
     receiver: Receiver,
     arrivals: VecDeque<Arrival>,
@@ -147,7 +154,9 @@ impl Line {
         let arrival = self.arrivals.front().map(|arrival| arrival.at_us);
         let reply = self.replies.iter().map(|reply| reply.at_us).min();
         let loss = self.rig.next_port_loss_us(self.number, self.now_us());
-        arrival.into_iter().chain(reply).chain(loss).min()
+        let look = self.is_reader.then(|| self.now_us() + LOOK_US);
+        let due = arrival.into_iter().chain(reply).chain(loss).chain(look);
+        due.min()
     }
 
     async fn act(&mut self, device: &mut DuplexStream) -> std::io::Result<()> {
@@ -164,6 +173,10 @@ impl Line {
         {
             let reply = self.rig.exchange(self.number, &arrival.text, arrival.at_us);
             self.replies.extend(reply);
+        }
+        if self.is_reader {
+            self.replies
+                .extend(self.rig.unprompted(self.number, now_us));
         }
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! Tests of modules and lines from the host's side.
 
 mod facts {
+    mod bench;
     mod conformance;
     mod converter;
     mod fuzz;

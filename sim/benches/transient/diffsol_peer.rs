@@ -35,8 +35,8 @@ pub fn tsit45(model: &Model, rtol: f64) -> Result<NoContactTimes, DiffsolError> 
         .root(
             |s, _, _, gaps| {
                 let s = state(s);
-                for (gap, kind) in gaps.iter_mut().zip(Element::TOUCHING) {
-                    *gap = model.stops.overlap(kind, &s);
+                for (gap, element) in gaps.iter_mut().zip(Element::TOUCHING) {
+                    *gap = model.stops.overlap(element, &s);
                 }
             },
             4,

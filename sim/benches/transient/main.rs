@@ -80,7 +80,11 @@ fn own(model: &Model, rtol: f64) -> NoContactTimes {
             NoContactTimes {
                 make_s: seen.no_first_make.unwrap_or(f64::NAN),
                 last_s: seen.no_last_change.unwrap_or(f64::NAN),
-                events: run.events.iter().filter(|e| e.kind == Element::No).count(),
+                events: run
+                    .events
+                    .iter()
+                    .filter(|e| e.element == Element::No)
+                    .count(),
                 evaluations: run.evaluations,
             }
         }

@@ -13,6 +13,7 @@
 //! `sim.toml` lists the faults of the world (mechanism, board, part).
 
 mod damage;
+pub mod instrument;
 mod loss;
 mod port;
 mod timing;

@@ -3,6 +3,8 @@
 //! | request | mode 0: a limit per counter | mode 1: two limits on counter 0 |
 //! |---|---|---|
 //! | `~AAAS` | S = 0 | S = 1 (factory setting of the 7080D) |
+//! | `~AAA` | `!AA0` | `!AA1`; a vendor's library sends this request, no manual has it |
+//! | `@AADI` | `!AAS0D00`, S: bit n for the alarm of counter n | S: 0 off, 1 momentary, 2 latched |
 //! | `@AAPA(8 hex)`, `@AARP` | limit of counter 0 | high limit, output 0 |
 //! | `@AASA(8 hex)`, `@AARA` | limit of counter 1 | high-high limit, output 1 |
 //! | `@AAEAN`, `@AADAN` | alarm of counter N on, off | refused |
@@ -63,10 +65,21 @@ impl Alarm {
         }
     }
 
-    /// Returns the first digit of `@AADI`: 0 off, 1 on (momentary), 2 latched.
+    /// Returns the digit that answers `~AAA`: 0 for a limit per counter, 1 for two limits on counter 0.
+    pub(super) fn mode(&self) -> u8 {
+        match self.mode {
+            Mode::PerCounter { .. } => 0,
+            Mode::TwoLimits(_) => 1,
+        }
+    }
+
+    /// Returns digit S of the reply to `@AADI`: in mode 0, bit n is set while the alarm of counter n is on; in mode 1,
+    /// S is 0 for off, 1 for momentary, 2 for latched.
     pub(super) fn state(&self) -> u8 {
         match self.mode {
-            Mode::PerCounter { on } => u8::from(on != [false; 2]),
+            Mode::PerCounter {
+                on: [first, second],
+            } => u8::from(first) | u8::from(second) << 1,
             Mode::TwoLimits(Kind::Off) => 0,
             Mode::TwoLimits(Kind::Momentary) => 1,
             Mode::TwoLimits(Kind::Latched) => 2,

@@ -25,8 +25,9 @@ use super::converter::Converter;
 use super::range::{self, Format, Range};
 use super::tolerances::Tolerances;
 use super::{Built, Family, Terminals, setting};
+use crate::config::ConfigError;
 use crate::dcon::{self, Answer, Request};
-use crate::error::SimError;
+use crate::table::Table;
 use crate::terminal::ModuleSpec;
 
 /// Bit of FF that selects the fast mode.
@@ -88,6 +89,11 @@ impl Kind {
     }
 }
 
+/// Numbers of the models.
+pub(super) const MODELS: [&str; 8] = [
+    "7017", "7017F", "7017R", "7017RC", "7018", "7018P", "7018R", "7033",
+];
+
 /// Builds an analog input from its table.
 pub(super) fn build(
     spec: &ModuleSpec,
@@ -95,24 +101,26 @@ pub(super) fn build(
     line: Commissioning,
     tolerances: &Tolerances,
     rng: ChaCha8Rng,
-) -> Result<Built, SimError> {
+) -> Result<Built, ConfigError> {
+    let keys = &spec.settings;
     let (kind, default_type) = match model {
         "7033" => (Kind::Rtd, 0x20),
         "7018" | "7018P" | "7018R" => (Kind::Thermocouple, 0x05),
         "7017" => (Kind::Voltage { may_be_fast: false }, 0x08),
         _ => (Kind::Voltage { may_be_fast: true }, 0x08),
     };
-    let type_code = type_code(spec, kind, default_type)?;
-    let base = ModuleBase::new(spec, line, type_code, format_bits(spec, kind)?)?;
-    let all = (1u16 << kind.channels()).wrapping_sub(1);
-    let mask = match setting::bits(spec, "mask")? {
-        Some(mask) => mask,
-        None => setting::bits(spec, "enabled")?.unwrap_or(u32::from(all)),
-    };
+    let type_code = type_code(keys, kind, default_type)?;
+    let mut base = ModuleBase::new(spec, line, type_code, format_bits(keys, kind)?)?;
+    let all = (1u16 << kind.channels()) - 1;
+    let mask = setting::bits(keys, setting::either(keys, "mask", "enabled")?, all)?.unwrap_or(all);
+    let form = "numbers, or nan for an open terminal";
+    base.inputs = setting::values(keys, "inputs", kind.channels().into(), form, |value| {
+        !value.is_infinite()
+    })?;
     let per_s = pace(kind, tolerances, base.format);
     let family = AnalogIn {
         kind,
-        converter: Converter::new(kind.channels(), mask as u8 & all as u8, per_s),
+        converter: Converter::new(kind.channels(), mask as u8, per_s),
         readings: [0.0; 8],
         type_code,
         ranges: [type_code; 8],
@@ -122,30 +130,20 @@ pub(super) fn build(
     Ok((base, Box::new(family)))
 }
 
-fn type_code(spec: &ModuleSpec, kind: Kind, default: u8) -> Result<u8, SimError> {
-    let key = if spec.settings.contains_key("type") {
-        "type"
-    } else {
-        "range"
-    };
-    let code = setting::code(spec, key)?.unwrap_or(default);
+fn type_code(keys: &Table, kind: Kind, default: u8) -> Result<u8, ConfigError> {
+    let key = setting::either(keys, "type", "range")?;
+    let code = setting::code(keys, key, 0xFF)?.unwrap_or(default);
     match kind.range(code) {
         Some(_) => Ok(code),
-        None => Err(setting::wrong(spec, key, "a type code of this module")),
+        None => Err(keys.wrong(key, "a type code of this model")),
     }
 }
 
-fn format_bits(spec: &ModuleSpec, kind: Kind) -> Result<u8, SimError> {
-    let name = setting::text(spec, "format")?.unwrap_or("engineering");
-    let format = Format::named(name)
-        .ok_or_else(|| setting::wrong(spec, "format", "engineering, percent or hex"))?;
-    let fast = setting::flag(spec, "fast")?.unwrap_or(false);
+fn format_bits(keys: &Table, kind: Kind) -> Result<u8, ConfigError> {
+    let format = setting::word(keys, "format", &Format::NAMES)?.unwrap_or(0);
+    let fast = keys.get_or("fast", false)?;
     if fast && kind != (Kind::Voltage { may_be_fast: true }) {
-        return Err(setting::wrong(
-            spec,
-            "fast",
-            "false: this model has no fast mode",
-        ));
+        return Err(keys.wrong("fast", "false: this model has no fast mode"));
     }
     Ok(format | if fast { FAST } else { 0 })
 }

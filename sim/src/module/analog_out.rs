@@ -19,8 +19,9 @@ use super::ramp::{Ramp, nominal_rate};
 use super::range::Format;
 use super::tolerances::Tolerances;
 use super::{Built, Family, Terminals, setting};
+use crate::config::ConfigError;
 use crate::dcon::{self, Answer, Request};
-use crate::error::SimError;
+use crate::table::Table;
 use crate::terminal::ModuleSpec;
 
 struct AnalogOut {
@@ -38,36 +39,34 @@ struct Channel {
     own: (u8, u8),
 }
 
+/// Numbers of the models.
+pub(super) const MODELS: [&str; 4] = ["7021", "7021P", "7022", "7024"];
+
 /// Builds an analog output from its table.
 pub(super) fn build(
     spec: &ModuleSpec,
     number: &str,
     line: Commissioning,
     tolerances: &Tolerances,
-) -> Result<Built, SimError> {
+) -> Result<Built, ConfigError> {
+    let keys = &spec.settings;
     let model = Model {
-        takes_sign: setting::flag(spec, "signed")?.unwrap_or(false),
+        takes_sign: keys.get_or("signed", false)?,
         ..model(number)
     };
-    let key = if spec.settings.contains_key("type") {
-        "type"
-    } else {
-        "range"
+    let key = setting::either(keys, "type", "range")?;
+    let type_code = setting::code(keys, key, 0xFF)?.unwrap_or(0x32);
+    let span = match (model.own_slew, type_code) {
+        // Type code 3F in the configuration word: each channel has a type of its own, 32 at first.
+        (true, 0x3F) => span(model, 0x32),
+        (_, code) => span(model, code),
     };
-    let type_code = setting::code(spec, key)?.unwrap_or(if model.own_slew { 0x3F } else { 0x32 });
-    if !model.own_slew && span(model, type_code).is_none() {
-        return Err(setting::wrong(spec, key, "a type code of this module"));
-    }
-    let slew = setting::code(spec, "slew")?.unwrap_or(0);
-    if slew > 0xF {
-        return Err(setting::wrong(spec, "slew", "0 to F"));
-    }
-    let name = setting::text(spec, "format")?.unwrap_or("engineering");
-    let format = Format::named(name)
-        .ok_or_else(|| setting::wrong(spec, "format", "engineering, percent or hex"))?;
-    let plate_type = if model.own_slew { 0x3F } else { type_code };
-    let base = ModuleBase::new(spec, line, plate_type, format | slew << 2)?;
-    let channels = channels(spec, model, type_code, slew)?;
+    let span = span.ok_or_else(|| keys.wrong(key, "a type code of this model"))?;
+    let slew = setting::code(keys, "slew", 0xF)?.unwrap_or(0);
+    let format = setting::word(keys, "format", &Format::NAMES)?.unwrap_or(0);
+    let word_type = if model.own_slew { 0x3F } else { type_code };
+    let base = ModuleBase::new(spec, line, word_type, format | slew << 2)?;
+    let channels = channels(keys, model, span, (type_code, slew))?;
     let family = AnalogOut {
         model,
         channels,
@@ -77,34 +76,32 @@ pub(super) fn build(
 }
 
 fn channels(
-    spec: &ModuleSpec,
+    keys: &Table,
     model: Model,
-    type_code: u8,
-    slew: u8,
-) -> Result<Vec<Channel>, SimError> {
-    let (safe, power_on) = (
-        setting::numbers(spec, "safe")?,
-        setting::numbers(spec, "power_on")?,
-    );
-    let outputs = setting::numbers(spec, "outputs")?;
-    let nth = |list: &[f64], channel: u8| list.get(usize::from(channel)).copied();
-    let channel = |n: u8| {
+    span: Span,
+    (type_code, slew): (u8, u8),
+) -> Result<Vec<Channel>, ConfigError> {
+    let most = usize::from(model.channels);
+    let form = format!("numbers from {} to {}", span.low, span.high);
+    let fits = |value| (span.low..=span.high).contains(&value);
+    let values = |key| setting::values(keys, key, most, &form, fits);
+    let (safe, power_on, outputs) = (values("safe")?, values("power_on")?, values("outputs")?);
+    let nth = |list: &[f64], n: usize| list.get(n).copied();
+    let own_type = if type_code == 0x3F {
+        2
+    } else {
+        type_code & 0xF
+    };
+    let channel = |n: usize| {
         let power_on = nth(&power_on, n).unwrap_or(0.0);
         Channel {
             ramp: Ramp::at(nth(&outputs, n).unwrap_or(power_on)),
             power_on,
             safe: nth(&safe, n).unwrap_or(0.0),
-            own: (
-                if type_code == 0x3F {
-                    2
-                } else {
-                    type_code & 0xF
-                },
-                slew,
-            ),
+            own: (own_type, slew),
         }
     };
-    Ok((0..model.channels).map(channel).collect())
+    Ok((0..most).map(channel).collect())
 }
 
 impl AnalogOut {

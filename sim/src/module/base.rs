@@ -18,8 +18,9 @@
 
 use super::setting;
 use super::watchdog::Watchdog;
+use crate::config::ConfigError;
 use crate::dcon::{self, Answer, Request};
-use crate::error::SimError;
+use crate::table::Table;
 use crate::terminal::ModuleSpec;
 
 /// Bit of FF that enables the checksum.
@@ -29,7 +30,7 @@ const CHECKSUM: u8 = 0x40;
 const LONGEST_DELAY_MS: u8 = 30;
 
 /// Baud rates, bits per second, in the order of their codes from 03.
-const BAUDS: [u32; 8] = [1200, 2400, 4800, 9600, 19200, 38400, 57600, 115_200];
+pub(super) const BAUDS: [u32; 8] = [1200, 2400, 4800, 9600, 19200, 38400, 57600, 115_200];
 
 /// Baud rate of a module with INIT* grounded, bits per second, whatever rate it stores.
 const INIT_BAUD: u32 = 9_600;
@@ -71,6 +72,8 @@ pub struct ModuleBase {
     checksum_running: bool,
     baud_running: u32,
     reset_unread: bool,
+    /// Constant signals that a bench file gives for the inputs; empty in a rig.
+    pub inputs: Vec<f64>,
 }
 
 impl ModuleBase {
@@ -80,26 +83,30 @@ impl ModuleBase {
         line: Commissioning,
         type_code: u8,
         family_bits: u8,
-    ) -> Result<Self, SimError> {
-        let checksum = setting::flag(spec, "checksum")?.unwrap_or(line.checksum);
+    ) -> Result<Self, ConfigError> {
+        let keys = &spec.settings;
+        let checksum = keys.get_or("checksum", line.checksum)?;
         let format = family_bits | if checksum { CHECKSUM } else { 0 };
+        let longest_ms = f64::from(LONGEST_DELAY_MS);
+        let delay_ms = setting::number(keys, "response_delay_ms", 0.0..=longest_ms)?;
         Ok(Self {
             address: spec.address,
             type_code,
             baud_code: baud_code(line.baud).unwrap_or(0x0A),
             format,
-            watchdog: watchdog(spec, line.host_watchdog_ms)?,
+            watchdog: watchdog(keys, line.host_watchdog_ms)?,
             eeprom_writes: 0,
             name: name(spec)?,
-            firmware: setting::text(spec, "firmware")?.unwrap_or("A2.0").into(),
-            newer: spec.model.starts_with("M-") || spec.settings.contains_key("response_delay_ms"),
-            response_delay_ms: setting::number(spec, "response_delay_ms")?.unwrap_or(0.0) as u8,
+            firmware: keys.get_or("firmware", "A2.0".into())?,
+            newer: spec.model.starts_with("M-") || delay_ms.is_some(),
+            response_delay_ms: delay_ms.unwrap_or(0.0) as u8,
             soft_init_s: 0,
             soft_init_until_us: 0,
-            init_grounded: setting::flag(spec, "init")?.unwrap_or(false),
+            init_grounded: keys.get_or("init", false)?,
             checksum_running: checksum,
             baud_running: line.baud,
-            reset_unread: !setting::flag(spec, "reset_seen")?.unwrap_or(false),
+            reset_unread: !keys.get_or("reset_seen", false)?,
+            inputs: Vec::new(),
         })
     }
 
@@ -271,26 +278,36 @@ fn baud_code(baud: u32) -> Option<u8> {
     u8::try_from(place).ok().map(|place| place + 3)
 }
 
-fn name(spec: &ModuleSpec) -> Result<String, SimError> {
+fn name(spec: &ModuleSpec) -> Result<String, ConfigError> {
     let printed = spec.model.trim_start_matches("I-").trim_start_matches("M-");
-    Ok(setting::text(spec, "name")?.unwrap_or(printed).into())
+    let form = "text of 1 to 6 characters";
+    let fits = |name: &&str| (1..=6).contains(&name.len()) && name.is_ascii();
+    let name = spec
+        .settings
+        .fit("name", form, |entry| entry.text().filter(fits))?;
+    Ok(name.unwrap_or(printed).into())
 }
 
 /// Reads `watchdog`: `true` uses the time-out of the plant, a table brings its own.
-fn watchdog(spec: &ModuleSpec, plant_ms: f64) -> Result<Watchdog, SimError> {
+fn watchdog(keys: &Table, plant_ms: f64) -> Result<Watchdog, ConfigError> {
     let tenths_of = |seconds: f64| (seconds * 10.0).round().clamp(1.0, 255.0) as u8;
-    let plant_tenths = tenths_of(plant_ms / 1e3);
-    match spec.settings.get("watchdog") {
-        None => Ok(Watchdog::new(false, plant_tenths, false)),
-        Some(toml::Value::Boolean(enabled)) => Ok(Watchdog::new(*enabled, plant_tenths, false)),
-        Some(toml::Value::Table(table)) => {
-            let flag = |key| table.get(key).and_then(toml::Value::as_bool) == Some(true);
-            let seconds = table
-                .get("timeout_s")
-                .and_then(|value| value.as_float().or(value.as_integer().map(|s| s as f64)));
-            let tenths = seconds.map_or(plant_tenths, tenths_of);
-            Ok(Watchdog::new(flag("enabled"), tenths, flag("tripped")))
-        }
-        Some(_) => Err(setting::wrong(spec, "watchdog", "true, false or a table")),
+    let plant_s = plant_ms / 1e3;
+    let with = |enabled, timeout_s, tripped| Watchdog::new(enabled, tenths_of(timeout_s), tripped);
+    let Some(entry) = keys.find("watchdog") else {
+        return Ok(with(false, plant_s, false));
+    };
+    if let Some(enabled) = entry.flag() {
+        return Ok(with(enabled, plant_s, false));
     }
+    let own = entry
+        .table()
+        .map_err(|_| entry.wrong("true, false or a table"))?;
+    let timeout_s = setting::number(own, "timeout_s", 0.1..=25.5)?;
+    let watchdog = with(
+        own.get_or("enabled", false)?,
+        timeout_s.unwrap_or(plant_s),
+        own.get_or("tripped", false)?,
+    );
+    own.finish()?;
+    Ok(watchdog)
 }

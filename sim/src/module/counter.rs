@@ -9,16 +9,25 @@
 //! `#AAN` with an invalid channel gets no answer. Settings that survive a power loss count as EEPROM writes.
 //! Every request updates the alarms ([`super::alarm`]). LED commands keep their values and have no effect.
 
+use std::ops::RangeInclusive;
+
 use super::alarm::{Alarm, CommandEffect};
 use super::base::{Commissioning, ModuleBase};
 use super::pulse::{Channel, channels};
 use super::{Built, Family, Terminals, setting};
+use crate::config::ConfigError;
 use crate::dcon::{self, Answer, Request};
-use crate::error::SimError;
+use crate::table::Table;
 use crate::terminal::ModuleSpec;
 
 /// Bit of FF that selects the long frequency gate.
 const ONE_SECOND_GATE: u8 = 0x04;
+
+/// Range for the least pulse width of the digital filter, microseconds.
+const FILTER_US: RangeInclusive<u32> = 2..=65_535;
+
+/// Range for the thresholds of the TTL inputs, tenths of a volt.
+const THRESHOLD: RangeInclusive<u32> = 0..=50;
 
 struct Counter {
     channels: [Channel; 2],
@@ -35,55 +44,68 @@ struct Counter {
     has_led: bool,
 }
 
+/// Numbers of the models.
+pub(super) const MODELS: [&str; 3] = ["7080", "7080B", "7080D"];
+
 /// Builds a counter module from its table.
 pub(super) fn build(
     spec: &ModuleSpec,
     model: &str,
     line: Commissioning,
-) -> Result<Built, SimError> {
-    let key = if spec.settings.contains_key("type") {
-        "type"
-    } else {
-        "range"
-    };
-    let type_code = setting::code(spec, key)?.unwrap_or(0x50);
+) -> Result<Built, ConfigError> {
+    let keys = &spec.settings;
+    let key = setting::either(keys, "type", "range")?;
+    let type_code = setting::code(keys, key, 0xFF)?.unwrap_or(0x50);
     if !matches!(type_code, 0x50 | 0x51) {
-        return Err(setting::wrong(spec, key, "50 or 51"));
+        return Err(keys.wrong(key, "\"50\" or \"51\""));
     }
-    let pair = |key: &str, default: [u32; 2]| {
-        let list = setting::numbers(spec, key)?;
-        let nth = |n: usize| list.get(n).map_or(default[n], |value| *value as u32);
-        Ok::<_, SimError>([nth(0), nth(1)])
+    let pair = |key, default: [u32; 2], range| {
+        let list = setting::counts(keys, key, 2, range)?;
+        Ok::<_, ConfigError>([0, 1].map(|n| list.get(n).copied().unwrap_or(default[n])))
     };
-    let small = |key: &str, default: u8| {
-        Ok::<_, SimError>(setting::bits(spec, key)?.map_or(default, |value| value as u8))
+    let digit = |key, most, default| {
+        let form = format!("a whole number from 0 to {most}");
+        let digit = keys.fit(key, &form, |it| it.whole().filter(|digit| *digit <= most))?;
+        Ok::<u8, ConfigError>(digit.unwrap_or(default))
     };
+    let has_led = model == "7080D";
     let family = Counter {
-        channels: channels(spec)?,
-        gate_mode: gate_mode(spec)?,
-        input_mode: small("input_mode", 1)?,
-        filter_on: setting::flag(spec, "filter")?.unwrap_or(false),
-        filter_us: pair("filter_us", [2, 2])?,
-        threshold: pair("threshold", [24, 8])?,
-        outputs: small("outputs", 0)? & 0b11,
-        alarm: Alarm::new(model == "7080D"),
-        led: small("led", 0)?,
-        has_led: model == "7080D",
+        channels: channels(keys)?,
+        gate_mode: gate_mode(keys)?,
+        input_mode: digit("input_mode", 3, 1)?,
+        filter_on: keys.get_or("filter", false)?,
+        filter_us: pair("filter_us", [2, 2], FILTER_US)?,
+        threshold: pair("threshold", [24, 8], THRESHOLD)?,
+        outputs: setting::bits(keys, "outputs", 0b11)?.unwrap_or(0) as u8,
+        alarm: Alarm::new(has_led),
+        led: if has_led { digit("led", 2, 0)? } else { 0 },
+        has_led,
     };
     Ok((ModuleBase::new(spec, line, type_code, 0)?, Box::new(family)))
 }
 
-fn gate_mode(spec: &ModuleSpec) -> Result<u8, SimError> {
-    match spec.settings.get("gate") {
-        None => Ok(1),
-        Some(toml::Value::Integer(mode @ 0..=2)) => Ok(*mode as u8),
-        Some(toml::Value::String(mode)) => match mode.as_str() {
-            "low" => Ok(0),
-            "high" => Ok(1),
-            "none" => Ok(2),
-            _ => Err(setting::wrong(spec, "gate", "low, high or none")),
-        },
-        Some(_) => Err(setting::wrong(spec, "gate", "0, 1 or 2")),
+/// Reads the gate mode: a word or its number.
+fn gate_mode(keys: &Table) -> Result<u8, ConfigError> {
+    const WORDS: [&str; 3] = ["low", "high", "none"];
+    let form = "low, high, none, 0, 1 or 2";
+    let mode = keys.fit("gate", form, |entry| {
+        let word = WORDS.iter().position(|word| Some(*word) == entry.text());
+        word.or_else(|| entry.whole()).filter(|mode| *mode <= 2)
+    })?;
+    Ok(mode.unwrap_or(1) as u8)
+}
+
+/// Answers `$AA9(data)`: accepts five digits with a point after one of them, refuses them in other numbers or places;
+/// other characters are no command.
+fn show(base: &ModuleBase, data: &[u8]) -> Answer {
+    let digits = data.iter().filter(|byte| byte.is_ascii_digit()).count();
+    let points = data.iter().filter(|byte| **byte == b'.').count();
+    if digits + points != data.len() || data.is_empty() {
+        Answer::Unknown
+    } else if (digits, points) == (5, 1) && data[0] != b'.' {
+        dcon::done(base.address)
+    } else {
+        dcon::refused(base.address)
     }
 }
 
@@ -173,7 +195,7 @@ impl Counter {
         if rest.is_empty() {
             return dcon::done_data(base.address, &format!("{:0width$}", values[place]));
         }
-        let limits = if kind == b'0' { 2..=65_535 } else { 0..=50 };
+        let limits = if kind == b'0' { FILTER_US } else { THRESHOLD };
         match dcon::decimal(rest) {
             Some(value) if rest.len() == width && limits.contains(&value) => {
                 values[place] = value;
@@ -313,9 +335,8 @@ impl Family for Counter {
             (b'$', [mode @ b'8', rest @ ..]) if self.has_led => {
                 self.mode_command(base, *mode, rest, at)
             }
-            (b'$', [b'9', data @ ..]) if self.has_led && data.len() == 5 => {
-                dcon::done(base.address)
-            }
+            (b'$', [b'9', data @ ..]) if self.has_led => show(base, data),
+            (b'~', b"A") => dcon::done_hex(base.address, u64::from(self.alarm.mode()), 1),
             (b'~', [b'A', mode @ (b'0' | b'1')]) => {
                 self.alarm.set_mode(*mode == b'1');
                 base.eeprom_writes += 1;

@@ -10,15 +10,17 @@
 //! | `$AA4` | inputs at the last `#**`; `?AA` when there was none |
 //! | `~AA5P`, `~AA5S`, `~AA4P`, `~AA4S` | store and read power-on and safe outputs |
 //!
-//! First and second byte are outputs and inputs; on modules with 16 inputs only or 16 outputs only, high byte and
-//! low byte. Latches record every change between two requests and every counted pulse; an input that has not
-//! changed since the latches were cleared sets none.
+//! The first byte holds the outputs and the second the inputs; on modules with more than eight inputs or outputs, they
+//! are the high byte and the low byte. The 7052 has only eight inputs: they are its first byte, and the second is 00.
+//! Latches record every change between two requests and every counted pulse; an input that has not changed since the
+//! last `$AAC` sets none.
 
 use super::base::{Commissioning, ModuleBase};
 use super::shape::{Shape, ones};
 use super::{Built, Family, Terminals, setting};
+use crate::config::ConfigError;
 use crate::dcon::{self, Answer, Request};
-use crate::error::SimError;
+use crate::table::{Entry, Table};
 use crate::terminal::ModuleSpec;
 
 struct Digital {
@@ -56,69 +58,76 @@ pub(super) fn build(
     spec: &ModuleSpec,
     shape: Shape,
     line: Commissioning,
-) -> Result<Built, SimError> {
-    let type_code = setting::code(spec, "type")?.unwrap_or(0x40);
+) -> Result<Built, ConfigError> {
+    let keys = &spec.settings;
+    let key = setting::either(keys, "type", "range")?;
+    let type_code = setting::code(keys, key, 0xFF)?.unwrap_or(0x40);
     if type_code != 0x40 {
-        return Err(setting::wrong(spec, "type", "40"));
+        return Err(keys.wrong(key, "\"40\""));
     }
     let mut base = ModuleBase::new(spec, line, type_code, 0)?;
-    let bits = |key: &str| Ok::<u16, SimError>(setting::bits(spec, key)?.unwrap_or(0) as u16);
-    let safe = if spec.settings.contains_key("safe_outputs") {
-        bits("safe_outputs")?
-    } else {
-        bits("safe")?
-    };
-    let (high, low) = latches(spec)?;
-    let counts = setting::numbers(spec, "counts")?;
-    let counter = |channel: u8| EventCounter {
-        start: counts.get(usize::from(channel)).copied().unwrap_or(0.0) as u64,
-        ..EventCounter::default()
-    };
-    let names_refusals = match setting::text(spec, "refusal")? {
-        None | Some("?") => false,
-        Some("?AA") => true,
-        Some(_) => return Err(setting::wrong(spec, "refusal", "? or ?AA")),
-    };
+    let names_refusals = setting::word(keys, "refusal", &["?", "?AA"])? == Some(1);
+    let [power_on, safe, outputs] = output_words(keys, shape)?;
     let mut family = Digital {
         shape,
         names_refusals,
         outputs: 0,
-        power_on: bits("power_on")? & shape.all_outputs(),
-        safe: safe & shape.all_outputs(),
+        power_on: power_on.unwrap_or(0),
+        safe: safe.unwrap_or(0),
         levels: 0,
-        latched_high: high,
-        latched_low: low,
-        counters: (0..shape.inputs).map(counter).collect(),
+        latched_high: 0,
+        latched_low: 0,
+        counters: Vec::new(),
         sampled: None,
     };
     family.restart(&base);
-    if let Some(outputs) = setting::bits(spec, "outputs")? {
-        family.outputs = outputs as u16 & shape.all_outputs();
-    }
-    if setting::flag(spec, "rising")?.unwrap_or(false) {
-        base.format |= 0x80;
+    family.outputs = outputs.unwrap_or(family.outputs);
+    if shape.inputs > 0 {
+        base.inputs = family.read_inputs(keys)?;
+        if keys.get_or("rising", false)? {
+            base.format |= 0x80;
+        }
     }
     Ok((base, Box::new(family)))
 }
 
-/// Reads `latches = MASK` (latched high), or a table with `high` and `low`.
-fn latches(spec: &ModuleSpec) -> Result<(u16, u16), SimError> {
-    match spec.settings.get("latches") {
-        Some(toml::Value::Table(table)) => {
-            let part = |key: &str| match table.get(key) {
-                Some(toml::Value::Integer(mask)) => *mask as u16,
-                Some(toml::Value::String(digits)) => {
-                    dcon::hex(digits.as_bytes()).unwrap_or(0) as u16
-                }
-                _ => 0,
-            };
-            Ok((part("high"), part("low")))
-        }
-        _ => Ok((setting::bits(spec, "latches")?.unwrap_or(0) as u16, 0)),
+/// Reads the power-on, safe and present outputs.
+fn output_words(keys: &Table, shape: Shape) -> Result<[Option<u16>; 3], ConfigError> {
+    if shape.outputs == 0 {
+        return Ok([None; 3]);
     }
+    let safe = setting::either(keys, "safe", "safe_outputs")?;
+    let bits = |key| setting::bits(keys, key, shape.all_outputs());
+    Ok([bits("power_on")?, bits(safe)?, bits("outputs")?])
 }
 
 impl Digital {
+    /// Reads counters and latches of the inputs, and returns the signals at the inputs: `latches = MASK` (latched high),
+    /// or a table with `high` and `low`.
+    fn read_inputs(&mut self, keys: &Table) -> Result<Vec<f64>, ConfigError> {
+        let inputs = self.shape.inputs;
+        let is_level = |level: f64| level == 0.0 || level == 1.0 || level.is_nan();
+        let signals = setting::values(keys, "inputs", inputs.into(), "levels 0 or 1", is_level)?;
+        let counts = setting::counts(keys, "counts", inputs.into(), 0..=65_535)?;
+        let counter = |channel: u8| EventCounter {
+            start: counts
+                .get(usize::from(channel))
+                .map_or(0, |it| (*it).into()),
+            ..EventCounter::default()
+        };
+        self.counters = (0..inputs).map(counter).collect();
+        let bits = |keys: &Table, key| setting::bits(keys, key, ones(inputs));
+        match keys.find("latches").map(Entry::table) {
+            Some(Ok(own)) => {
+                self.latched_high = bits(own, "high")?.unwrap_or(0);
+                self.latched_low = bits(own, "low")?.unwrap_or(0);
+                own.finish()?;
+            }
+            Some(Err(_)) | None => self.latched_high = bits(keys, "latches")?.unwrap_or(0),
+        }
+        Ok(signals)
+    }
+
     /// Returns the present inputs and updates the latches.
     fn inputs(&mut self, at: &mut Terminals<'_>) -> u16 {
         if self.shape.inputs == 0 {
@@ -244,7 +253,7 @@ impl Digital {
         } else {
             self.latched_low
         };
-        data_reply(latched)
+        data_reply(self.shape.first_and_second(latched, 0))
     }
 
     fn clear_latches(&mut self, base: &ModuleBase, at: &mut Terminals<'_>) -> Answer {

@@ -29,8 +29,8 @@ pub mod watchdog;
 
 use rand_chacha::ChaCha8Rng;
 
+use crate::config::ConfigError;
 use crate::dcon::{self, Address, Answer, Request};
-use crate::error::SimError;
 use crate::terminal::{ModuleSpec, Plant};
 use base::{Commissioning, ModuleBase};
 use tolerances::Tolerances;
@@ -91,6 +91,11 @@ pub struct Module {
 }
 
 impl Module {
+    /// Returns the constant signals that a bench file gives for the inputs.
+    pub fn inputs(&self) -> &[f64] {
+        &self.base.inputs
+    }
+
     /// Builds a module from its table.
     ///
     /// # Errors
@@ -100,20 +105,18 @@ impl Module {
         line: Commissioning,
         tolerances: Tolerances,
         rng: ChaCha8Rng,
-    ) -> Result<Self, SimError> {
+    ) -> Result<Self, ConfigError> {
         let model = model_number(&spec.model);
-        let (base, family) = match model {
-            "7017" | "7017F" | "7017R" | "7017RC" | "7018" | "7018P" | "7018R" | "7033" => {
-                analog_in::build(spec, model, line, &tolerances, rng.clone())?
-            }
-            "7021" | "7021P" | "7022" | "7024" => {
-                analog_out::build(spec, model, line, &tolerances)?
-            }
-            "7080" | "7080B" | "7080D" => counter::build(spec, model, line)?,
-            other => match shape::shape(other) {
-                Some(shape) => digital::build(spec, shape, line)?,
-                None => return Err(unknown_model(spec)),
-            },
+        let (base, family) = if analog_in::MODELS.contains(&model) {
+            analog_in::build(spec, model, line, &tolerances, rng.clone())?
+        } else if analog_out::MODELS.contains(&model) {
+            analog_out::build(spec, model, line, &tolerances)?
+        } else if counter::MODELS.contains(&model) {
+            counter::build(spec, model, line)?
+        } else if let Some(shape) = shape::shape(model) {
+            digital::build(spec, shape, line)?
+        } else {
+            return Err(spec.settings.wrong("model", &models()));
         };
         Ok(Self {
             id: spec.id.clone(),
@@ -285,11 +288,16 @@ fn model_number(model: &str) -> &str {
     }
 }
 
-fn unknown_model(spec: &ModuleSpec) -> SimError {
-    SimError::UnknownModel {
-        module: spec.id.clone(),
-        model: spec.model.clone(),
-    }
+/// Returns the list of all models; a name may also begin with `I-` or `M-` and end in `D` (LED).
+fn models() -> String {
+    let digital = shape::SHAPES.map(|(number, ..)| number);
+    let all: [&[&str]; 4] = [
+        &analog_in::MODELS,
+        &analog_out::MODELS,
+        &counter::MODELS,
+        &digital,
+    ];
+    format!("one of {}", all.concat().join(" "))
 }
 
 /// Common part and family of a module, before it joins a line.

@@ -1,8 +1,8 @@
 //! One counter: the pulses that pass its gate, between preset and maximum.
 
 use super::{Terminals, setting};
-use crate::error::SimError;
-use crate::terminal::ModuleSpec;
+use crate::config::ConfigError;
+use crate::table::Table;
 
 /// Registers of one counter.
 #[derive(Debug, Clone, Copy)]
@@ -67,20 +67,24 @@ impl Channel {
     }
 }
 
+/// Highest frequency at an input, hertz.
+const HIGHEST_HZ: f64 = 100_000.0;
+
 /// Reads both channels from the module's table.
-pub(super) fn channels(spec: &ModuleSpec) -> Result<[Channel; 2], SimError> {
-    let preset = setting::numbers(spec, "preset")?;
-    let maximum = setting::numbers(spec, "maximum")?;
-    let counts = setting::numbers(spec, "counts")?;
-    let inputs = setting::numbers(spec, "inputs")?;
-    let running = setting::bits(spec, "enabled")?.unwrap_or(0b11);
-    let overflow = setting::bits(spec, "overflow")?.unwrap_or(0);
+pub(super) fn channels(keys: &Table) -> Result<[Channel; 2], ConfigError> {
+    let counts = |key| setting::counts(keys, key, 2, 0..=u32::MAX);
+    let (presets, maxima, counts) = (counts("preset")?, counts("maximum")?, counts("counts")?);
+    let form = format!("frequencies from 0 to {HIGHEST_HZ} Hz");
+    let fits = |hz| (0.0..=HIGHEST_HZ).contains(&hz);
+    let inputs = setting::values(keys, "inputs", 2, &form, fits)?;
+    let running = setting::bits(keys, "enabled", 0b11)?.unwrap_or(0b11);
+    let overflow = setting::bits(keys, "overflow", 0b11)?.unwrap_or(0);
     Ok([0usize, 1].map(|n| {
-        let preset = preset.get(n).map_or(0, |value| *value as u32);
-        let count = counts.get(n).map_or(preset, |value| *value as u32);
+        let preset = presets.get(n).copied().unwrap_or(0);
+        let count = counts.get(n).copied().unwrap_or(preset);
         Channel {
             preset,
-            maximum: maximum.get(n).map_or(u32::MAX, |value| *value as u32),
+            maximum: maxima.get(n).copied().unwrap_or(u32::MAX),
             running: running & 1 << n != 0,
             overflowed: overflow & 1 << n != 0,
             counted_us: 0.0,

@@ -33,22 +33,15 @@ pub enum Format {
 }
 
 impl Format {
+    /// Names in configuration files, in the order of their codes in FF.
+    pub const NAMES: [&str; 3] = ["engineering", "percent", "hex"];
+
     /// Reads the format from FF; `None` for the invalid code 11.
     pub fn of(ff: u8) -> Option<Self> {
         match ff & 0b11 {
             0b00 => Some(Self::Engineering),
             0b01 => Some(Self::Percent),
             0b10 => Some(Self::Hex),
-            _ => None,
-        }
-    }
-
-    /// Returns the bits of FF for a format name of a configuration file.
-    pub fn named(name: &str) -> Option<u8> {
-        match name {
-            "engineering" => Some(0b00),
-            "percent" => Some(0b01),
-            "hex" => Some(0b10),
             _ => None,
         }
     }

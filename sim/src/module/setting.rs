@@ -1,100 +1,120 @@
-//! Reads the keys of one module's table: an absent key is `None`, an unfit value is an error.
+//! Reads keys of a module whose values need more than a type: values per channel, bit masks, codes.
 
-use toml::Value;
+use std::ops::RangeInclusive;
 
+use super::base::BAUDS;
+use crate::config::ConfigError;
 use crate::dcon;
-use crate::error::SimError;
-use crate::terminal::ModuleSpec;
+use crate::table::{Entry, Table};
 
-/// Reads a text.
-pub fn text<'a>(spec: &'a ModuleSpec, key: &str) -> Result<Option<&'a str>, SimError> {
-    read(spec, key, "text", Value::as_str)
-}
-
-/// Reads true or false.
-pub fn flag(spec: &ModuleSpec, key: &str) -> Result<Option<bool>, SimError> {
-    read(spec, key, "true or false", Value::as_bool)
-}
-
-/// Reads an integer or a floating-point number.
-pub fn number(spec: &ModuleSpec, key: &str) -> Result<Option<f64>, SimError> {
-    read(spec, key, "a number", as_number)
-}
-
-/// Reads a number per channel; a single number applies to channel 0, true and false count as 1 and 0.
-pub fn numbers(spec: &ModuleSpec, key: &str) -> Result<Vec<f64>, SimError> {
-    let list = read(spec, key, "a list of numbers", |value| match value {
-        Value::Array(items) => items.iter().map(as_number).collect(),
-        single => as_number(single).map(|number| vec![number]),
-    })?;
-    Ok(list.unwrap_or_default())
-}
-
-/// Reads a bit mask: hexadecimal text, an integer, or a list of 0 and 1 from channel 0 upwards.
-pub fn bits(spec: &ModuleSpec, key: &str) -> Result<Option<u32>, SimError> {
-    read(
-        spec,
-        key,
-        "hexadecimal text, an integer or a list of 0 and 1",
-        |value| match value {
-            Value::String(digits) => dcon::hex(digits.as_bytes()),
-            Value::Integer(mask) => u32::try_from(*mask).ok(),
-            Value::Array(items) => mask_of(items),
-            _ => None,
-        },
-    )
-}
-
-/// Reads a type code or slew code: hexadecimal text.
-pub fn code(spec: &ModuleSpec, key: &str) -> Result<Option<u8>, SimError> {
-    read(spec, key, "hexadecimal text up to FF", |value| {
-        let code = dcon::hex(value.as_str()?.as_bytes())?;
-        u8::try_from(code).ok()
+/// Reads a number within `range`.
+pub fn number(
+    keys: &Table,
+    key: &'static str,
+    range: RangeInclusive<f64>,
+) -> Result<Option<f64>, ConfigError> {
+    let form = format!("a number from {} to {}", range.start(), range.end());
+    keys.fit(key, &form, |entry| {
+        entry.number().filter(|it| range.contains(it))
     })
 }
 
-/// Builds the error for a value of the right type but the wrong range.
-pub fn wrong(spec: &ModuleSpec, key: &str, expected: &'static str) -> SimError {
-    SimError::Setting {
-        module: spec.id.clone(),
-        key: key.into(),
-        found: spec
-            .settings
-            .get(key)
-            .map_or_else(|| "nothing".into(), ToString::to_string),
-        expected,
+/// Reads key `baud`, one of the rates that modules support.
+pub fn baud(keys: &Table) -> Result<Option<u32>, ConfigError> {
+    let all = BAUDS.map(|baud| baud.to_string());
+    keys.fit("baud", &format!("one of {}", all.join(", ")), |entry| {
+        entry.whole().filter(|baud| BAUDS.contains(baud))
+    })
+}
+
+/// Reads a list of at most `most` values, one per channel; a single value applies to channel 0, true and false count as
+/// 1 and 0. `form` describes the values that fit.
+pub fn values(
+    keys: &Table,
+    key: &'static str,
+    most: usize,
+    form: &str,
+    fits: impl Fn(f64) -> bool,
+) -> Result<Vec<f64>, ConfigError> {
+    let fitting = |item: &Entry| level_or_number(item).filter(|value| fits(*value));
+    let values = keys.fit(key, &format!("at most {most} {form}"), |entry| {
+        let items = entry.list().unwrap_or(std::slice::from_ref(entry));
+        let values: Option<Vec<f64>> = items.iter().map(fitting).collect();
+        values.filter(|values| values.len() <= most)
+    })?;
+    Ok(values.unwrap_or_default())
+}
+
+/// Reads a list of at most `most` whole numbers within `range`, one per channel.
+pub fn counts(
+    keys: &Table,
+    key: &'static str,
+    most: usize,
+    range: RangeInclusive<u32>,
+) -> Result<Vec<u32>, ConfigError> {
+    let form = format!("whole numbers from {} to {}", range.start(), range.end());
+    let ends = f64::from(*range.start())..=f64::from(*range.end());
+    let whole = |value: f64| value.fract() == 0.0 && ends.contains(&value);
+    let values = values(keys, key, most, &form, whole)?;
+    Ok(values.into_iter().map(|value| value as u32).collect())
+}
+
+/// Reads a mask without bits outside `all`: hexadecimal text, an integer, or a list of 0 and 1 from channel 0 upwards.
+pub fn bits(keys: &Table, key: &'static str, all: u16) -> Result<Option<u16>, ConfigError> {
+    let form = format!("hexadecimal text, an integer or a list of 0 and 1 within \"{all:X}\"");
+    keys.fit(key, &form, |entry| {
+        let mask = match (entry.list(), entry.text()) {
+            (Some(items), _) => mask_of(items)?,
+            (None, Some(digits)) => dcon::hex(digits.as_bytes())?,
+            (None, None) => entry.whole()?,
+        };
+        u16::try_from(mask).ok().filter(|mask| mask & !all == 0)
+    })
+}
+
+/// Reads a code up to `most`, written as hexadecimal text.
+pub fn code(keys: &Table, key: &'static str, most: u8) -> Result<Option<u8>, ConfigError> {
+    let form = format!("hexadecimal text up to \"{most:X}\"");
+    keys.fit(key, &form, |entry| {
+        let code = dcon::hex(entry.text()?.as_bytes())?;
+        u8::try_from(code).ok().filter(|code| *code <= most)
+    })
+}
+
+/// Reads one of `words`; returns its index.
+pub fn word(keys: &Table, key: &'static str, words: &[&str]) -> Result<Option<u8>, ConfigError> {
+    keys.fit(key, &format!("one of {}", words.join(", ")), |entry| {
+        let index = words.iter().position(|word| Some(*word) == entry.text());
+        u8::try_from(index?).ok()
+    })
+}
+
+/// Returns which of two keys with the same meaning the file has, `one` without either; fails when it has both.
+pub fn either(
+    keys: &Table,
+    one: &'static str,
+    other: &'static str,
+) -> Result<&'static str, ConfigError> {
+    match (keys.find(one), keys.find(other)) {
+        (Some(_), Some(entry)) => {
+            Err(entry.wrong(&format!("nothing beside `{one}`, which means the same")))
+        }
+        (None, Some(_)) => Ok(other),
+        (_, None) => Ok(one),
     }
 }
 
-fn read<'a, T>(
-    spec: &'a ModuleSpec,
-    key: &str,
-    expected: &'static str,
-    convert: impl Fn(&'a Value) -> Option<T>,
-) -> Result<Option<T>, SimError> {
-    let Some(value) = spec.settings.get(key) else {
-        return Ok(None);
-    };
-    convert(value)
-        .map(Some)
-        .ok_or_else(|| wrong(spec, key, expected))
+fn level_or_number(entry: &Entry) -> Option<f64> {
+    let level = || entry.flag().map(|level| f64::from(u8::from(level)));
+    entry.number().or_else(level)
 }
 
-fn as_number(value: &Value) -> Option<f64> {
-    match value {
-        Value::Integer(whole) => Some(*whole as f64),
-        Value::Float(number) => Some(*number),
-        Value::Boolean(level) => Some(f64::from(u8::from(*level))),
-        Value::String(_) | Value::Datetime(_) | Value::Array(_) | Value::Table(_) => None,
-    }
-}
-
-fn mask_of(items: &[Value]) -> Option<u32> {
-    items
-        .iter()
-        .take(32)
-        .enumerate()
-        .try_fold(0u32, |mask, (bit, item)| {
-            Some(mask | u32::from(as_number(item)? != 0.0) << bit)
+fn mask_of(items: &[Entry]) -> Option<u32> {
+    (0..)
+        .zip(items)
+        .try_fold(0, |mask, (bit, item)| match level_or_number(item)? {
+            0.0 => Some(mask),
+            1.0 => Some(mask | 1u32.checked_shl(bit)?),
+            _ => None,
         })
 }

@@ -231,6 +231,8 @@ impl Server {
                     .exchange_at(self.number, self.host_baud, &arrival.text, arrival.at_us);
             self.replies.extend(reply);
         }
+        self.replies
+            .extend(self.rig.unprompted(self.number, now_us));
         while let Some(place) = self.replies.iter().position(|reply| reply.at_us <= now_us) {
             let reply = self.replies.remove(place);
             master.write_all(&reply.bytes)?;

@@ -11,15 +11,15 @@ use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
 /// Master and slave; the open slave keeps the terminal alive between clients.
-pub(super) struct Tty {
-    pub(super) master: File,
-    pub(super) slave: OwnedFd,
-    pub(super) path: PathBuf,
+pub(crate) struct Tty {
+    pub(crate) master: File,
+    pub(crate) slave: OwnedFd,
+    pub(crate) path: PathBuf,
 }
 
 impl Tty {
     /// Opens the terminal; `baud` is the initial rate.
-    pub(super) fn open(baud: u32) -> io::Result<Self> {
+    pub(crate) fn open(baud: u32) -> io::Result<Self> {
         let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
         grantpt(&master)?;
         unlockpt(&master)?;

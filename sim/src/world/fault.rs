@@ -45,6 +45,7 @@ faults! {
         BeamBlind = "beam_blind", AxisAlarm = "axis_alarm", StuckLift = "stuck_lift",
         StuckGripper = "stuck_gripper", Misoriented = "turned", PartMisses = "part_misses",
         PartStays = "part_stays", PartSticks = "part_sticks",
+        UnreadableCode = "unreadable_code", DuplicateCode = "duplicate_code",
     }
     Timed {
         Door = "door", Estop = "estop", Air = "air", StopButton = "stop_button",
@@ -78,7 +79,7 @@ impl WorldFaults {
                 (Some(fault), Some(spec)) => {
                     Ok((fault, if value.is_nan() { spec.default } else { *value }))
                 }
-                (_, _) => Err(ConfigError::Value {
+                (_, _) => Err(ConfigError::Fault {
                     path: path.to_path_buf(),
                     key: format!("fault.{name}"),
                     message: format!("no such fault, expected one of {}", names(table)),
@@ -129,7 +130,7 @@ impl WorldFaults {
         };
         let range = ranges.iter().find(|range| f64::from(range.code) == code);
         let codes: Vec<String> = ranges.iter().map(|it| it.code.to_string()).collect();
-        range.copied().map(Some).ok_or_else(|| ConfigError::Value {
+        range.copied().map(Some).ok_or_else(|| ConfigError::Fault {
             path: path.to_path_buf(),
             key: "fault.supply_range_stuck".into(),
             message: match ranges.is_empty() {

@@ -22,6 +22,8 @@ pub struct Part {
     pub seq: u64,
     /// Number in the lot from 1, which faults of a part refer to; `None` for reference parts.
     pub number: Option<u64>,
+    /// Serial number that the code on the part holds; `None` for reference parts, and on a rig without code reader.
+    pub code: Option<String>,
     /// True when a second body clings to this one.
     pub double: bool,
     /// Places with the time of arrival, microseconds.
@@ -37,6 +39,7 @@ impl Part {
                 Some((_, Place::Bin(bin))) => Some(bin.clone()),
                 _ => None,
             },
+            serial: self.code.clone(),
             ..self.specimen.truth()
         }
     }
@@ -81,6 +84,8 @@ pub struct Magazine {
     filled_at: (u64, u64),
     track_c: f64,
     ambient_c: f64,
+    /// True when lot parts have a code.
+    codes: bool,
 }
 
 impl Magazine {
@@ -107,12 +112,19 @@ impl Magazine {
             filled_at: (0, 0),
             track_c,
             ambient_c,
+            codes: false,
         })
+    }
+
+    /// Marks each lot part with a code, when the rig has a code reader.
+    pub fn with_codes(self, codes: bool) -> Self {
+        Self { codes, ..self }
     }
 
     /// Continues the counts of the magazine `before`, so that no lot part comes twice.
     pub fn continuing(mut self, before: &Self) -> Self {
         (self.out, self.filled_at) = (before.out, before.out);
+        self.codes = before.codes;
         self
     }
 
@@ -162,17 +174,19 @@ impl Magazine {
             specimen,
             seq: 0,
             number,
+            code: number
+                .filter(|_| self.codes)
+                .map(|n| self.code(n - 1, faults)),
             double: faults.strikes(Fault::DoublePart, number),
             path: vec![(now_us, Place::Pocket)],
         })
     }
 
-    /// Creates a lot part; a part that a fault feeds again has the same body with fresh operations.
+    /// Creates lot part `index`, counted from 0. Under the fault `refeed` the same parts come round again, and the
+    /// scatter of their operations is drawn anew each time.
     fn lot_part(&self, index: u64, now_us: u64, faults: &mut WorldFaults) -> Specimen {
-        let asked = |fault| faults.values(fault).next().map(|it| it as u64);
-        let seed = asked(Fault::PartsSeed).unwrap_or(self.seed);
         let noise = faults.noise_seed().unwrap_or(self.seed);
-        let body = asked(Fault::Refeed).map_or(index, |parts| index % parts.max(1));
+        let (seed, body) = self.body(index, faults);
         let draw = Draw::new(noise, Subject::LotOperations, index);
         let number = Some(index + 1);
         let arrival = Arrival {
@@ -183,6 +197,21 @@ impl Magazine {
             ..self.arrival(now_us, draw)
         };
         self.lot.part(seed, body, arrival)
+    }
+
+    /// Returns seed and number (from 0) of the body that comes as lot part `index`.
+    fn body(&self, index: u64, faults: &WorldFaults) -> (u64, u64) {
+        let asked = |fault| faults.values(fault).next().map(|it| it as u64);
+        let seed = asked(Fault::PartsSeed).unwrap_or(self.seed);
+        let body = asked(Fault::Refeed).map_or(index, |parts| index % parts.max(1));
+        (seed, body)
+    }
+
+    /// Returns the serial number in the code of lot part `index`.
+    fn code(&self, index: u64, faults: &mut WorldFaults) -> String {
+        let copied = faults.strikes(Fault::DuplicateCode, Some(index + 1));
+        let (seed, body) = self.body(index - u64::from(copied).min(index), faults);
+        format!("R{seed:04X}-{:06}", body + 1)
     }
 
     /// Creates a reference part; after the last one the first one repeats.

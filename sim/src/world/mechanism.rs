@@ -18,7 +18,7 @@ use super::magazine::{Magazine, Part};
 use super::places::Places;
 use super::signal::{Commands, In, Out};
 use super::table::MechanismTable;
-use crate::config::Bin;
+use crate::config::{Bin, CodeReader};
 use crate::truth::{BodyTruth, Place};
 use posture::CrashWatch;
 use std::collections::VecDeque;
@@ -71,6 +71,7 @@ enum Scheduled {
     Dark(In),
     Lit(In),
     Land(String, Box<Part>),
+    ReadCode(String),
     Strike(Fault),
     End(Fault),
 }
@@ -87,6 +88,9 @@ pub struct Mechanism {
     bins: Vec<Bin>,
     lookout: CrashWatch,
     magazine: Magazine,
+    code_reader: Option<CodeReader>,
+    /// Texts that the code reader has sent.
+    codes: Vec<String>,
     /// Parts by their place.
     pub places: Places,
     faults: WorldFaults,
@@ -106,7 +110,7 @@ impl Mechanism {
         table: &MechanismTable,
         axis: Axis,
         (bins, bodies): (Vec<Bin>, Bodies),
-        magazine: Magazine,
+        (magazine, code_reader): (Magazine, Option<CodeReader>),
         faults: WorldFaults,
         draw: Draw,
     ) -> Self {
@@ -131,6 +135,8 @@ impl Mechanism {
             bins,
             lookout: CrashWatch::new(bodies),
             magazine,
+            code_reader,
+            codes: Vec::new(),
             places: Places::default(),
             faults,
             draw,
@@ -179,6 +185,11 @@ impl Mechanism {
     /// Returns the start (microseconds) and actuator of the last [`MOTION_STARTS_KEPT`] motions that an output caused.
     pub fn motion_starts(&self) -> impl Iterator<Item = (u64, &'static str)> + '_ {
         self.driven.iter().copied()
+    }
+
+    /// Removes and returns the texts that the code reader has sent so far.
+    pub fn take_codes(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.codes)
     }
 
     fn note_driven(&mut self, now_us: u64, what: &'static str) {
@@ -375,6 +386,7 @@ impl Mechanism {
             Scheduled::Slip | Scheduled::TakenOut => self.drop_carried(now_us),
             Scheduled::Trip => self.axis.trip(now_us),
             Scheduled::Dark(beam) => self.dark.push(beam),
+            Scheduled::ReadCode(text) => self.codes.push(text),
             Scheduled::Lit(beam) => self.dark.retain(|&b| b != beam),
             Scheduled::Land(bin, mut part) => {
                 part.arrive(now_us, Place::Bin(bin));

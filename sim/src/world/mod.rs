@@ -119,7 +119,10 @@ impl World {
             &table.mechanism,
             axis,
             (rig.bins, bodies),
-            magazine,
+            (
+                magazine.with_codes(rig.code_reader.is_some()),
+                rig.code_reader,
+            ),
             faults,
             strokes,
         );

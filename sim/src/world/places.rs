@@ -42,12 +42,6 @@ impl Places {
         self.done.extend(part.bodies());
     }
 
-    /// Returns the number in the lot of the part between the fingers.
-    pub fn held_number(&self) -> Option<u64> {
-        let nest = self.nest.as_ref().filter(|_| self.gripped);
-        self.carried.as_ref().or(nest).and_then(|p| p.number)
-    }
-
     /// Returns the truth of every lot part that has entered the nest, in that order.
     pub fn truth(&self) -> Vec<PartTruth> {
         let inside = [&self.nest, &self.carried].into_iter().flatten();

@@ -21,6 +21,10 @@ impl WorldRecord for World {
         self.mechanism.bodies()
     }
 
+    fn take_codes(&mut self) -> Vec<String> {
+        self.mechanism.take_codes()
+    }
+
     fn cancel_faults(&mut self) {
         self.mechanism.cancel_faults();
     }

@@ -5,8 +5,6 @@
 
 use std::ops::{Deref, DerefMut};
 
-use serde::Deserialize;
-
 use super::WorldOptions;
 use super::draw::Draw;
 use super::probes::{Change, Contact, Pins, Supply};
@@ -51,17 +49,6 @@ pub trait ProbeInterface {
 
     /// Returns the true values so far, without sequence number and bin.
     fn truth(&self) -> PartTruth;
-}
-
-/// Kind of a lot, key `kind` of its recipe; without that key the recipe is for relays.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum LotKind {
-    /// Electromagnetic relays with one changeover contact.
-    #[default]
-    EmRelay,
-    /// Dummies with one resistor each, to check the fixture.
-    Resistor,
 }
 
 /// A part that has left the magazine, of any kind.
@@ -120,15 +107,20 @@ pub enum Lot {
 }
 
 impl Lot {
-    /// Reads the lot of a recipe.
+    /// Reads the lot of a recipe; without key `kind` the recipe is for relays.
     ///
     /// # Errors
     /// Fails when the recipe or a file of its kind cannot be read, or the kind is unknown.
     pub fn read(options: &WorldOptions, world: &WorldTable) -> Result<Self, ConfigError> {
-        Ok(match read_kind(options)? {
-            LotKind::EmRelay => Self::Relay(Box::new(relay::Lot::read(options, world)?)),
-            LotKind::Resistor => Self::Resistor(resistor::Lot::new(world)),
-        })
+        let recipe = options.files.recipe(&options.recipe)?;
+        match recipe.get::<Option<String>>("kind")?.as_deref() {
+            None | Some("em_relay") => {
+                let lot = relay::Lot::read(&recipe, options, world)?;
+                Ok(Self::Relay(Box::new(lot)))
+            }
+            Some("resistor") => Ok(Self::Resistor(resistor::Lot::new(world))),
+            Some(_) => Err(recipe.wrong("kind", "em_relay or resistor")),
+        }
     }
 
     /// Returns the number of reference parts.
@@ -163,15 +155,4 @@ impl Lot {
             Self::Resistor(_) => None,
         }
     }
-}
-
-#[derive(Deserialize)]
-struct RecipeFile {
-    #[serde(default)]
-    kind: LotKind,
-}
-
-fn read_kind(options: &WorldOptions) -> Result<LotKind, ConfigError> {
-    let file: RecipeFile = options.files.recipe(&options.recipe)?;
-    Ok(file.kind)
 }

@@ -6,20 +6,19 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use serde::Deserialize;
-
 use super::relay::table::{DefectTable, LotTable, RelayTable};
 use super::resistor::ResistorTable;
 use crate::config::{ConfigError, Files};
-use crate::files::TextFile;
+use crate::table::{Read, Table};
 
 macro_rules! table {
     ($(#[$doc:meta])* $name:ident { $($field:ident : $ty:ty),* $(,)? }) => {
         $(#[$doc])*
-        #[derive(Debug, Clone, Deserialize)]
-        #[serde(deny_unknown_fields)]
+        #[derive(Debug, Clone)]
         #[allow(missing_docs)] // each key is explained beside its value in config/sim.toml
         pub struct $name { $(pub $field: $ty),* }
+
+        crate::table::read_fields!($name { $($field),* }, finish);
     };
 }
 pub(super) use table;
@@ -80,53 +79,9 @@ table!(
 /// Fails when a file cannot be read, is not TOML, has an unknown key or a value of the wrong type, or describes
 /// an impossible relay.
 pub fn read_world(files: &Files, other: Option<&Path>) -> Result<WorldTable, ConfigError> {
-    let read = match other {
-        Some(path) => TextFile::read(path)?,
-        None => files.read("sim.toml")?,
-    };
-    let world = match toml::from_str::<WorldTable>(&read.text) {
-        Ok(world) => world,
-        Err(e) if other.is_some() && e.message().starts_with("missing field") => {
-            overlay(&files.read("sim.toml")?, &read)?
-        }
-        Err(e) => return Err(read.refuse(&e)),
-    };
-    let Some((name, expected)) = world.relay.lumped.fault() else {
-        return Ok(world);
-    };
-    let found = world.relay.lumped.get(name).unwrap_or(f64::NAN);
-    Err(ConfigError::Content {
-        line: line_of_key(&read.text, &format!("`{name} =`")),
-        path: read.path,
-        message: format!("relay.lumped.{name}: found {found}, expected {expected}"),
-    })
-}
-
-/// Merges a partial world into the default one.
-fn overlay(base: &TextFile, over: &TextFile) -> Result<WorldTable, ConfigError> {
-    let mut merged: toml::Table = base.parse()?;
-    merge(&mut merged, over.parse()?);
-    toml::from_str(&merged.to_string()).map_err(|e| ConfigError::Content {
-        path: over.path.clone(),
-        line: line_of_key(&over.text, e.message()),
-        message: e.message().to_owned(),
-    })
-}
-
-fn merge(base: &mut toml::Table, over: toml::Table) {
-    for (key, value) in over {
-        match (base.get_mut(&key), value) {
-            (Some(toml::Value::Table(inner)), toml::Value::Table(more)) => merge(inner, more),
-            (_, value) => {
-                base.insert(key, value);
-            }
-        }
+    let mut world = files.read("sim.toml")?;
+    if let Some(path) = other {
+        world.overlay(Table::of_file(path)?);
     }
-}
-
-/// Returns the line of the first key that the message quotes; 0 if the text lacks it.
-fn line_of_key(text: &str, message: &str) -> usize {
-    let key = message.split('`').nth(1).unwrap_or_default();
-    let names = |l: &str| !key.is_empty() && l.trim_start_matches(['[', ' ']).starts_with(key);
-    text.lines().position(names).map_or(0, |i| i + 1)
+    WorldTable::read(&world.into_entry())
 }

@@ -67,13 +67,3 @@ fn two_modules_at_one_address_corrupt_both_replies() {
     assert_ne!(reply, "!017017");
     assert_ne!(reply, "!017060");
 }
-
-#[test]
-fn an_invalid_bench_file_names_the_key() {
-    let unknown = bench::build_text("[[module]]\naddress = 1\nmodel = \"I-7017\"\ninput = [1]");
-    assert!(unknown.is_err_and(|error| error.to_string().contains("`input`")));
-    let model = bench::build_text("[[module]]\naddress = 1\nmodel = \"I-9999\"");
-    assert!(model.is_err_and(|error| error.to_string().contains("I-9999")));
-    let range = bench::build_text("[[module]]\naddress = 1\nmodel = \"I-7017\"\nrange = \"40\"");
-    assert!(range.is_err_and(|error| error.to_string().contains("range")));
-}

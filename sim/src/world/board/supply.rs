@@ -4,15 +4,14 @@
 //! otherwise the supply keeps its range. The factor of the range multiplies the gains of the sources and the movement
 //! that starts a ramp.
 
-use serde::Deserialize;
-
+use crate::table::read_fields;
 use crate::truth::Overdrive;
 use crate::world::signal::{Commands, Out, Source};
 use crate::world::table::BoardTable;
 use crate::world::wiring::Wiring;
 
 /// Range of the amplifier, from the table `[supply_range]` of `rig.toml`.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SupplyRange {
     /// State of the two range outputs, bit n = `supply_range_n`.
     pub code: u8,
@@ -23,6 +22,13 @@ pub struct SupplyRange {
     /// Current limit, mA.
     pub max_ma: f64,
 }
+
+read_fields!(SupplyRange {
+    code,
+    factor,
+    max_v,
+    max_ma
+});
 
 /// Sources, range and limits of the supply.
 #[derive(Debug, Clone)]

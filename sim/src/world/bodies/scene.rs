@@ -1,35 +1,30 @@
 //! Bodies, actuators and contact rules of the rig, read from `scene.toml` for the simulated rig alone.
 
-use serde::Deserialize;
-
 use crate::config::{ConfigError, Files};
+use crate::table::{Entry, Read, read_fields};
 
 /// A body that is fixed or moves with an actuator.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone)]
 pub struct Element {
     /// Name.
     pub id: String,
     /// Actuator that carries it.
     pub rides: Option<String>,
     /// Shape and pose.
-    #[serde(flatten)]
     pub body: Body,
 }
 
 /// A shape with its pose.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone)]
 pub struct Body {
     /// Shape.
-    #[serde(flatten)]
     pub form: Form,
     /// Pose in the machine, or in the compound that contains the shape; identity by default.
-    #[serde(default)]
     pub pose: Placement,
 }
 
 /// Shapes; lengths in mm.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(tag = "kind", rename_all = "lowercase")]
+#[derive(Debug, Clone)]
 pub enum Form {
     /// Box with these half edges.
     Block { half: [f64; 3] },
@@ -40,8 +35,7 @@ pub enum Form {
 }
 
 /// Position in mm and rotation as a quaternion w, x, y, z.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(default)]
+#[derive(Debug, Clone, Copy)]
 pub struct Placement {
     /// Position of the centre, mm.
     pub position: [f64; 3],
@@ -59,7 +53,7 @@ impl Default for Placement {
 }
 
 /// An actuator that moves bodies.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone)]
 pub struct Actuator {
     /// Name.
     pub id: String,
@@ -70,12 +64,11 @@ pub struct Actuator {
     /// Actuator that carries this one.
     pub rides: Option<String>,
     /// Elements that move in the opposite direction.
-    #[serde(default)]
     pub opposed: Vec<String>,
 }
 
 /// Rule for two bodies or two groups of bodies.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone)]
 pub struct Pair {
     /// First body; a trailing `*` matches any ending.
     pub a: String,
@@ -86,13 +79,11 @@ pub struct Pair {
     /// Depth to which the two may press into each other, mm.
     pub depth_mm: Option<f64>,
     /// Actuators that may press them together; empty for any.
-    #[serde(default)]
     pub by: Vec<String>,
 }
 
 /// Contact rule of a pair.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rule {
     /// The bodies must not touch.
     Forbidden,
@@ -103,7 +94,7 @@ pub enum Rule {
 }
 
 /// Places of a part (middle of the lower rear edge of its body), its contact depth and the inset of its pins.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone)]
 pub struct PartPlaces {
     /// Depth up to which a contact does not count, mm.
     pub touch_depth_mm: f64,
@@ -116,7 +107,7 @@ pub struct PartPlaces {
 }
 
 /// Content of `scene.toml`.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone)]
 pub struct Scene {
     /// Places of a part, from the table `[guard]`.
     pub guard: PartPlaces,
@@ -124,8 +115,7 @@ pub struct Scene {
     pub actuator: Vec<Actuator>,
     /// All elements.
     pub elements: Vec<Element>,
-    /// Contact rules.
-    #[serde(default)]
+    /// Pairs of bodies, each with the rule whether the two may touch.
     pub pair: Vec<Pair>,
 }
 
@@ -149,7 +139,7 @@ impl Pair {
 }
 
 /// Size of the parts of a recipe, mm.
-#[derive(Debug, Clone, Copy, Deserialize)]
+#[derive(Debug, Clone, Copy)]
 pub struct Size {
     /// Extent along x, y, z without pins.
     pub body_mm: [f64; 3],
@@ -157,17 +147,77 @@ pub struct Size {
     pub pin_length_mm: f64,
 }
 
-#[derive(Deserialize)]
-struct RecipeFile {
-    part: Size,
-}
-
 /// Reads the scene and the part size of a recipe.
 ///
 /// # Errors
 /// Fails when a file cannot be read or lacks a required key.
 pub fn read(files: &Files, recipe: &str) -> Result<(Scene, Size), ConfigError> {
-    let scene: Scene = files.read("scene.toml")?.parse()?;
-    let file: RecipeFile = files.recipe(recipe)?;
-    Ok((scene, file.part))
+    let scene = Scene::read(&files.read("scene.toml")?.into_entry())?;
+    Ok((scene, files.recipe(recipe)?.get("part")?))
+}
+
+read_fields!(Scene { guard, actuator, elements, pair = Vec::new() });
+read_fields!(PartPlaces {
+    touch_depth_mm,
+    pin_inset_mm,
+    pocket,
+    nest
+});
+read_fields!(Actuator { id, axis, stroke_mm, rides, opposed = Vec::new() });
+read_fields!(Pair { a, b, rule, depth_mm, by = Vec::new() });
+read_fields!(Size {
+    body_mm,
+    pin_length_mm
+});
+read_fields!(Placement { position = Self::default().position, rotation = Self::default().rotation });
+
+impl Read for Element {
+    const FORM: &'static str = "a table";
+
+    fn read(entry: &Entry) -> Result<Self, ConfigError> {
+        let keys = entry.table()?;
+        Ok(Self {
+            id: keys.get("id")?,
+            rides: keys.get("rides")?,
+            body: Body::read(entry)?,
+        })
+    }
+}
+
+impl Read for Body {
+    const FORM: &'static str = "a table";
+
+    fn read(entry: &Entry) -> Result<Self, ConfigError> {
+        let keys = entry.table()?;
+        let form = match keys.get::<String>("kind")?.as_str() {
+            "block" => Form::Block {
+                half: keys.get("half")?,
+            },
+            "cylinder" => Form::Cylinder {
+                radius: keys.get("radius")?,
+                height: keys.get("height")?,
+            },
+            "compound" => Form::Compound {
+                parts: keys.get("parts")?,
+            },
+            _ => return Err(keys.wrong("kind", "block, cylinder or compound")),
+        };
+        Ok(Self {
+            form,
+            pose: keys.get_or("pose", Placement::default())?,
+        })
+    }
+}
+
+impl Read for Rule {
+    const FORM: &'static str = "forbidden, may_touch or ignore";
+
+    fn read(entry: &Entry) -> Result<Self, ConfigError> {
+        match entry.text() {
+            Some("forbidden") => Ok(Self::Forbidden),
+            Some("may_touch") => Ok(Self::MayTouch),
+            Some("ignore") => Ok(Self::Ignore),
+            Some(_) | None => Err(entry.wrong(Self::FORM)),
+        }
+    }
 }

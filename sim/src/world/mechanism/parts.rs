@@ -14,6 +14,9 @@ fn moved(from: &mut Option<Box<Part>>, now_us: u64, to: Place) -> Option<Box<Par
     Some(part)
 }
 
+/// Time that the code reader takes for a part, microseconds.
+const CODE_READ_US: u64 = 120_000;
+
 impl Mechanism {
     /// Moves parts at the start of a stroke.
     pub(super) fn stroke_began(&mut self, stroke: CylinderId, far: bool, now_us: u64) {
@@ -68,6 +71,22 @@ impl Mechanism {
             return;
         }
         self.places.pocket = self.magazine.take(now_us, &mut self.faults).map(Box::new);
+        self.read_code(now_us);
+    }
+
+    /// Lets the code reader look at the part that has come into the pocket.
+    fn read_code(&mut self, now_us: u64) {
+        let (Some(reader), Some(part)) = (&self.code_reader, &self.places.pocket) else {
+            return;
+        };
+        let unreadable = self.faults.strikes(Fault::UnreadableCode, part.number);
+        let code = part.code.clone().filter(|_| !unreadable);
+        let text = code.unwrap_or_else(|| reader.no_code.clone());
+        if !text.is_empty() {
+            let at_us = now_us + CODE_READ_US;
+            self.scheduled.push((at_us, Scheduled::ReadCode(text)));
+            self.schedule();
+        }
     }
 
     pub(super) fn push_into_nest(&mut self, now_us: u64) {

@@ -11,7 +11,7 @@ use crate::world::probes::{Change, Contact};
 impl Relay {
     /// Handles a contact that the motion has touched or left.
     pub(super) fn touched(&mut self, event: &Event) -> Option<Change> {
-        let contact = match event.kind {
+        let contact = match event.element {
             Element::No => Contact::No,
             Element::Nc => Contact::Nc,
             Element::Backstop | Element::Seat | Element::CoilBlocked => return None,

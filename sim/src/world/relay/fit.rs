@@ -219,7 +219,7 @@ impl FitTarget {
 fn first_make(model: &Model, start: State, drive: &Drive, contact: Element) -> f64 {
     let mut solver = Solver::new(model, drive, 0.0, start, RTOL);
     while let Ok(Some(event)) = solver.advance(model, drive, LONGEST_S) {
-        if event.kind == contact && event.on {
+        if event.element == contact && event.on {
             return event.t_s;
         }
     }

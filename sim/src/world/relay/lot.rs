@@ -1,9 +1,10 @@
 //! A lot of relays with its reference parts.
 
 use super::Relay;
-use super::certificate::{Certificate, read_certificates, read_scale};
+use super::certificate::{Certificate, read_certificates};
 use super::values::{RelayValues, Scale};
 use crate::config::ConfigError;
+use crate::table::Table;
 use crate::world::WorldOptions;
 use crate::world::specimen::Arrival;
 use crate::world::table::WorldTable;
@@ -20,12 +21,15 @@ impl Lot {
     /// Reads the relays of a recipe; with `options.reference_parts` also the reference parts of their nominal voltage.
     ///
     /// # Errors
-    /// Fails when the recipe or the certificates cannot be read.
-    pub fn read(options: &WorldOptions, world: &WorldTable) -> Result<Self, ConfigError> {
-        let files = &options.files;
-        let scale = read_scale(files, &options.recipe)?;
+    /// Fails when the recipe lacks the nominal values, or the certificates cannot be read.
+    pub fn read(
+        recipe: &Table,
+        options: &WorldOptions,
+        world: &WorldTable,
+    ) -> Result<Self, ConfigError> {
+        let scale: Scale = recipe.get("part")?;
         let certificates = match options.reference_parts {
-            true => read_certificates(files, scale.nominal_v)?,
+            true => read_certificates(&options.files, scale.nominal_v)?,
             false => Vec::new(),
         };
         Ok(Self {

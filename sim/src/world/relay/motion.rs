@@ -84,8 +84,8 @@ impl Motion {
     }
 
     /// Checks whether a contact or stop is touched now.
-    pub fn touches(&self, kind: Element) -> bool {
-        self.model.stops.overlap(kind, &self.solver.state) > 0.0
+    pub fn touches(&self, element: Element) -> bool {
+        self.model.stops.overlap(element, &self.solver.state) > 0.0
     }
 
     /// Checks whether the armature is at a stop: pressed on it, or within a fiftieth of the travel.

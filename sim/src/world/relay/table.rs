@@ -2,8 +2,6 @@
 //!
 //! `config/sim.toml` describes each key beside its value.
 
-use serde::Deserialize;
-
 use super::lumped::Parameters;
 use crate::world::table::table;
 

@@ -7,8 +7,6 @@
 
 mod lot;
 
-use serde::Deserialize;
-
 use super::probes::{Change, Pins, Supply};
 use super::specimen::{ProbeInterface, REFERENCE_C};
 use crate::truth::PartTruth;

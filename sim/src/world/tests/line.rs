@@ -193,7 +193,9 @@ fn an_unknown_world_key_names_file_and_line() {
     std::fs::write(&path, "[lot]\noperate_v_mean = 7.7\n").unwrap();
     let world = read_world(&files(), Some(&path)).unwrap();
     assert!(
-        error.contains(".toml:3: unknown field `operate_v_men`"),
+        error.contains(
+            ".toml:3: lot.operate_v_men: found an unknown key, expected one of bounce_ln_sd, "
+        ),
         "{error}"
     );
     assert_eq!(world.lot.operate_v_mean, 7.7);

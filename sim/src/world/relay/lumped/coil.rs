@@ -55,7 +55,7 @@ impl Waveform {
         }
     }
 
-    /// Returns the section at an instant, and the end of that section in seconds.
+    /// Returns the drive at `t_s`, and the time at which that section of the waveform ends, s (infinite for the last).
     pub fn piece(&self, t_s: f64) -> (Drive, f64) {
         let next = self.0.partition_point(|p| p[0] <= t_s);
         let end = self.0.get(next).map_or(f64::INFINITY, |p| p[0]);

@@ -182,22 +182,22 @@ impl Model {
 
     /// Returns the gap function of an element; a value above zero sets the flag of the element.
     #[inline]
-    pub fn gap(&self, kind: Element, s: &State, drive: &Drive) -> f64 {
-        match (kind, drive) {
+    pub fn gap(&self, element: Element, s: &State, drive: &Drive) -> f64 {
+        match (element, drive) {
             (Element::CoilBlocked, Drive::Source { .. }) => -1.0,
             (Element::CoilBlocked, Drive::Suppression { volts }) => {
                 let current = self.still_current(s);
                 self.blocked_rate(current) - (-volts - self.ohm * current) * self.eddy
             }
-            _ => self.stops.overlap(kind, s),
+            _ => self.stops.overlap(element, s),
         }
     }
 
     /// Returns the flags that belong to a state.
     pub fn modes(&self, s: &State, drive: &Drive) -> Modes {
         let mut modes = Modes::default();
-        for kind in Element::TOUCHING.into_iter().chain([Element::CoilBlocked]) {
-            modes.set(kind, self.gap(kind, s, drive) > 0.0);
+        for element in Element::TOUCHING.into_iter().chain([Element::CoilBlocked]) {
+            modes.set(element, self.gap(element, s, drive) > 0.0);
         }
         modes
     }

@@ -43,13 +43,13 @@ pub struct Modes([bool; 5]);
 impl Modes {
     /// Checks whether an element is engaged.
     #[inline]
-    pub fn is_engaged(self, kind: Element) -> bool {
-        self.0[kind as usize]
+    pub fn is_engaged(self, element: Element) -> bool {
+        self.0[element as usize]
     }
 
     /// Sets or clears the flag of an element.
-    pub fn set(&mut self, kind: Element, on: bool) {
-        self.0[kind as usize] = on;
+    pub fn set(&mut self, element: Element, on: bool) {
+        self.0[element as usize] = on;
     }
 }
 
@@ -65,8 +65,8 @@ pub struct StopPositions {
 impl StopPositions {
     /// Returns the overlap at a stop, m; above zero while the bodies press.
     #[inline]
-    pub fn overlap(self, kind: Element, s: &State) -> f64 {
-        match kind {
+    pub fn overlap(self, element: Element, s: &State) -> f64 {
+        match element {
             Element::Backstop => -s[X],
             Element::Seat => s[X] - self.seat,
             Element::Nc => -s[Y],
@@ -77,8 +77,8 @@ impl StopPositions {
 
     /// Returns the rate of that overlap, m/s.
     #[inline]
-    pub fn rate(self, kind: Element, s: &State) -> f64 {
-        match kind {
+    pub fn rate(self, element: Element, s: &State) -> f64 {
+        match element {
             Element::Backstop => -s[V],
             Element::Seat => s[V],
             Element::Nc => -s[W],

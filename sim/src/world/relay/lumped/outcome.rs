@@ -36,10 +36,10 @@ pub struct Outcome {
 impl Outcome {
     /// Derives the results from a list of events.
     pub fn of(events: &[Event]) -> Self {
-        let of = |kind: Element| events.iter().filter(move |e| e.kind == kind);
-        let first = |kind: Element, on: bool| of(kind).find(|e| e.on == on);
+        let of = |element: Element| events.iter().filter(move |e| e.element == element);
+        let first = |element: Element, on: bool| of(element).find(|e| e.on == on);
         let at = |event: Option<&Event>| event.map(|e| e.t_s);
-        let makes = |kind: Element| of(kind).filter(|e| e.on).count() as u32;
+        let makes = |element: Element| of(element).filter(|e| e.on).count() as u32;
         Self {
             nc_first_open: at(first(Element::Nc, false)),
             nc_first_make: at(first(Element::Nc, true)),
@@ -54,22 +54,5 @@ impl Outcome {
             no_first_make_speed: first(Element::No, true).map(|e| e.state[W]),
             seat_first_speed: first(Element::Seat, true).map(|e| e.state[V]),
         }
-    }
-
-    /// Returns the open time of a contact between its first closing and its last change, s.
-    pub fn open_s(events: &[Event], contact: Element) -> f64 {
-        let mut own = events
-            .iter()
-            .filter(|e| e.kind == contact)
-            .skip_while(|e| !e.on);
-        let (mut total, mut since) = (0.0, None);
-        for event in own.by_ref() {
-            match (event.on, since.take()) {
-                (true, Some(from)) => total += event.t_s - from,
-                (false, _) => since = Some(event.t_s),
-                (true, None) => {}
-            }
-        }
-        total
     }
 }

@@ -1,14 +1,14 @@
 //! Parameters of one relay, in SI units.
 
-use serde::Deserialize;
+use crate::config::ConfigError;
+use crate::table::{Entry, Read};
 
 macro_rules! parameters {
     ($($(#[$doc:meta])* $name:ident = $value:expr, $rule:ident;)*) => {
         /// Parameters of a relay with the names of the equations in [`super`]; all coordinates refer to the pole
         /// face. The default is the reference relay of this project: 12 V, 400 ohm, one changeover contact.
         #[allow(non_snake_case)] // the names of the equations and of the files that carry them
-        #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-        #[serde(deny_unknown_fields)]
+        #[derive(Debug, Clone, Copy, PartialEq)]
         pub struct Parameters { $($(#[$doc])* pub $name: f64),* }
 
         impl Parameters {
@@ -96,6 +96,23 @@ impl Parameters {
     /// Returns the coil resistance at the temperature of the copper, ohm.
     pub fn coil_ohm(&self) -> f64 {
         self.R23 * (1.0 + self.alpha23 * (self.T - 23.0))
+    }
+}
+
+impl Read for Parameters {
+    const FORM: &'static str = "a table";
+
+    fn read(entry: &Entry) -> Result<Self, ConfigError> {
+        let keys = entry.table()?;
+        let mut own = Self::default();
+        for name in Self::NAMES {
+            own.set(name, keys.get(name)?);
+        }
+        keys.finish()?;
+        match own.fault() {
+            None => Ok(own),
+            Some((name, expected)) => Err(keys.wrong(name, expected)),
+        }
     }
 }
 

@@ -19,7 +19,7 @@ pub struct Event {
     /// Instant, s.
     pub t_s: f64,
     /// Element whose mode changes.
-    pub kind: Element,
+    pub element: Element,
     /// True when the element engages, false when it becomes free.
     pub on: bool,
     /// The state at that instant.
@@ -113,8 +113,8 @@ impl Solver {
                 continue;
             }
             let (h, state) = self.cut_at_graze(model, drive, &slope, h, tried.state);
-            if let Some((h, state, kind)) = self.first_change(model, drive, &slope, h, state) {
-                return Ok(Some(self.change(h, state, kind)));
+            if let Some((h, state, element)) = self.first_change(model, drive, &slope, h, state) {
+                return Ok(Some(self.change(h, state, element)));
             }
             self.t_s = if h == whole { until_s } else { self.t_s + h };
             self.state = state;
@@ -161,15 +161,15 @@ impl Solver {
         Ok(())
     }
 
-    fn change(&mut self, h: f64, state: State, kind: Element) -> Event {
-        let on = !self.modes.is_engaged(kind);
+    fn change(&mut self, h: f64, state: State, element: Element) -> Event {
+        let on = !self.modes.is_engaged(element);
         self.t_s += h;
         self.state = state;
-        self.modes.set(kind, on);
+        self.modes.set(element, on);
         self.h = self.h.min(SHORT_S);
         Event {
             t_s: self.t_s,
-            kind,
+            element,
             on,
             state,
         }
@@ -185,16 +185,16 @@ impl Solver {
         state: State,
     ) -> (f64, State) {
         let mut best = (h, state);
-        for kind in Element::TOUCHING {
-            let side = if self.modes.is_engaged(kind) {
+        for element in Element::TOUCHING {
+            let side = if self.modes.is_engaged(element) {
                 1.0
             } else {
                 -1.0
             };
             let of = |s: &State| {
                 (
-                    side * model.stops.overlap(kind, s),
-                    side * model.stops.rate(kind, s),
+                    side * model.stops.overlap(element, s),
+                    side * model.stops.rate(element, s),
                 )
             };
             let ((from, falls), (to, rises)) = (of(&self.state), of(&state));
@@ -221,32 +221,32 @@ impl Solver {
     ) -> Option<(f64, State, Element)> {
         let mut first = None;
         let (mut h, mut state) = (h, state);
-        for kind in Element::TOUCHING.into_iter().chain([Element::CoilBlocked]) {
-            if (model.gap(kind, &state, drive) > 0.0) != self.modes.is_engaged(kind) {
-                (h, state) = self.locate(model, drive, slope, kind, h, state);
-                first = Some((h, state, kind));
+        for element in Element::TOUCHING.into_iter().chain([Element::CoilBlocked]) {
+            if (model.gap(element, &state, drive) > 0.0) != self.modes.is_engaged(element) {
+                (h, state) = self.locate(model, drive, slope, element, h, state);
+                first = Some((h, state, element));
             }
         }
         first
     }
 
-    /// Returns the step length, at most `h`, at which the gap function of the element `kind` is zero, and the state
+    /// Returns the step length, at most `h`, at which the gap function of the element is zero, and the state
     /// there. The gap function must have changed its sign by `h`.
     fn locate(
         &mut self,
         model: &Model,
         drive: &Drive,
         slope: &State,
-        kind: Element,
+        element: Element,
         h: f64,
         state: State,
     ) -> (f64, State) {
-        let side = if self.modes.is_engaged(kind) {
+        let side = if self.modes.is_engaged(element) {
             1.0
         } else {
             -1.0
         };
-        let gap = |s: &State| side * model.gap(kind, s, drive);
+        let gap = |s: &State| side * model.gap(element, s, drive);
         let (mut lo, mut low) = (0.0, gap(&self.state).max(0.0));
         let (mut hi, mut high) = (h, gap(&state));
         let (mut best, mut moved) = ((h, state), h);

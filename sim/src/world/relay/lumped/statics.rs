@@ -32,7 +32,7 @@ struct Load {
 
 impl Model {
     /// Returns the equilibrium at a travel and load.
-    fn balance(&self, x: f64, newtons: f64) -> Balance {
+    pub(super) fn balance(&self, x: f64, newtons: f64) -> Balance {
         let gap = self.p.X - x;
         let phi = self.flux_of(newtons, gap);
         let amperes = phi * self.reluctance(phi, gap) / self.p.N;
@@ -89,7 +89,7 @@ impl Model {
     }
 
     /// Returns the force of the leaf on NO at a travel, and its rate with the travel.
-    fn leaf_on_no(&self, x: f64) -> (f64, f64) {
+    pub(super) fn leaf_on_no(&self, x: f64) -> (f64, f64) {
         let p = &self.p;
         let depth = self.leaf_overlap(x + p.d0 - p.G, 0.0);
         let stiffness = self.contact.stiffness(depth);
@@ -133,12 +133,6 @@ impl Model {
         self.balance(load.x, load.newtons)
     }
 
-    /// Returns the pickup with rigid contacts, where the fold is a corner.
-    pub fn pickup_rigid(&self) -> Balance {
-        let x = (-self.p.d0).max(0.0);
-        self.balance(x, self.p.F_r0 + self.p.k_r * x)
-    }
-
     /// Returns the quasi-static release: the fold at which the armature leaves the seat. Where the load falls
     /// faster than the pull, the armature follows the voltage for a while and the fold lies before the seat; then
     /// the greatest travel at which the equilibrium reverses counts.
@@ -147,37 +141,6 @@ impl Model {
         let depth = root(deepest, |depth| -self.steepness(&self.load_on_seat(depth)));
         let load = self.load_on_seat(depth);
         self.balance(load.x, load.newtons)
-    }
-
-    /// Returns the release with rigid contacts and a rigid seat.
-    pub fn release_rigid(&self) -> Balance {
-        let p = &self.p;
-        let force = (p.k_l * (p.X + p.d0 - p.G)).max(0.0);
-        self.balance(p.X, p.F_r0 + p.k_r * p.X + force)
-    }
-
-    /// Returns the highest equilibrium voltage beyond the first fold, with rigid contacts; if it exceeds
-    /// [`Self::pickup`], the armature hangs there on its way.
-    pub fn second_hump(&self) -> Balance {
-        let p = &self.p;
-        let touch = p.G - p.d0;
-        let at = |x: f64| self.balance(x, p.F_r0 + p.k_r * x + self.leaf_on_no(x).0);
-        let (mut low, mut high) = (touch.min(p.X), p.X);
-        for _ in 0..200 {
-            let (a, b) = (low + 0.382 * (high - low), low + 0.618 * (high - low));
-            if at(a).volts < at(b).volts {
-                low = a;
-            } else {
-                high = b;
-            }
-        }
-        at(0.5 * (low + high))
-    }
-
-    /// Returns the flux linkage per ampere for small currents with the armature open or seated, H.
-    pub fn inductance(&self, seated: bool) -> f64 {
-        let gap = if seated { 0.0 } else { self.p.X };
-        self.p.N * self.p.N / self.reluctance(0.0, gap)
     }
 
     /// Returns the flux that a current sustains at a gap, Wb: `phi Rel(phi, g) = N i` in closed form.

@@ -159,7 +159,7 @@ fn holding_the_equilibrium_moves_no_instant_by_a_microsecond() {
     let last_make = whole
         .events
         .iter()
-        .filter(|e| e.kind == Element::No && e.t_s > 0.15 && e.on)
+        .filter(|e| e.element == Element::No && e.t_s > 0.15 && e.on)
         .map(|e| e.t_s);
     let found = [held[0], *held.iter().find(|t| **t > 150_000.0).unwrap()];
     let exact = [

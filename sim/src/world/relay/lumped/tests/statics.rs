@@ -1,6 +1,46 @@
 //! Tests of thresholds and equilibrium states, to twelve digits.
 
 use super::*;
+use crate::world::relay::lumped::statics::Balance;
+
+impl Model {
+    /// Returns the pickup with rigid contacts: the equilibrium where the break contact opens, a corner of the load.
+    fn pickup_rigid(&self) -> Balance {
+        let x = (-self.p.d0).max(0.0);
+        self.balance(x, self.p.F_r0 + self.p.k_r * x)
+    }
+
+    /// Returns the release with rigid contacts and a rigid seat.
+    fn release_rigid(&self) -> Balance {
+        let p = &self.p;
+        let force = (p.k_l * (p.X + p.d0 - p.G)).max(0.0);
+        self.balance(p.X, p.F_r0 + p.k_r * p.X + force)
+    }
+
+    /// Returns the highest equilibrium voltage after the make contact touches, with rigid contacts; if it exceeds
+    /// [`Self::pickup`], the armature stops there on its way.
+    fn second_hump(&self) -> Balance {
+        let p = &self.p;
+        let touch = p.G - p.d0;
+        let at = |x: f64| self.balance(x, p.F_r0 + p.k_r * x + self.leaf_on_no(x).0);
+        let (mut low, mut high) = (touch.min(p.X), p.X);
+        for _ in 0..200 {
+            let (a, b) = (low + 0.382 * (high - low), low + 0.618 * (high - low));
+            if at(a).volts < at(b).volts {
+                low = a;
+            } else {
+                high = b;
+            }
+        }
+        at(0.5 * (low + high))
+    }
+
+    /// Returns the flux linkage per ampere for small currents with the armature open or seated, H.
+    fn inductance(&self, seated: bool) -> f64 {
+        let gap = if seated { 0.0 } else { self.p.X };
+        self.p.N * self.p.N / self.reluctance(0.0, gap)
+    }
+}
 
 #[track_caller]
 fn same(found: f64, expected: f64) {

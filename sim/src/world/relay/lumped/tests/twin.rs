@@ -66,7 +66,7 @@ fn a_fixed_step_method_finds_the_same_bounces() {
         let own: Vec<f64> = run
             .events
             .iter()
-            .filter(|e| e.kind == Element::No)
+            .filter(|e| e.element == Element::No)
             .map(|e| e.t_s)
             .collect();
         assert_eq!(own.len(), plain.len(), "{own:?} {plain:?}");

@@ -1,0 +1,444 @@
+//! Digitizer of 12 bits and four channels, in two dialects.
+
+use std::collections::VecDeque;
+use std::ops::ControlFlow;
+
+use super::settings::{Kind, Setting, Settings};
+use super::{Accuracy, Body, Channel, Instrument, Outcome};
+use crate::scpi::circuit::{Circuit, Terminal};
+use crate::scpi::message::{Unit, block, nr3};
+use crate::scpi::status::Failure;
+
+const COMMAND_US: u64 = 300;
+const CHANNELS: usize = 4;
+/// Vertical and horizontal divisions of the range.
+const VERTICAL: f64 = 8.0;
+const HORIZONTAL: f64 = 10.0;
+/// Codes of the converter.
+const CODES: f64 = 4096.0;
+/// Time to send one byte of a block, microseconds.
+const BYTE_US: f64 = 0.4;
+
+/// Command set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Dialect {
+    /// `:SING`, `:TRIG:STAT?`, `:WAV:STAR`; offset and reference both in steps.
+    Rigol,
+    /// `:DIG`, `:WAV:BYT`; origin in volts.
+    Keysight,
+}
+
+use Kind::{Choice, Ignored, Number, Switch};
+const SOURCES: &[&str] = &["CHANnel1", "CHANnel2", "CHANnel3", "CHANnel4"];
+#[rustfmt::skip]
+const TABLE: &[Setting] = &[
+    Setting("shown", ":CHANnel#:DISPlay", Switch(true), CHANNELS),
+    Setting("scale", ":CHANnel#:SCALe", Number(5e-4, 1e3, 1.0), CHANNELS),
+    Setting("range", ":CHANnel#:RANGe", Number(4e-3, 8e3, 8.0), CHANNELS),
+    Setting("offset", ":CHANnel#:OFFSet", Number(-1e3, 1e3, 0.0), CHANNELS),
+    Setting("probe", ":CHANnel#:PROBe", Number(1e-3, 1e4, 1.0), CHANNELS),
+    Setting("coupling", ":CHANnel#:COUPling", Choice(&["DC", "AC", "GND"]), CHANNELS),
+    Setting("inverted", ":CHANnel#:INVert", Switch(false), CHANNELS),
+    Setting("bandwidth", ":CHANnel#:BWLimit", Ignored, CHANNELS),
+    Setting("label", ":CHANnel#:LABel", Ignored, CHANNELS),
+    Setting("time_scale", ":TIMebase[:MAIN]:SCALe", Number(1e-6, 10.0, 1e-3), 1),
+    Setting("time_range", ":TIMebase[:MAIN]:RANGe", Number(1e-5, 100.0, 1e-2), 1),
+    Setting("time_offset", ":TIMebase[:MAIN]:OFFSet", Number(-10.0, 10.0, 0.0), 1),
+    Setting("position", ":TIMebase:POSition", Number(-10.0, 10.0, 0.0), 1),
+    Setting("reference", ":TIMebase:REFerence", Choice(&["CENTer", "LEFT", "RIGHt"]), 1),
+    Setting("time_mode", ":TIMebase:MODE", Choice(&["MAIN", "WINDow", "XY", "ROLL"]), 1),
+    Setting("depth", ":ACQuire:MDEPth", Number(100.0, 1e6, 20_000.0), 1),
+    Setting("acquire", ":ACQuire:TYPE", Choice(&["NORMal", "AVERage", "HRESolution", "PEAK"]), 1),
+    Setting("acquire_mode", ":ACQuire:MODE", Choice(&["RTIMe", "SEGMented"]), 1),
+    Setting("trigger_mode", ":TRIGger:MODE", Choice(&["EDGE"]), 1),
+    Setting("sweep", ":TRIGger:SWEep", Choice(&["AUTO", "NORMal", "SINGle"]), 1),
+    Setting("trigger", ":TRIGger[:EDGE]:SOURce", Choice(SOURCES), 1),
+    Setting("level", ":TRIGger[:EDGE]:LEVel", Number(-1e3, 1e3, 0.0), 1),
+    Setting("slope", ":TRIGger[:EDGE]:SLOPe", Choice(&["POSitive", "NEGative"]), 1),
+    Setting("source", ":WAVeform:SOURce", Choice(SOURCES), 1),
+    Setting("mode", ":WAVeform:MODE", Choice(&["NORMal", "MAXimum", "RAW"]), 1),
+    Setting("points_mode", ":WAVeform:POINts:MODE", Choice(&["NORMal", "MAXimum", "RAW"]), 1),
+    Setting("format", ":WAVeform:FORMat", Choice(&["BYTE", "WORD", "ASCii"]), 1),
+    Setting("order", ":WAVeform:BYTeorder", Choice(&["MSBFirst", "LSBFirst"]), 1),
+    Setting("unsigned", ":WAVeform:UNSigned", Switch(true), 1),
+    Setting("start", ":WAVeform:STARt", Number(1.0, 1e6, 1.0), 1),
+    Setting("stop", ":WAVeform:STOP", Number(1.0, 1e6, 20_000.0), 1),
+    Setting("points", ":WAVeform:POINts", Number(100.0, 1e6, 20_000.0), 1),
+    Setting("header", ":SYSTem:HEADer", Ignored, 1),
+    Setting("preset", ":SYSTem:PRESet", Ignored, 1),
+];
+
+/// An acquisition in work.
+struct Capture {
+    next_us: u64,
+    step_us: u64,
+    points: usize,
+    before: usize,
+    /// Samples of every channel, oldest first, as converter codes.
+    samples: VecDeque<[u16; CHANNELS]>,
+    previous_v: Option<f64>,
+    /// Samples still to come after the trigger; `None` before it.
+    left: Option<usize>,
+    /// True when the acquisition needs no trigger.
+    forced: bool,
+}
+
+/// The digitizer with its acquisition and its memory.
+pub(super) struct Digitizer {
+    body: Body,
+    channels: Vec<Channel>,
+    dialect: Dialect,
+    settings: Settings,
+    capture: Option<Capture>,
+    memory: Vec<[u16; CHANNELS]>,
+    step_us: u64,
+    before: usize,
+    stopped: bool,
+}
+
+impl Digitizer {
+    pub(super) fn new(body: Body, mut channels: Vec<Channel>, dialect: Dialect) -> Self {
+        let spare = [
+            Terminal::Pulse,
+            Terminal::Output,
+            Terminal::Clamped,
+            Terminal::Load,
+        ];
+        for at in spare.into_iter().skip(channels.len()) {
+            channels.push(Channel { at, ratio: 1.0 });
+        }
+        Self {
+            body,
+            channels,
+            dialect,
+            settings: Settings::new(TABLE),
+            capture: None,
+            memory: Vec::new(),
+            step_us: 1,
+            before: 0,
+            stopped: true,
+        }
+    }
+
+    fn start(&mut self, now_us: u64, forced: bool) {
+        let points = self.settings.number("depth") as usize;
+        let range_s = self.settings.number("time_scale") * HORIZONTAL;
+        let step_us = (range_s * 1e6 / points as f64).round().max(1.0) as u64;
+        let reference = match self.settings.choice("reference") {
+            "LEFT" => 0.1,
+            "RIGHt" => 0.9,
+            _ => 0.5,
+        };
+        let offset = self.settings.number("time_offset") * 1e6 / step_us as f64;
+        let before = (points as f64 * reference - offset).clamp(0.0, points as f64) as usize;
+        self.stopped = false;
+        self.capture = Some(Capture {
+            next_us: now_us + step_us,
+            step_us,
+            points,
+            before,
+            samples: VecDeque::with_capacity(points),
+            previous_v: None,
+            left: None,
+            forced,
+        });
+    }
+
+    /// Converts what the channels see now; returns the codes and the volts of the trigger source.
+    fn convert(&mut self, circuit: &mut dyn Circuit) -> ([u16; CHANNELS], f64) {
+        let source = SOURCES
+            .iter()
+            .position(|it| *it == self.settings.choice("trigger"));
+        let (mut codes, mut trigger_v) = ([0; CHANNELS], 0.0);
+        for (number, code) in codes.iter_mut().enumerate() {
+            let channel = self.channels[number];
+            let seen = circuit.at(channel.at);
+            let seen = if channel.at == Terminal::Load {
+                seen.amps
+            } else {
+                seen.volts
+            };
+            let full = VERTICAL * self.settings.of("scale", number);
+            let accuracy = Accuracy {
+                gain: 3e-3,
+                offset: 1e-3 * full,
+                noise: 4e-4 * full,
+            };
+            let shown = seen * channel.ratio * self.settings.of("probe", number);
+            let shown = self.body.errors.apply(number, accuracy, shown);
+            let shown = if self.settings.of("inverted", number) != 0.0 {
+                -shown
+            } else {
+                shown
+            };
+            let scaled = (shown + self.offset(number)) / full + 0.5;
+            *code = (scaled * CODES).round().clamp(0.0, CODES - 1.0) as u16;
+            if Some(number) == source {
+                trigger_v = shown;
+            }
+        }
+        (codes, trigger_v)
+    }
+
+    /// Returns the volts that the offset adds before the converter: Keysight centres the screen on its offset.
+    fn offset(&self, channel: usize) -> f64 {
+        let offset = self.settings.of("offset", channel);
+        if self.dialect == Dialect::Rigol {
+            offset
+        } else {
+            -offset
+        }
+    }
+
+    fn source(&self) -> usize {
+        let source = self.settings.choice("source");
+        SOURCES
+            .iter()
+            .position(|it| *it == source)
+            .unwrap_or_default()
+    }
+
+    /// Returns the factor between a code of the converter and a step of the transferred data.
+    fn coarse(&self) -> f64 {
+        let is_byte = self.settings.choice("format") == "BYTE";
+        match (is_byte, self.dialect) {
+            (true, _) => 16.0,
+            (false, Dialect::Rigol) => 1.0,
+            // The codes fill the upper bits of a word.
+            (false, Dialect::Keysight) => 1.0 / 16.0,
+        }
+    }
+
+    fn window(&self) -> std::ops::Range<usize> {
+        let many = self.memory.len();
+        let (from, to) = match self.dialect {
+            Dialect::Rigol => (self.settings.number("start"), self.settings.number("stop")),
+            Dialect::Keysight => (1.0, self.settings.number("points")),
+        };
+        let to = (to as usize).min(many);
+        (from as usize - 1).min(to)..to
+    }
+
+    fn preamble(&self) -> String {
+        let channel = self.source();
+        let full = VERTICAL * self.settings.of("scale", channel);
+        let step_v = full / CODES * self.coarse();
+        let middle = CODES / 2.0 / self.coarse();
+        let format = match (self.settings.choice("format"), self.dialect) {
+            ("BYTE", _) => 0,
+            ("WORD", _) => 1,
+            (_, Dialect::Rigol) => 2,
+            (_, Dialect::Keysight) => 4,
+        };
+        let kind = if self.dialect == Dialect::Rigol { 2 } else { 0 };
+        let step_s = self.step_us as f64 * 1e-6;
+        let origin_s = -(self.before as f64) * step_s;
+        let (origin, reference) = match self.dialect {
+            Dialect::Rigol => ((self.offset(channel) / step_v).round(), middle),
+            Dialect::Keysight => (-self.offset(channel), middle),
+        };
+        let numbers = [step_s, origin_s, step_v, origin];
+        let [dx, x0, dy, y0] = numbers.map(nr3);
+        let points = self.window().len();
+        format!(
+            "{format},{kind},{points},1,{dx},{x0},0,{dy},{y0},{}",
+            reference as i64
+        )
+    }
+
+    fn data(&self) -> Result<Outcome, Failure> {
+        if self.memory.is_empty() {
+            return Err(Failure::DATA_STALE);
+        }
+        let channel = self.source();
+        let codes = self.memory[self.window()]
+            .iter()
+            .map(|codes| codes[channel]);
+        let coarse = self.coarse();
+        let steps = codes.map(|code| (f64::from(code) / coarse) as u16);
+        let low_first =
+            self.settings.choice("order") == "LSBFirst" || self.dialect == Dialect::Rigol;
+        let bytes: Vec<u8> = match self.settings.choice("format") {
+            "BYTE" => steps.map(|step| step as u8).collect(),
+            "WORD" if low_first => steps.flat_map(u16::to_le_bytes).collect(),
+            "WORD" => steps.flat_map(u16::to_be_bytes).collect(),
+            _ => {
+                let full = VERTICAL * self.settings.of("scale", channel);
+                let offset = self.offset(channel);
+                let codes = self.memory[self.window()]
+                    .iter()
+                    .map(|codes| codes[channel]);
+                let volts = codes.map(|code| nr3((f64::from(code) / CODES - 0.5) * full - offset));
+                volts.collect::<Vec<_>>().join(",").into_bytes()
+            }
+        };
+        let busy_us = (bytes.len() as f64 * BYTE_US) as u64;
+        let digits = if self.dialect == Dialect::Rigol { 9 } else { 8 };
+        Ok(Outcome::Block(block(&bytes, digits), busy_us))
+    }
+
+    /// Keeps settings consistent that two commands reach.
+    fn follow(&mut self, (key, channel): (&str, usize)) {
+        let settings = &mut self.settings;
+        match key {
+            "time_range" => {
+                let scale = settings.number("time_range") / HORIZONTAL;
+                settings.set("time_scale", scale);
+            }
+            "time_scale" => {
+                let range = settings.number("time_scale") * HORIZONTAL;
+                settings.set("time_range", range);
+            }
+            "position" => {
+                let position = settings.number("position");
+                settings.set("time_offset", position);
+            }
+            "range" => {
+                let scale = settings.of("range", channel) / VERTICAL;
+                settings.set_of("scale", channel, scale);
+            }
+            "scale" => {
+                let range = settings.of("scale", channel) * VERTICAL;
+                settings.set_of("range", channel, range);
+            }
+            "points" => {
+                let points = settings.number("points");
+                if self.memory.is_empty() {
+                    settings.set("depth", points);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn state(&self) -> &'static str {
+        match &self.capture {
+            Some(Capture { left: Some(_), .. }) => "TD",
+            Some(Capture {
+                samples, before, ..
+            }) if samples.len() < *before => "RUN",
+            Some(_) => "WAIT",
+            None if self.stopped => "STOP",
+            None => "TD",
+        }
+    }
+}
+
+impl Instrument for Digitizer {
+    fn body(&mut self) -> &mut Body {
+        &mut self.body
+    }
+
+    fn reset(&mut self, _now_us: u64) -> u64 {
+        self.settings.reset();
+        self.capture = None;
+        self.memory.clear();
+        self.stopped = true;
+        400_000
+    }
+
+    fn execute(
+        &mut self,
+        unit: &Unit,
+        now_us: u64,
+        _circuit: &mut dyn Circuit,
+    ) -> Result<Outcome, Failure> {
+        match self.settings.execute(unit)? {
+            ControlFlow::Break(Ok(text)) => return Ok(Outcome::Text(text, COMMAND_US)),
+            ControlFlow::Break(Err(changed)) => {
+                self.follow(changed);
+                return Ok(Outcome::Done(COMMAND_US));
+            }
+            ControlFlow::Continue(()) => {}
+        }
+        let has = |pattern| unit.matches(pattern).is_some();
+        let text = |text: String| Ok(Outcome::Text(text, COMMAND_US));
+        let is_rigol = self.dialect == Dialect::Rigol;
+        match unit.query {
+            true if has(":WAVeform:DATA") => self.data(),
+            true if has(":WAVeform:PREamble") => text(self.preamble()),
+            true if has(":TRIGger:STATus") && is_rigol => text(self.state().into()),
+            true if has(":ACQuire:SRATe") => text(nr3(1e6 / self.step_us as f64)),
+            true if has(":OPERegister:CONDition") && !is_rigol => {
+                text(if self.capture.is_some() { "8" } else { "0" }.into())
+            }
+            true if has(":TER") && !is_rigol => {
+                let waits = self.capture.as_ref().is_some_and(|it| it.left.is_none());
+                text(if waits { "0" } else { "1" }.into())
+            }
+            false if has(":SINGle") || has(":RUN") || has(":DIGitize") && !is_rigol => {
+                // A command that names channels waits for the whole record, as does `*OPC?`.
+                let auto = self.settings.choice("sweep") == "AUTO";
+                self.start(now_us, auto && has(":RUN"));
+                Ok(Outcome::Done(COMMAND_US))
+            }
+            false if has(":TFORce") || has(":TRIGger:FORCe") => match &mut self.capture {
+                Some(capture) => {
+                    capture.forced = true;
+                    Ok(Outcome::Done(COMMAND_US))
+                }
+                None => Err(Failure::TRIGGER_IGNORED),
+            },
+            false if has(":STOP") => {
+                self.capture = None;
+                self.stopped = true;
+                Ok(Outcome::Done(COMMAND_US))
+            }
+            false if has(":AUToscale") => Ok(Outcome::Done(1_000_000)),
+            true | false => Err(Failure::UNDEFINED_HEADER),
+        }
+    }
+
+    fn fetch(&mut self, _: &Unit, _: u64, _: &mut dyn Circuit) -> Result<Outcome, Failure> {
+        self.data()
+    }
+
+    fn next_us(&self) -> Option<u64> {
+        self.capture.as_ref().map(|capture| capture.next_us)
+    }
+
+    fn end_us(&self) -> Option<u64> {
+        let capture = self.capture.as_ref()?;
+        let after = capture.points - capture.before;
+        let left = capture.left.unwrap_or(after).saturating_sub(1) as u64;
+        Some(capture.next_us + left * capture.step_us)
+    }
+
+    fn tick(&mut self, _: u64, circuit: &mut dyn Circuit) {
+        let (codes, volts) = self.convert(circuit);
+        let level = self.settings.number("level");
+        let rising = self.settings.choice("slope") == "POSitive";
+        let Some(capture) = &mut self.capture else {
+            return;
+        };
+        capture.samples.push_back(codes);
+        capture.next_us += capture.step_us;
+        let sense = |volts: f64| if rising { volts - level } else { level - volts };
+        let was_below = capture
+            .previous_v
+            .is_some_and(|previous| sense(previous) < 0.0);
+        let crossed = was_below && sense(volts) >= 0.0;
+        capture.previous_v = Some(volts);
+        match &mut capture.left {
+            Some(left) => *left = left.saturating_sub(1),
+            None if capture.samples.len() > capture.before && (crossed || capture.forced) => {
+                capture.left = Some(capture.points - capture.before);
+                let stale = capture.samples.len() - 1 - capture.before;
+                capture.samples.drain(..stale);
+            }
+            None if capture.samples.len() > capture.before => {
+                capture.samples.pop_front();
+            }
+            None => {}
+        }
+        if capture.left.is_some()
+            && capture.samples.len() >= capture.points
+            && let Some(capture) = self.capture.take()
+        {
+            (self.step_us, self.before) = (capture.step_us, capture.before);
+            self.memory = capture.samples.into();
+            self.memory.truncate(capture.points);
+            self.stopped = true;
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! Instruments as sockets and pseudo-terminals in real time, or as streams in virtual time.
+
+use std::io;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt, DuplexStream};
+use tokio::net::{TcpListener, UnixStream};
+use tokio::time::{Instant, sleep_until};
+
+use super::bench::SharedBench;
+use super::file::Link;
+use super::port::Out;
+use crate::error::SimError;
+use crate::pace::Pace;
+use crate::pty::tty::Tty;
+
+/// Longest time without a look at the port: a reply may depend on a trigger.
+const LOOK_US: u64 = 20_000;
+/// Size of a stream in virtual time, bytes.
+const ROOM: usize = 1 << 16;
+
+/// Clock of the links.
+#[derive(Debug, Clone, Copy)]
+enum Clock {
+    Real(Instant),
+    Virtual(Pace),
+}
+
+impl Clock {
+    fn now_us(self) -> u64 {
+        match self {
+            Self::Real(origin) => origin.elapsed().as_micros() as u64,
+            Self::Virtual(pace) => pace.now_us(),
+        }
+    }
+
+    fn at(self, t_us: u64) -> Instant {
+        match self {
+            Self::Real(origin) => origin + Duration::from_micros(t_us),
+            Self::Virtual(pace) => pace.at(t_us),
+        }
+    }
+}
+
+/// Opens every port on the current runtime and serves it until the runtime ends; returns the name of each instrument with
+/// its link, as `relayrig instrument --link` takes it.
+///
+/// # Errors
+/// Fails when the system refuses a socket or a pseudo-terminal.
+pub async fn real_time(bench: &SharedBench) -> Result<Vec<(String, String)>, SimError> {
+    let clock = Clock::Real(Instant::now());
+    let mut links = Vec::new();
+    for (number, (name, link)) in bench.ports().into_iter().enumerate() {
+        let place = open(bench.clone(), number, link, clock).await;
+        let place = place.map_err(|source| SimError::Terminal {
+            what: format!("open the port `{name}`"),
+            source,
+        })?;
+        links.extend(bench.links(number, &place));
+    }
+    Ok(links)
+}
+
+/// Opens a port and starts to serve it; returns its place.
+async fn open(bench: SharedBench, number: usize, link: Link, clock: Clock) -> io::Result<String> {
+    match link {
+        Link::Tcp(port) => {
+            let listener = TcpListener::bind(("127.0.0.1", port)).await?;
+            let place = format!("tcp:{}", listener.local_addr()?);
+            tokio::spawn(accept(bench, number, listener, clock));
+            Ok(place)
+        }
+        Link::Serial(baud) => {
+            let (path, stream) = terminal(baud)?;
+            tokio::spawn(keep(bench, number, stream, clock));
+            Ok(format!("serial:{}:{baud}", path.display()))
+        }
+    }
+}
+
+/// Serves one host after the other; the next one waits until the present one leaves.
+async fn accept(bench: SharedBench, number: usize, listener: TcpListener, clock: Clock) {
+    loop {
+        let Ok((mut stream, _)) = listener.accept().await else {
+            continue;
+        };
+        let _ = stream.set_nodelay(true);
+        if bench.open(number, clock.now_us()) {
+            // An error means that the host is gone, as an end of file does.
+            let _ = converse(&bench, number, &mut stream, clock).await;
+            bench.close(number, clock.now_us());
+        }
+    }
+}
+
+/// Serves a terminal, whose hosts come and go unseen; a connection that a fault ends goes on at once.
+async fn keep(bench: SharedBench, number: usize, mut terminal: UnixStream, clock: Clock) {
+    while converse(&bench, number, &mut terminal, clock).await.is_ok() {
+        bench.close(number, clock.now_us());
+    }
+}
+
+/// A connector of a port in virtual time.
+#[derive(Clone)]
+pub struct Plug {
+    bench: SharedBench,
+    number: usize,
+    pace: Pace,
+}
+
+impl Plug {
+    /// Connects to the port; `None` while a fault keeps it busy. The task ends when the host drops the stream.
+    pub fn open(&self) -> Option<DuplexStream> {
+        let clock = Clock::Virtual(self.pace);
+        let (bench, number) = (self.bench.clone(), self.number);
+        if !bench.open(number, clock.now_us()) {
+            return None;
+        }
+        let (host, mut device) = tokio::io::duplex(ROOM);
+        tokio::spawn(async move {
+            let _ = converse(&bench, number, &mut device, clock).await;
+            bench.close(number, clock.now_us());
+        });
+        Some(host)
+    }
+}
+
+/// Returns a connector per port on the current runtime, whose clock is paused; one rig microsecond is one
+/// millisecond of the runtime.
+pub fn virtual_time(bench: &SharedBench) -> Vec<(String, Plug)> {
+    let pace = Pace::start();
+    let plug = |(number, (name, _)): (usize, (String, Link))| {
+        (
+            name,
+            Plug {
+                bench: bench.clone(),
+                number,
+                pace,
+            },
+        )
+    };
+    bench.ports().into_iter().enumerate().map(plug).collect()
+}
+
+/// Serves until the host or a fault ends the connection.
+async fn converse<S: AsyncRead + AsyncWrite + Unpin>(
+    bench: &SharedBench,
+    number: usize,
+    stream: &mut S,
+    clock: Clock,
+) -> io::Result<()> {
+    let mut bytes = [0u8; 4096];
+    loop {
+        for out in bench.due(number, clock.now_us()) {
+            match out {
+                Out::Bytes(bytes) => stream.write_all(&bytes).await?,
+                Out::Close => return Ok(()),
+            }
+        }
+        let now_us = clock.now_us();
+        let next_us = bench.next_us(number).map(|next_us| match next_us > now_us {
+            true => next_us,
+            false => now_us + 100,
+        });
+        let look_us = next_us.unwrap_or(0).min(now_us + LOOK_US);
+        tokio::select! {
+            biased;
+            count = stream.read(&mut bytes) => match count? {
+                0 => return Ok(()),
+                count => bench.receive(number, &bytes[..count], clock.now_us()),
+            },
+            () = sleep_until(clock.at(look_us)), if next_us.is_some() => {}
+        }
+    }
+}
+
+/// Opens a pseudo-terminal; returns its path and its stream. Two threads carry the bytes until the process ends.
+fn terminal(baud: u32) -> io::Result<(PathBuf, UnixStream)> {
+    let Tty {
+        master,
+        slave,
+        path,
+    } = Tty::open(baud)?;
+    let (ours, theirs) = std::os::unix::net::UnixStream::pair()?;
+    ours.set_nonblocking(true)?;
+    let (mut from_host, mut to_host) = (master.try_clone()?, master);
+    let (mut to_bench, mut from_bench) = (theirs.try_clone()?, theirs);
+    std::thread::spawn(move || {
+        // The open slave keeps the terminal alive between hosts.
+        let _slave = slave;
+        io::copy(&mut from_host, &mut to_bench)
+    });
+    std::thread::spawn(move || io::copy(&mut from_bench, &mut to_host));
+    Ok((path, UnixStream::from_std(ours)?))
+}
