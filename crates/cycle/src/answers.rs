@@ -2,11 +2,71 @@
 
 use super::Cycle;
 use super::traffic::Purpose;
-use bus::{Answer, LineError};
+use bus::{Answer, Failure, LineError};
 use dcon::Command;
 use machine::rig::wiring::LineId;
 use machine::station::trouble::Alarm;
+use texts::Message;
 use units::{RigTime, Span};
+
+/// Trouble that an answer shows.
+pub(super) struct AnswerTrouble {
+    /// Message of family `transaction`.
+    transaction: Message,
+    /// Number of tries.
+    used: u8,
+    /// Largest number of tries.
+    tries: u8,
+    /// Lateness of this computer, when it explains why a reply is missing.
+    late: Option<Span>,
+}
+
+impl AnswerTrouble {
+    /// Returns the trouble of a failed transaction, without lateness.
+    pub(super) fn of(error: &LineError, used: u8, tries: u8) -> Self {
+        Self {
+            transaction: error.message(),
+            used,
+            tries,
+            late: None,
+        }
+    }
+
+    fn detail(&self, code: &'static str) -> Message {
+        Message::new("detail", code)
+            .with_inner("transaction", &self.transaction)
+            .with("used", self.used)
+            .with("tries", self.tries)
+    }
+
+    fn alarm_with(&self, detail: &Message) -> Alarm {
+        match self.late {
+            Some(late) => Alarm::host_late(detail, late),
+            None => Alarm::bus(detail),
+        }
+    }
+
+    pub(super) fn alarm(&self) -> Alarm {
+        self.alarm_with(&self.detail("tried"))
+    }
+
+    /// Returns the alarm after this number of consecutive failures.
+    fn repeated(&self, times: u8) -> Alarm {
+        assert!(times > 0, "a failure that was not counted");
+        self.alarm_with(&self.detail("tried_in_a_row").with("times", times))
+    }
+
+    /// Returns the reason why the job that needs the answer fails, and thus why a part is void or a reference part
+    /// repeated.
+    fn reason(&self) -> Message {
+        match self.late {
+            Some(late) => self
+                .detail("tried_while_late")
+                .with("late_ms", format!("{:.0}", late.as_seconds() * 1e3)),
+            None => self.detail("tried"),
+        }
+    }
+}
 
 impl Cycle {
     /// Stores an answer in the process image, and notes the trouble that it shows.
@@ -21,30 +81,13 @@ impl Cycle {
             answer.command,
             Command::Common(_, dcon::Common::ReadResetStatus)
         );
-        let trouble = match &answer.outcome {
-            Ok(reply) => self
-                .image
-                .accept(
-                    line,
-                    &answer.command,
-                    reply,
-                    &answer.raw,
-                    answer.requested_at,
-                )
-                .err()
-                .map(|unexpected| format!("line {}: {unexpected}", self.wiring.line(line).name)),
-            Err(error) => Some(format!(
-                "{error} ({} of {} tries)",
-                answer.tries_used,
-                self.traffic.tries(line)
-            )),
-        };
-        let refused =
-            matches!(&answer.outcome, Err(LineError::Reply { reason, .. }) if reason.is_answer());
+        let trouble = self.trouble_of(line, &answer);
+        let failure = answer.outcome.as_ref().err().map(|error| &error.failure);
+        let refused = failure.is_some_and(Failure::is_answer);
         match (purpose, trouble) {
             (Purpose::Write { module, job }, None) => {
                 self.outputs.confirmed(module);
-                self.timeouts.written(module);
+                self.failures.written(module);
                 self.finish_job(job, answer.answered_at, None);
             }
             // A module that refuses writes has a tripped host watchdog: its outputs are at their safe values.
@@ -52,69 +95,130 @@ impl Cycle {
                 self.outputs.confirmed(module);
             }
             (Purpose::Write { module, job }, Some(trouble)) => {
-                if self.timeouts.may_rewrite(module) {
+                if self.failures.may_rewrite(module) {
                     self.outputs.failed(module);
                     if job {
                         self.traffic.rewrite_for_job(module);
                     }
                 } else {
-                    self.finish_job(job, answer.answered_at, Some(trouble.clone()));
-                    self.note_line_trouble(&answer, &trouble);
+                    self.finish_job(job, answer.answered_at, Some(trouble.reason()));
+                    self.note_alarm(trouble.alarm());
                 }
             }
             (Purpose::Job, trouble) => {
-                let trouble = match is_status {
-                    true => trouble.or(self.lost_status.take()),
-                    false => trouble,
-                };
                 if let Some(trouble) = trouble.as_ref().filter(|_| !refused && !is_status) {
-                    self.note_line_trouble(&answer, trouble);
+                    self.note_alarm(trouble.alarm());
                 }
-                self.finish_job(true, answer.answered_at, trouble);
+                let earlier = self.lost_status.take_if(|_| is_status);
+                let reason = trouble.map(|it| it.reason()).or(earlier);
+                self.finish_job(true, answer.answered_at, reason);
             }
             (Purpose::Scan, Some(trouble)) => {
                 if is_status && self.is_measuring(line) {
-                    self.lost_status = Some(trouble.clone());
+                    self.lost_status = Some(trouble.reason());
                 }
-                if let Some(times) = self.timeouts.scan_failed(line, &answer.command) {
-                    self.note_line_trouble(&answer, &format!("{trouble}, {times} times in a row"));
+                if let Some(times) = self.failures.scan_failed(line, &answer.command) {
+                    self.note_alarm(trouble.repeated(times));
                 }
             }
-            (Purpose::Scan, None) => self.timeouts.scan_answered(line, &answer.command),
-            (Purpose::Check, Some(trouble)) => {
-                self.note_line_trouble(&answer, &trouble);
-            }
+            (Purpose::Scan, None) => self.failures.scan_answered(line, &answer.command),
+            (Purpose::Check, Some(trouble)) => self.note_alarm(trouble.alarm()),
             (Purpose::Check | Purpose::Heartbeat, _) => {}
         }
     }
 
-    fn finish_job(&mut self, is_job: bool, at: RigTime, trouble: Option<String>) {
+    fn finish_job(&mut self, is_job: bool, at: RigTime, trouble: Option<Message>) {
         if is_job && let Some(done) = self.traffic.job_part_done(at, trouble) {
             self.job_done = Some(done);
         }
     }
 
-    /// Keeps the first bus trouble of the turn; the station learns it in its next step.
-    pub(super) fn note_bus_trouble(&mut self, detail: &str) {
-        self.bus_alarm.get_or_insert_with(|| Alarm::bus(detail));
-    }
-
-    /// Keeps trouble with an answer as [`Cycle::note_bus_trouble`] does, but as an alarm about this computer when its
-    /// lateness explains a missing reply.
-    fn note_line_trouble(&mut self, answer: &Answer, detail: &str) {
-        let is_missing = matches!(answer.outcome, Err(LineError::TimeOut { .. }));
-        match self.host_late().filter(|_| is_missing) {
-            Some(late) => {
-                let alarm = || Alarm::host_late(detail, late);
-                self.bus_alarm.get_or_insert_with(alarm);
+    /// Takes a reply into the image; returns the trouble when the transaction failed or the reply does not fit the rig.
+    fn trouble_of(&mut self, line: LineId, answer: &Answer) -> Option<AnswerTrouble> {
+        let (used, tries) = (answer.tries_used, self.traffic.tries(line));
+        match &answer.outcome {
+            Ok(reply) => {
+                let (at, command) = (answer.requested_at, &answer.command);
+                let accepted = self.image.accept(line, command, reply, &answer.raw, at);
+                let transaction = Message::new("transaction", "foreign_reply")
+                    .with("said", accepted.err()?)
+                    .with("line", &self.wiring.line(line).name);
+                Some(AnswerTrouble {
+                    transaction,
+                    used,
+                    tries,
+                    late: None,
+                })
             }
-            None => self.note_bus_trouble(detail),
+            Err(error) => {
+                let late = self
+                    .host_late()
+                    .filter(|_| comes_of_lateness(&error.failure));
+                Some(AnswerTrouble {
+                    late,
+                    ..AnswerTrouble::of(error, used, tries)
+                })
+            }
         }
     }
 
-    /// Returns the lateness of this computer in the last seconds when it explains a missing reply.
+    /// Keeps an alarm of a line or module for the next step of the station; of the same alarms of a turn, the first.
+    pub(super) fn note_alarm(&mut self, alarm: Alarm) {
+        if !self.bus_alarms.iter().any(|it| it.is_same(&alarm)) {
+            self.bus_alarms.push(alarm);
+        }
+    }
+
+    /// Returns the lateness of this computer in the last seconds when it explains a missing or late reply.
     pub(super) fn host_late(&self) -> Option<Span> {
         let recent = self.lateness.recent();
         (recent >= self.wiring.explaining_lateness()).then_some(recent)
+    }
+}
+
+/// Returns true for a failure that a late computer causes: it misses a reply, and meets it after the next request.
+fn comes_of_lateness(failure: &Failure) -> bool {
+    match failure {
+        Failure::TimeOut(_) | Failure::OutOfStep | Failure::SecondReply => true,
+        Failure::Reply(_)
+        | Failure::Echo
+        | Failure::Contradicted
+        | Failure::NeverSilent
+        | Failure::PortLost(_) => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use machine::station::catalogue::AlarmCode;
+    use texts::Lang;
+
+    #[test]
+    fn lateness_explains_late_replies_and_no_echo() {
+        assert!(comes_of_lateness(&Failure::SecondReply));
+        assert!(!comes_of_lateness(&Failure::Echo));
+    }
+
+    #[test]
+    fn lateness_explains_a_missing_reply() {
+        let error = LineError {
+            line: "measure".to_owned(),
+            command: dcon::Common::ReadResetStatus.to(dcon::Address(1)),
+            failure: Failure::TimeOut(Span::ms(31)),
+        };
+        let trouble = |late| AnswerTrouble {
+            late,
+            ..AnswerTrouble::of(&error, 3, 3)
+        };
+        let (late, in_time) = (trouble(Some(Span::ms(45))), trouble(None));
+        let codes = [late.alarm().code, in_time.alarm().code];
+        assert_eq!(codes, [AlarmCode::HostLate, AlarmCode::BusTrouble]);
+        let said = |it: &AnswerTrouble, lang| it.reason().say(lang);
+        assert!(said(&late, Lang::En).ends_with("; this computer was 45 ms late"));
+        assert!(said(&late, Lang::Zh).ends_with("本机迟了 45 毫秒"));
+        assert!(said(&in_time, Lang::En).ends_with("no whole reply within 31 ms (3 of 3 tries)"));
+        let repeated = in_time.repeated(3);
+        assert!(repeated.text(Lang::Zh).contains("连续 3 次"));
     }
 }

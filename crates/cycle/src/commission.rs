@@ -2,14 +2,16 @@
 //! safe, so the emergency stop need not be polled yet, and a request may be repeated as often as the bus settings
 //! allow.
 
+use super::answers::AnswerTrouble;
 use super::traffic::{Purpose, Traffic};
-use bus::Pace;
-use dcon::{Command, Common};
+use bus::{Answer, Pace};
+use dcon::{AnalogIn, Command, Common, Reply};
 use machine::dut;
-use machine::rig::commission::{Mismatch, judge, verification};
+use machine::rig::commission::{Check, judge, verification};
 use machine::rig::wiring::{ModuleId, Wiring};
 use machine::station::trouble::Alarm;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
+use texts::Message;
 
 /// A setting that an interrupted run of the controller left in a module.
 struct Leftover {
@@ -46,11 +48,8 @@ pub async fn verify(
     traffic.start_scan();
     let name = |one: &Leftover| wiring.module(one.module).name.clone();
     if let Some(one) = still.first() {
-        let what = match one.what {
-            Setting::Tripped => "tripped",
-            Setting::Masked => "masked",
-        };
-        return Err(Alarm::bus(&format!("{} is still {what}", name(one))));
+        let detail = Message::new("detail", "not_restored").with("module", name(one));
+        return Err(Alarm::bus(&detail));
     }
     let names = |what: Setting| {
         let those: Vec<String> = left.iter().filter(|it| it.what == what).map(name).collect();
@@ -73,11 +72,8 @@ async fn restore(
         loop {
             traffic.dispatch(pace.now());
             traffic.answer().await;
-            let answer = traffic.next_answer();
-            if let Some((_, Purpose::Check, answer)) = answer {
-                answer
-                    .outcome
-                    .map_err(|error| Alarm::bus(&error.to_string()))?;
+            if let Some((_, Purpose::Check, answer)) = traffic.next_answer() {
+                replied(wiring, answer)?;
                 break;
             }
         }
@@ -85,22 +81,45 @@ async fn restore(
     Ok(())
 }
 
-/// Returns the leftover that explains a mismatch; `None` when the controller did not cause the mismatch.
-fn leftover(wiring: &Wiring, module: ModuleId, mismatch: &Mismatch) -> Option<Leftover> {
+/// Returns the reply of an answer; fails with an alarm when there is none.
+fn replied(wiring: &Wiring, answer: Answer) -> Result<Reply, Alarm> {
+    let (used, tries) = (answer.tries_used, wiring.bus.tries);
+    let alarm = |error| AnswerTrouble::of(&error, used, tries).alarm();
+    answer.outcome.map_err(alarm)
+}
+
+/// Returns the leftover that explains a wrong reply; `None` when the controller did not cause it. `remedy` is the
+/// command that corrects the setting.
+fn leftover(
+    wiring: &Wiring,
+    check: &Check,
+    reply: &Reply,
+    remedy: Option<Command>,
+) -> Option<Leftover> {
+    let module = check.module;
     let wired = wiring.module(module);
     let of_references = wiring.mask_of(module, &dut::reference_inputs(wiring));
-    let masked = of_references != 0 && mismatch.found == format!("{of_references:02X}");
-    let (what, remedies) = if mismatch.what == "host watchdog" {
-        let enable = Common::WriteWatchdog {
-            enabled: wired.watchdog,
-            timeout_tenths: (wiring.bus.host_watchdog_ms / 100.0).round() as u8,
-        };
-        let both = [Common::ClearWatchdogStatus, enable];
-        (Setting::Tripped, both.map(|it| it.to(wired.address)).into())
-    } else if mismatch.what == "channel mask" && masked {
-        (Setting::Masked, mismatch.remedy.into_iter().collect())
-    } else {
-        return None;
+    let (what, remedies) = match check.command {
+        Command::Common(_, Common::ReadWatchdogStatus | Common::ReadWatchdog) => {
+            let enable = Common::WriteWatchdog {
+                enabled: wired.watchdog,
+                timeout_tenths: (wiring.bus.host_watchdog_ms / 100.0).round() as u8,
+            };
+            let both = [Common::ClearWatchdogStatus, enable];
+            (Setting::Tripped, both.map(|it| it.to(wired.address)).into())
+        }
+        Command::AnalogIn(_, AnalogIn::ReadMask)
+            if of_references != 0 && *reply == Reply::Byte(of_references) =>
+        {
+            (Setting::Masked, remedy.into_iter().collect())
+        }
+        Command::HostOk
+        | Command::SampleAll
+        | Command::Common(..)
+        | Command::AnalogIn(..)
+        | Command::AnalogOut(..)
+        | Command::Digital(..)
+        | Command::Counter(..) => return None,
     };
     Some(Leftover {
         module,
@@ -113,38 +132,30 @@ fn leftover(wiring: &Wiring, module: ModuleId, mismatch: &Mismatch) -> Option<Le
 async fn ask(wiring: &Wiring, pace: &Pace, traffic: &mut Traffic) -> Result<Vec<Leftover>, Alarm> {
     let mut all: Vec<Leftover> = Vec::new();
     let checks = verification(wiring);
-    let mut pending = BTreeMap::new();
-    for (index, check) in checks.iter().enumerate() {
+    let mut pending: BTreeMap<usize, VecDeque<&Check>> = BTreeMap::new();
+    for check in &checks {
         let line = wiring.module(check.module).line;
         traffic.queue(line, check.command, Purpose::Check);
-        pending.entry(line.0).or_insert_with(Vec::new).push(index);
+        pending.entry(line.0).or_default().push_back(check);
     }
-    for order in pending.values_mut() {
-        order.reverse();
-    }
-    let mut left = checks.len();
-    while left > 0 {
+    while pending.values().any(|checks| !checks.is_empty()) {
         traffic.dispatch(pace.now());
         traffic.answer().await;
         while let Some((line, purpose, answer)) = traffic.next_answer() {
             if purpose != Purpose::Check {
                 continue;
             }
-            left -= 1;
-            let Some(index) = pending.get_mut(&line.0).and_then(Vec::pop) else {
+            let Some(check) = pending.get_mut(&line.0).and_then(VecDeque::pop_front) else {
                 continue;
             };
-            let lost_status = matches!(answer.command, Command::Common(_, Common::ReadResetStatus));
-            if lost_status && answer.outcome.is_err() {
+            let is_status = matches!(answer.command, Command::Common(_, Common::ReadResetStatus));
+            if is_status && answer.outcome.is_err() {
                 continue;
             }
-            let reply = answer
-                .outcome
-                .map_err(|error| Alarm::bus(&format!("{error} ({} tries)", answer.tries_used)))?;
-            let check = &checks[index];
+            let reply = replied(wiring, answer)?;
             if let Some(mismatch) = judge(wiring, check, &reply) {
-                let Some(left) = leftover(wiring, check.module, &mismatch) else {
-                    return Err(Alarm::bus(&mismatch.to_string()));
+                let Some(left) = leftover(wiring, check, &reply, mismatch.remedy) else {
+                    return Err(Alarm::bus(&mismatch.message()));
                 };
                 let known = |it: &Leftover| it.module == left.module && it.what == left.what;
                 if !all.iter().any(known) {
@@ -153,7 +164,5 @@ async fn ask(wiring: &Wiring, pace: &Pace, traffic: &mut Traffic) -> Result<Vec<
             }
         }
     }
-    let open: usize = pending.values().map(Vec::len).sum();
-    assert_eq!(open, 0, "a request without its answer");
     Ok(all)
 }

@@ -2,6 +2,7 @@
 
 use machine::dut::Calibration;
 use machine::dut::promise::Broken;
+use machine::dut::prompt::Prompt;
 use machine::handling::inside::Inside;
 use machine::handling::output::{Interrupted, Judged, Landed, NestExit};
 use machine::handling::wear::Uses;
@@ -40,6 +41,8 @@ pub enum Event {
     /// Parts moved inside the machine: its contents, and the use counts of the wearing parts since the start of the
     /// run.
     Inside(Inside, Uses),
+    /// A prompt opened, which waits for the order `answer`.
+    Prompted(Box<Prompt>),
     /// The lot itself began, after calibration and reference parts, at this rig time.
     LotBegan(RigTime),
 }

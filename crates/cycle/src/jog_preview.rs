@@ -5,6 +5,7 @@ use machine::guard::{Position, Refusal, Situation};
 use machine::handling::moves::Move;
 use machine::station::orders;
 use machine::view::{MotionView, RefusedView, StrokeView};
+use texts::Lang;
 use units::RigTime;
 
 /// Largest distance between bodies that is shown, mm.
@@ -17,15 +18,15 @@ impl Cycle {
             return Vec::new();
         }
         let situation = self.station.situation(now, &self.image);
-        let jogs = orders::JOGS.iter();
-        jogs.map(|(_, movement)| {
-            let motion = self.station.motion(*movement);
+        let jogs = orders::JOGS.into_iter();
+        jogs.map(|movement| {
+            let motion = self.station.motion(movement);
             match self.guard.clear(&motion, &situation) {
                 Ok(_) => MotionView {
                     clearance_mm: self.guard.clearance_mm(&motion, &situation, RANGE_MM),
-                    ..self.shown(*movement, &situation)
+                    ..self.shown(movement, &situation)
                 },
-                Err(refusal) => self.refused_motion(*movement, &situation, &refusal),
+                Err(refusal) => self.refused_motion(movement, &situation, &refusal),
             }
         })
         .collect()
@@ -38,7 +39,8 @@ impl Cycle {
         situation: &Situation,
         refusal: &Refusal,
     ) -> MotionView {
-        let text = refusal.to_string();
+        let message = refusal.message();
+        let [text, text_zh] = [Lang::En, Lang::Zh].map(|lang| message.say(lang));
         let refused = match refusal {
             Refusal::Blocked(blocked) => RefusedView {
                 mover: blocked.mover.clone(),
@@ -48,9 +50,11 @@ impl Cycle {
                 at: blocked.at,
                 last_clear_mm: blocked.last_clear_mm,
                 text,
+                text_zh,
             },
             Refusal::OutOfStroke { .. } | Refusal::PartSize { .. } => RefusedView {
                 text,
+                text_zh,
                 ..RefusedView::default()
             },
         };

@@ -1,4 +1,4 @@
-//! How late this computer wakes the cycle: between the instant that a wait asks for and the one at which it ends.
+//! How late this computer wakes the cycle: from the deadline of a wait to its end.
 
 use bus::Histogram;
 use machine::view::{Bucket, LatenessView};
@@ -23,7 +23,7 @@ pub struct Lateness {
 }
 
 impl Lateness {
-    /// Counts a wait that asked for `until` and ended at `now`; one that ended earlier does not count.
+    /// Counts a wait with the deadline `until` that ended at `now`; ignores one that ended before its deadline.
     pub fn count(&mut self, until: RigTime, now: RigTime) {
         if now < until {
             return;

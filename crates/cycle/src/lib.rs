@@ -4,12 +4,13 @@
 //! scan -> step -> clear -> apply -> record -> publish
 //! ```
 //! One task owns the process image, the outputs, the guard and the station; each line is a task of its own with a queue
-//! for one request ([`traffic`]). A turn begins when an answer arrives, or at the instant that the last step asked for.
+//! for one request ([`traffic`]). A turn begins when an answer arrives, or at the instant that the last step requested.
 //! Only the station knows which kind of device is under test.
 
 mod answers;
 mod commission;
 mod event;
+mod failures;
 mod jog_preview;
 mod lateness;
 mod open_job;
@@ -20,15 +21,15 @@ mod record;
 mod scan_schedule;
 mod snapshot;
 mod standstill;
-mod timeouts;
 mod traffic;
 
 pub use lateness::Lateness;
 pub use snapshot::{Snapshot, snapshots};
 pub use traffic::LineEnds;
 
-use bus::{Pace, Timer};
+use bus::{Pace, Reading, Timer};
 pub use event::Event;
+use failures::Failures;
 use machine::guard::Guard;
 use machine::handling::NestId;
 use machine::handling::inside::Inside;
@@ -51,7 +52,7 @@ pub use publish::line as alarm_line;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
-use timeouts::Timeouts;
+use texts::Message;
 use tokio::sync::{mpsc, watch};
 use traffic::{Purpose, Traffic};
 use units::{RigTime, Span};
@@ -76,6 +77,8 @@ pub struct CycleLinks {
     pub epoch_us: i64,
     /// State of the history; the recorder sets it.
     pub history: watch::Receiver<HistoryState>,
+    /// Carries the readings of the code reader; none in a lot without one.
+    pub readings: Option<mpsc::Receiver<Reading>>,
     /// Carries snapshots to the screens; none on a rig without a screen.
     pub snapshots: Option<mpsc::Sender<Snapshot>>,
 }
@@ -111,24 +114,31 @@ pub struct Cycle {
     image: Image,
     outputs: Outputs,
     traffic: Traffic,
-    timeouts: Timeouts,
+    failures: Failures,
     links: CycleLinks,
     job_done: Option<JobDone>,
     /// Nest of the current measuring job, or of the last one.
     job_nest: NestId,
-    bus_alarm: Option<Alarm>,
+    /// Alarms of lines and modules, which the station receives in its next step.
+    bus_alarms: Vec<Alarm>,
     profile: Profile,
     turned_at: RigTime,
     /// True while the cycle writes only safe values, at the end of a run.
     making_safe: bool,
     pending_orders: Vec<OrderRequest>,
+    /// Order of the jog under way, which the cycle answers when the motion ends.
+    jogging: Option<OrderRequest>,
     orders_closed: bool,
+    /// Readings since the last turn.
+    readings: Vec<Option<String>>,
+    /// Alarm of a code reader whose port is lost.
+    reader: Option<Alarm>,
     verified: bool,
     publish_at: RigTime,
     /// State of the whole rig (PackML) in the last event sent.
     published_state: packml::State,
-    /// Bus trouble that lost a reset status: whether a module of the measuring line has restarted is unknown.
-    lost_status: Option<String>,
+    /// Reason why a scan lost a reset status; a module of the measuring line may have restarted unnoticed.
+    lost_status: Option<Message>,
     /// Contents of the machine in the last event sent; the next run takes them over.
     inside: Inside,
     /// Longest age that the emergency-stop input has reached so far.
@@ -154,7 +164,7 @@ impl Cycle {
             image: Image::new(Arc::clone(&wiring)),
             outputs: Outputs::new(Arc::clone(&wiring)),
             traffic: Traffic::new(&wiring, lines),
-            timeouts: Timeouts::new(&wiring),
+            failures: Failures::new(&wiring),
             wiring,
             timer: Timer::new(pace),
             pace,
@@ -164,12 +174,15 @@ impl Cycle {
             links,
             job_done: None,
             job_nest: NestId::FIRST,
-            bus_alarm: None,
+            bus_alarms: Vec::new(),
             profile: Profile::default(),
             turned_at: RigTime(0),
             making_safe: false,
             pending_orders: Vec::new(),
+            jogging: None,
             orders_closed: false,
+            readings: Vec::new(),
+            reader: None,
             verified: false,
             publish_at: RigTime(0),
             published_state: packml::State::Stopped,
@@ -183,11 +196,10 @@ impl Cycle {
     /// Verifies the modules, then takes one turn after another until the station has ended and the outputs are safe.
     pub async fn run(mut self) -> Ended {
         self.verify().await;
-        if let Some(alarm) = self
-            .bus_alarm
-            .take_if(|_| !self.verified && !self.station.is_attended())
-        {
-            self.send(Event::Alarm(alarm, self.pace.now()));
+        if !self.verified && !self.station.is_attended() {
+            for alarm in std::mem::take(&mut self.bus_alarms) {
+                self.send(Event::Alarm(alarm, self.pace.now()));
+            }
             return self.ended(Ending::Alarm);
         }
         self.verified = false;
@@ -223,7 +235,8 @@ impl Cycle {
         }
     }
 
-    fn ended(self, ending: Ending) -> Ended {
+    fn ended(mut self, ending: Ending) -> Ended {
+        self.answer_the_rest(self.pace.now());
         Ended {
             ending,
             profile: self.profile,
@@ -240,14 +253,24 @@ impl Cycle {
         }
         for module in self.image.take_resets() {
             let module = self.wiring.module(module);
-            let line = &self.wiring.line(module.line).name;
-            let text = format!(
-                "line {line}, {}: {} has restarted, its outputs fell to their power-on value",
-                module.address, module.name
-            );
-            self.note_bus_trouble(&text);
+            let detail = Message::new("detail", "restarted")
+                .with("line", &self.wiring.line(module.line).name)
+                .with("address", module.address)
+                .with("module", &module.name);
+            self.note_alarm(Alarm::bus(&detail));
+        }
+        while let Some(Ok(reading)) = self.links.readings.as_mut().map(mpsc::Receiver::try_recv) {
+            self.take_reading(reading);
         }
         self.traffic.note_time(now);
+    }
+
+    fn take_reading(&mut self, reading: Reading) {
+        match reading {
+            Reading::Line(text) => self.readings.push(text),
+            Reading::Open => self.reader = None,
+            Reading::Lost(reason) => self.reader = Some(Alarm::serial_reader_lost(reason)),
+        }
     }
 
     fn step(&mut self, now: RigTime) -> TurnOutput {
@@ -257,7 +280,7 @@ impl Cycle {
         let orders = self.orders(now);
         self.making_safe = packml::is_aborted(self.station.outer());
         if self.making_safe {
-            self.timeouts.reset_writes();
+            self.failures.reset_writes();
         }
         let inputs = Inputs {
             abort: self.links.abort.load(Ordering::Acquire),
@@ -271,8 +294,10 @@ impl Cycle {
             }),
             recorded: self.links.recorded.load(Ordering::Acquire),
             history: self.links.history.borrow().clone(),
-            bus: self.bus_alarm.take(),
+            bus: std::mem::take(&mut self.bus_alarms),
             host_late: self.host_late(),
+            readings: std::mem::take(&mut self.readings),
+            reader: self.reader.clone(),
             stop: self.links.stop.load(Ordering::Acquire),
         };
         self.station.step(now, inputs)
@@ -290,8 +315,12 @@ impl Cycle {
             match self.guard.clear(&self.station.motion(movement), &situation) {
                 Ok(cleared) => {
                     if let Err(cannot) = self.outputs.apply(cleared) {
-                        self.station
-                            .refused(movement, &cannot.to_string(), now, output);
+                        self.station.refused(
+                            movement,
+                            &Message::detail("not_driven", cannot),
+                            now,
+                            output,
+                        );
                         return;
                     }
                     self.station.driven(movement, now, &self.image);
@@ -300,14 +329,17 @@ impl Cycle {
                 Err(refusal) => {
                     self.refused = Some(self.refused_motion(movement, &situation, &refusal));
                     self.station
-                        .refused(movement, &refusal.to_string(), now, output);
+                        .refused(movement, &refusal.message(), now, output);
                     return;
                 }
             }
         }
-        if let Some(jog) = output.rig.jog.take() {
+        if let Some(jog) = output.rig.jog {
             assert!(jog.answer < output.answers.len(), "a jog without its order");
-            output.answers[jog.answer] = self.jog(jog.movement, now);
+            if let Err(refused) = self.jog(jog.movement, now) {
+                output.answers[jog.answer] = Err(refused);
+                output.rig.jog = None;
+            }
         }
     }
 
@@ -352,7 +384,7 @@ impl Cycle {
 
     fn set_output(&mut self, point: impl Into<DigitalOutput>, on: bool) {
         if let Err(needs) = self.outputs.set(point, on) {
-            self.note_bus_trouble(&needs.to_string());
+            self.note_alarm(Alarm::bus(&Message::detail("not_driven", needs)));
         }
     }
 
@@ -373,7 +405,7 @@ impl Cycle {
             Job::Level(outputs) => {
                 for (output, volts) in outputs {
                     if let Err(cannot) = self.outputs.set_supply(output, volts, Correction::NONE) {
-                        self.note_bus_trouble(&cannot.to_string());
+                        self.note_alarm(Alarm::bus(&Message::detail("not_driven", cannot)));
                     }
                 }
                 Vec::new()
@@ -407,8 +439,17 @@ impl Cycle {
                 self.orders_closed = asked.is_none();
                 self.pending_orders.extend(asked);
             }
+            Some(reading) = next_reading(&mut self.links.readings) => self.take_reading(reading),
             () = self.timer.until(until) => {}
         }
         self.lateness.count(until, self.pace.now());
+    }
+}
+
+/// Returns the next reading of the code reader; never resolves in a lot without one.
+async fn next_reading(readings: &mut Option<mpsc::Receiver<Reading>>) -> Option<Reading> {
+    match readings {
+        Some(readings) => readings.recv().await,
+        None => std::future::pending().await,
     }
 }

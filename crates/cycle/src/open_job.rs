@@ -2,6 +2,7 @@
 
 use machine::instrument::act::JobDone;
 use machine::rig::wiring::ModuleId;
+use texts::Message;
 use units::RigTime;
 
 /// A measuring job under way; it ends when its last transaction ends.
@@ -9,7 +10,7 @@ use units::RigTime;
 pub(super) struct OpenJob {
     parts: usize,
     last: RigTime,
-    trouble: Option<String>,
+    trouble: Option<Message>,
     rewrites: Vec<ModuleId>,
 }
 
@@ -32,7 +33,7 @@ impl OpenJob {
     }
 
     /// Closes one transaction and keeps the first trouble; after the last transaction, returns the result of the job.
-    pub(super) fn part_done(&mut self, at: RigTime, trouble: Option<String>) -> Option<JobDone> {
+    pub(super) fn part_done(&mut self, at: RigTime, trouble: Option<Message>) -> Option<JobDone> {
         self.parts = self.parts.saturating_sub(1);
         self.last = at;
         if self.trouble.is_none() {

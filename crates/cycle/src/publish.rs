@@ -8,7 +8,6 @@ use machine::handling::mechanism::SENSOR_AGE;
 use machine::rig::point::DigitalInput;
 use machine::station::Station;
 use machine::station::annunciator::ListedAlarm;
-use machine::station::catalogue;
 use machine::station::orders::{self, Order, Refused};
 use machine::station::packml::{Command, Mode};
 use machine::view::{self, ActuatorView, AlarmLine, Button, Machine, Reaction, Token};
@@ -19,49 +18,47 @@ use units::{RigTime, Span};
 /// Shortest time between two views.
 pub const PACE: Span = Span::ms(50);
 
-/// Parses an order; the error about an unknown word names it and the known ones.
+/// Returns the order for the station; refuses an incomplete one, and one that does not concern the rig.
 pub fn read(order: &view::Order) -> Result<Order, Refused> {
-    let expected = |member, known: Vec<&'static str>, found: Option<&str>| Refused::UnknownWord {
-        member,
-        found: found.unwrap_or_default().to_owned(),
-        known,
-    };
-    let named = order.alarm.clone();
-    match order.order.as_str() {
-        "start" if order.lot.is_some() => Ok(Order::Leave),
-        "hold_lot" => Ok(Order::Leave),
-        "close_lot" => Ok(Order::Close),
-        "mode" => order
-            .mode
-            .as_deref()
-            .and_then(Mode::from_name)
-            .map(Order::Mode)
-            .ok_or_else(|| {
-                let known = Mode::ALL.iter().map(|mode| mode.name()).collect();
-                expected("mode", known, order.mode.as_deref())
-            }),
-        "jog" => order
-            .motion
-            .as_deref()
-            .and_then(orders::jog)
-            .map(Order::Jog)
-            .ok_or_else(|| {
-                let known = orders::JOGS.iter().map(|(name, _)| *name).collect();
-                expected("motion", known, order.motion.as_deref())
-            }),
-        "step" => Ok(Order::Step),
-        "lamp_test" => Ok(Order::LampTest),
-        "acknowledge" => Ok(Order::Acknowledge(named)),
-        "shelve" => match (named, order.reason.as_deref().map(str::trim)) {
-            (Some(code), Some(reason)) if !reason.is_empty() => {
-                Ok(Order::Shelve(code, orders::shelf_minutes(order.minutes)))
-            }
-            (Some(_), _) => Err(Refused::ShelveWithoutReason),
-            (None, _) => Err(expected("alarm", vec!["the code of an alarm"], None)),
-        },
-        other => Command::from_name(other)
-            .map(Order::Command)
-            .ok_or_else(|| expected("order", view::ORDERS.to_vec(), Some(other))),
+    use view::Order as From;
+    let command = |it| Ok(Order::Command(it));
+    match order {
+        From::Start { lot: Some(_), .. } | From::HoldLot { .. } => Ok(Order::Leave),
+        From::Start {
+            lot: None,
+            recipe: None,
+            count: None,
+            retest: None,
+        } => command(Command::Start),
+        From::Start { lot: None, .. } => Err(Refused::StartWithoutLot),
+        From::Reset {} => command(Command::Reset),
+        From::Stop {} => command(Command::Stop),
+        From::Hold {} => command(Command::Hold),
+        From::Unhold {} => command(Command::Unhold),
+        From::Suspend {} => command(Command::Suspend),
+        From::Unsuspend {} => command(Command::Unsuspend),
+        From::Abort {} => command(Command::Abort),
+        From::Clear {} => command(Command::Clear),
+        From::Complete {} => command(Command::Complete),
+        From::CloseLot { .. } => Ok(Order::Close),
+        From::Mode { mode } => Ok(Order::Mode(*mode)),
+        From::Jog { motion } => Ok(Order::Jog(*motion)),
+        From::Step {} => Ok(Order::Step),
+        From::LampTest {} => Ok(Order::LampTest),
+        From::Scan { serial } => Ok(Order::Scan(serial.clone())),
+        From::Answer { prompt, choice } => Ok(Order::Answer(prompt.clone(), choice.clone())),
+        From::Unscan {} => Ok(Order::Unscan),
+        From::Acknowledge { alarm } => Ok(Order::Acknowledge(alarm.clone())),
+        From::Shelve { reason, .. } if reason.trim().is_empty() => {
+            Err(Refused::ShelveWithoutReason)
+        }
+        From::Shelve { alarm, minutes, .. } => {
+            let minutes = orders::shelf_minutes(*minutes);
+            Ok(Order::Shelve(alarm.clone(), minutes))
+        }
+        From::ReleaseLot { .. } | From::ReopenLot { .. } | From::Replaced { .. } => {
+            Err(Refused::NotOfTheRig)
+        }
     }
 }
 
@@ -129,6 +126,8 @@ impl Cycle {
                 .map(|(name, count)| (name.to_owned(), count))
                 .collect(),
             probe_contact_ohm: station.probe_contact().map(|it| it.0),
+            prompt: station.prompt().cloned(),
+            scans: station.serials().waiting().map(|it| it.cloned().collect()),
         }
     }
 
@@ -183,7 +182,7 @@ fn buttons(station: &Station) -> Vec<Button> {
         .map(|mode| button("mode", mode.name(), station.may_change_mode()));
     let jogs = orders::JOGS
         .iter()
-        .map(|(name, _)| button("jog", name, station.may_jog()));
+        .map(|it| button("jog", it.code(), station.may_jog()));
     commands
         .chain(modes)
         .chain(jogs)
@@ -207,7 +206,7 @@ fn places(station: &Station) -> BTreeMap<String, Token> {
 }
 
 fn token(part: &Part) -> Token {
-    let (kind, name) = match &part.kind {
+    let (kind, name) = match &part.role {
         PartRole::Reference(serial) => ("golden", serial.clone()),
         PartRole::Lot(seq) => ("lot", seq.to_string()),
     };
@@ -216,6 +215,7 @@ fn token(part: &Part) -> Token {
         name,
         bin: part.bin.as_ref().map_or("", Bin::name).into(),
         interrupted: part.interrupted.clone().unwrap_or_default(),
+        serial: part.serial.clone().unwrap_or_default(),
     }
 }
 
@@ -233,12 +233,6 @@ fn lines(station: &Station, epoch_us: i64) -> Vec<AlarmLine> {
 pub fn line(one: &ListedAlarm, epoch_us: i64) -> AlarmLine {
     let alarm = &one.alarm;
     let help = |lang| alarm.code.help(lang).map(str::to_owned);
-    let stops = match alarm.code.entry().reaction {
-        catalogue::Reaction::Abort => "abort",
-        catalogue::Reaction::Hold => "hold",
-        catalogue::Reaction::Suspend => "suspend",
-        catalogue::Reaction::Nothing => "nothing",
-    };
     let raised = epoch_us + i64::try_from(one.raised.0).unwrap_or(i64::MAX);
     AlarmLine {
         code: alarm.code.name(),
@@ -250,7 +244,7 @@ pub fn line(one: &ListedAlarm, epoch_us: i64) -> AlarmLine {
         count: one.count,
         raised_at_us: (!one.inherited).then_some(raised),
         shelved: one.shelved_until.is_some(),
-        stops: stops.into(),
+        stops: alarm.code.entry().reaction.name().into(),
         help_en: help(Lang::En),
         help_zh: help(Lang::Zh),
     }
@@ -262,18 +256,18 @@ mod tests {
     use super::read;
     use machine::guard::Actuator;
     use machine::rig::point::{DigitalIn, DigitalOut};
-    use machine::station::orders::JOGS;
-    use machine::station::packml::{Mode, State};
-    use machine::view::{ORDERS, Order};
+    use machine::station::orders::{JOGS, Order as StationOrder, Refused};
+    use machine::station::packml::{Command, Mode, State};
+    use machine::view::Order;
+    use serde_json::json;
     use std::collections::BTreeSet;
-    use texts::Lang;
 
     #[test]
     fn every_signal_motion_mode_and_state_has_a_text() {
         let signals = DigitalIn::ALL.iter().map(|it| it.name());
         let signals = signals.chain(DigitalOut::ALL.iter().map(|it| it.name()));
         let keys = (signals.map(|it| format!("signal-{it}")))
-            .chain(JOGS.iter().map(|(name, _)| format!("motion-{name}")))
+            .chain(JOGS.iter().map(|it| format!("motion-{}", it.code())))
             .chain(Actuator::names().map(|it| format!("actuator-{it}")))
             .chain(Mode::ALL.iter().map(|it| format!("mode-{}", it.name())))
             .chain(
@@ -286,53 +280,26 @@ mod tests {
         assert!(missing.is_empty(), "{missing:?}");
     }
 
-    #[test]
-    fn every_order_parses() {
-        for word in ORDERS {
-            let order = Order {
-                order: word.into(),
-                mode: Some("manual".into()),
-                motion: Some("pusher_extend".into()),
-                alarm: Some("door_open".into()),
-                reason: Some("sensor is on its way".into()),
-                ..Order::default()
-            };
-            assert!(read(&order).is_ok(), "{word}");
-        }
+    fn order(json: serde_json::Value) -> Order {
+        serde_json::from_value(json).unwrap()
     }
 
     #[test]
-    fn an_order_without_its_argument_names_what_is_expected() {
-        for (word, expected) in [
-            ("mode", "production"),
-            ("jog", "pusher_extend"),
-            ("shelve", "alarm"),
-            ("fly", "reset"),
+    fn parts_of_a_lot_without_its_name_are_refused() {
+        for json in [
+            json!({"order": "start", "recipe": "jzc-22f-012"}),
+            json!({"order": "start", "count": 5}),
+            json!({"order": "start", "retest": "zhao"}),
         ] {
-            let order = Order {
-                order: word.into(),
-                ..Order::default()
-            };
-            let why = read(&order)
-                .map(|_| ())
-                .map_err(|why| why.message().say(Lang::En));
-            assert!(why.is_err_and(|why| why.contains(expected)), "{word}");
+            assert_eq!(read(&order(json)), Err(Refused::StartWithoutLot));
         }
+        let bare = read(&order(json!({"order": "start"})));
+        assert_eq!(bare, Ok(StationOrder::Command(Command::Start)));
     }
 
     #[test]
     fn shelving_requires_a_reason() {
-        for reason in [None, Some(" ".to_owned())] {
-            let order = Order {
-                order: "shelve".into(),
-                alarm: Some("door_open".into()),
-                reason,
-                ..Order::default()
-            };
-            let why = read(&order)
-                .map(|_| ())
-                .map_err(|why| why.message().say(Lang::En));
-            assert!(why.is_err_and(|why| why.contains("why the alarm is shelved")));
-        }
+        let blank = json!({"order": "shelve", "alarm": "door_open", "reason": " "});
+        assert_eq!(read(&order(blank)), Err(Refused::ShelveWithoutReason));
     }
 }

@@ -25,6 +25,9 @@ impl Cycle {
         for broken in output.record.broken.drain(..) {
             self.send(Event::PromiseBroken(broken));
         }
+        if let Some(prompt) = output.record.prompted.take() {
+            self.send(Event::Prompted(Box::new(prompt)));
+        }
         if output.record.lot_began {
             self.send(Event::LotBegan(now));
         }

@@ -9,19 +9,17 @@ use units::Span;
 const SAFE_WITHIN: Span = Span::ms(2000);
 
 impl Cycle {
-    /// Compares every module with the wiring; restores modules whose watchdog tripped while no controller ran.
+    /// Compares every module with the wiring; restores the settings that an interrupted run left in a module.
     pub(super) async fn verify(&mut self) {
         self.quiet().await;
         assert!(self.traffic.is_quiet(), "verified while a line is in use");
         match commission::verify(&self.wiring, &self.pace, &mut self.traffic).await {
-            Ok(tripped) => {
+            Ok(restored) => {
                 self.verified = true;
-                for alarm in tripped {
-                    self.bus_alarm.get_or_insert(alarm);
-                }
+                restored.into_iter().for_each(|it| self.note_alarm(it));
             }
             Err(alarm) => {
-                self.bus_alarm.get_or_insert(alarm);
+                self.note_alarm(alarm);
                 self.traffic.start_scan();
             }
         }
@@ -35,7 +33,7 @@ impl Cycle {
         self.traffic.only_writes();
         while !self.traffic.is_quiet() {
             let now = self.pace.now();
-            self.timeouts.reset_writes();
+            self.failures.reset_writes();
             self.scan(now);
             self.traffic.dispatch(now);
             self.wait(now, Some(now + IDLE)).await;
@@ -49,7 +47,7 @@ impl Cycle {
         self.making_safe = true;
         while self.pace.now() < end {
             let now = self.pace.now();
-            self.timeouts.reset_writes();
+            self.failures.reset_writes();
             self.scan(now);
             for write in self.outputs.writes() {
                 let purpose = Purpose::Write {

@@ -14,6 +14,7 @@ use std::collections::{BTreeSet, VecDeque};
 use std::future::poll_fn;
 use std::sync::Arc;
 use std::task::Poll;
+use texts::Message;
 use tokio::sync::mpsc;
 use units::{RigTime, Span};
 
@@ -254,7 +255,7 @@ impl Traffic {
     }
 
     /// Closes one transaction of the measuring job; after the last one, returns the result of the job.
-    pub fn job_part_done(&mut self, at: RigTime, trouble: Option<String>) -> Option<JobDone> {
+    pub fn job_part_done(&mut self, at: RigTime, trouble: Option<Message>) -> Option<JobDone> {
         let done = self.job.as_mut()?.part_done(at, trouble)?;
         self.job = None;
         Some(done)

@@ -1,11 +1,13 @@
 //! State changes of alarms (ISA-18.2): returned, acknowledged, shelved. They survive a restart.
 //!
-//! A change applies to a code: one acknowledgement covers all occurrences of an alarm. The real rig and the simulated
-//! rig are kept apart.
+//! A change applies to a code: one acknowledgement covers all occurrences of an alarm. Only [`AlarmChange::Returned`]
+//! may apply to one of several alarms with the same code. The real rig and the simulated rig are kept apart.
 
 use super::Store;
 use super::alarms::args;
 use super::error::{Doing, Result};
+use machine::station::catalogue::AlarmCode;
+use machine::station::trouble::Alarm;
 use rusqlite::{Connection, Transaction, params};
 use texts::Args;
 
@@ -13,7 +15,10 @@ use texts::Args;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum AlarmChange {
     /// The cause is gone.
-    Returned,
+    Returned {
+        /// Name and value of the argument that tells the alarm from others with its code; `None` for all with the code.
+        only: Option<(&'static str, String)>,
+    },
     /// A person has acknowledged the alarm.
     Acknowledged {
         /// Name of the person.
@@ -58,6 +63,16 @@ pub struct UnacknowledgedAlarm {
     pub shelved_until_us: Option<i64>,
 }
 
+impl UnacknowledgedAlarm {
+    /// Returns the alarm; `None` when this version lacks its code.
+    pub fn alarm(&self) -> Option<Alarm> {
+        Some(Alarm {
+            code: AlarmCode::from_name(&self.code)?,
+            args: self.args.clone(),
+        })
+    }
+}
+
 const CONCERNED: &str = "(?1 IS NULL OR alarm.code = ?1) AND alarm.run_id IN \
     (SELECT id FROM run WHERE (source = 'simulated') = ?2)";
 
@@ -66,12 +81,16 @@ pub(super) fn change(tx: &Transaction<'_>, it: &AlarmChangeRecord) -> Result<()>
         assert!(*until_us > it.at_us, "shelved for no time");
     }
     let made = match &it.change {
-        AlarmChange::Returned => tx.execute(
-            &format!(
-                "UPDATE alarm SET cleared_at_us = ?3 WHERE cleared_at_us IS NULL AND {CONCERNED}"
-            ),
-            params![it.code, it.simulated, it.at_us],
-        ),
+        AlarmChange::Returned { only } => {
+            let (name, value) = only.as_ref().map(|(name, value)| (name, value)).unzip();
+            tx.execute(
+                &format!(
+                    "UPDATE alarm SET cleared_at_us = ?3 WHERE cleared_at_us IS NULL AND {CONCERNED}
+                     AND (?4 IS NULL OR alarm.args ->> ?4 = ?5)"
+                ),
+                params![it.code, it.simulated, it.at_us, name, value],
+            )
+        }
         AlarmChange::Acknowledged { by } => tx.execute(
             &format!(
                 "INSERT INTO alarm_state (alarm_id, acknowledged_at_us, acknowledged_by)
@@ -106,27 +125,45 @@ pub(super) fn change(tx: &Transaction<'_>, it: &AlarmChangeRecord) -> Result<()>
 fn left(connection: &Connection, simulated: bool) -> rusqlite::Result<Vec<UnacknowledgedAlarm>> {
     connection
         .prepare(
-            "SELECT alarm.code, alarm.text, count(*), max(alarm_state.shelved_until_us), max(alarm.id),
-             alarm.args
+            "SELECT alarm.code, alarm.text, alarm_state.shelved_until_us, alarm.args
              FROM alarm LEFT JOIN alarm_state ON alarm_state.alarm_id = alarm.id
              WHERE alarm_state.acknowledged_at_us IS NULL
                AND alarm.run_id IN (SELECT id FROM run WHERE (source = 'simulated') = ?1)
-             GROUP BY alarm.code ORDER BY max(alarm.id)",
+             ORDER BY alarm.id",
         )?
         .query_map([simulated], |row| {
             Ok(UnacknowledgedAlarm {
                 code: row.get(0)?,
                 text: row.get(1)?,
-                count: row.get(2)?,
-                shelved_until_us: row.get(3)?,
-                args: args(row.get(5)?),
+                count: 1,
+                shelved_until_us: row.get(2)?,
+                args: args(row.get(3)?),
             })
         })?
-        .collect()
+        .try_fold(Vec::new(), |left, row| row.map(|row| with(left, row)))
+}
+
+/// Adds the occurrence `last` to `left`; it replaces an earlier occurrence of the same alarm and takes over its count.
+fn with(
+    mut left: Vec<UnacknowledgedAlarm>,
+    mut last: UnacknowledgedAlarm,
+) -> Vec<UnacknowledgedAlarm> {
+    let is_same = |it: &UnacknowledgedAlarm| match (it.alarm(), last.alarm()) {
+        (Some(it), Some(last)) => it.is_same(&last),
+        (_, _) => it.code == last.code,
+    };
+    if let Some(at) = left.iter().position(is_same) {
+        let earlier = left.remove(at);
+        last.count += earlier.count;
+        last.shelved_until_us = last.shelved_until_us.max(earlier.shelved_until_us);
+    }
+    left.push(last);
+    left
 }
 
 impl Store {
-    /// Returns the unacknowledged alarms of the real or the simulated rig, one per code, oldest first.
+    /// Returns the unacknowledged alarms of the real or the simulated rig in order of their last occurrence. Alarms
+    /// with the same code count together unless an argument, such as the name of a module, tells them apart.
     pub fn unacknowledged_alarms(&self, simulated: bool) -> Result<Vec<UnacknowledgedAlarm>> {
         left(self.connection(), simulated).doing("reading unacknowledged alarms")
     }

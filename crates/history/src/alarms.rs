@@ -3,11 +3,13 @@
 use super::error::{Doing, Result};
 use super::{Archive, Filter, Moment};
 use machine::station::catalogue::AlarmCode;
+use rusqlite::{OptionalExtension, params};
 use serde::Serialize;
 use texts::{Args, Lang};
+use utoipa::ToSchema;
 
 /// State of an alarm (ISA-18.2, states B to E). Whether it is shelved is kept apart.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AlarmState {
     /// Active, not acknowledged.
@@ -21,7 +23,7 @@ pub enum AlarmState {
 }
 
 /// An alarm that a person hid for a time: until when, who, why.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Shelf {
     /// Time until which the alarm is hidden.
     pub until: Moment,
@@ -32,7 +34,7 @@ pub struct Shelf {
 }
 
 /// An occurrence of an alarm.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Alarm {
     /// Name of the lot; `None` outside a run.
     pub lot: Option<String>,
@@ -81,7 +83,26 @@ pub(super) fn args(stored: Option<serde_json::Value>) -> Args {
     args.unwrap_or_default()
 }
 
+/// Returns the Chinese text of an alarm; `None` when the code is unknown or an argument is missing.
+pub(super) fn said(code: &str, args: Args) -> Option<String> {
+    let code = AlarmCode::from_name(code)?;
+    code.message(args).try_say(Lang::Zh)
+}
+
 impl Archive {
+    /// Returns the Chinese text of the alarm that was raised at `at_us` and whose English text contains `english`, the
+    /// reason of a hold or of a failed reference check; `None` when there is no such alarm.
+    pub(super) fn chinese(&self, english: &str, at_us: i64) -> Result<Option<String>> {
+        let sql = "SELECT code, args FROM alarm WHERE raised_at_us = ?1 AND instr(text, ?2) ORDER BY id LIMIT 1";
+        let found = self
+            .connection
+            .query_row(sql, params![at_us, english], |row| {
+                Ok((row.get::<_, String>(0)?, args(row.get(1)?)))
+            });
+        let found = found.optional().doing("reading an alarm")?;
+        Ok(found.and_then(|(code, args)| said(&code, args)))
+    }
+
     /// Returns one page of the alarms in order of time; lot, run, recipe and time span of the filter select them.
     pub fn alarms(&self, filter: &Filter) -> Result<Vec<Alarm>> {
         let alarms = filter.alarms().rows(&self.connection, |row| {
@@ -95,7 +116,7 @@ impl Archive {
             Ok(Alarm {
                 lot: row.get(0)?,
                 run: row.get(1)?,
-                text_zh: known.and_then(|it| it.message(args.clone()).try_say(Lang::Zh)),
+                text_zh: said(&code, args.clone()),
                 cause_zh: known.map(|it| it.help(Lang::Zh)[0]),
                 code,
                 args,

@@ -108,6 +108,20 @@ impl Archive {
         select.sql = select
             .sql
             .replace(" ORDER BY", &format!(" AND part.seq = {seq} ORDER BY"));
+        self.whole(&select)
+    }
+
+    /// Returns every test of the production parts with this serial number, the latest last, with all attempts, raw replies
+    /// and curves.
+    pub fn of_serial(&self, serial: &str) -> Result<Vec<Part>> {
+        let filter = Filter {
+            serial: Some(serial.to_owned()),
+            ..Filter::default()
+        };
+        self.whole(&filter.parts())
+    }
+
+    fn whole(&self, select: &filter::Select) -> Result<Vec<Part>> {
         let parts = select.rows(&self.connection, |row| {
             let mut part = self.part(row)?;
             part.measurements = self.measurements(part.row)?;

@@ -2,8 +2,9 @@
 
 use super::Archive;
 use super::error::{Doing, HistoryError, Result};
+use super::open::with_end;
 use std::fs::{self, File};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 const DOING: &str = "checking the history";
 
@@ -16,7 +17,7 @@ impl Archive {
                 path: target.to_owned(),
             });
         }
-        let partial = partial_path(target);
+        let partial = with_end(target, ".partial");
         let copied = self.copy(&partial, target);
         if copied.is_err() && partial.exists() {
             // The first error is returned; a failed clean-up matters less.
@@ -71,7 +72,7 @@ impl Archive {
         }
     }
 
-    /// Checks every page, but no index against its table; some times faster than [`Self::check`].
+    /// Checks every page, but no index against its table: less than [`Self::check`], and faster.
     pub(super) fn quick_check(&self) -> Result<()> {
         self.check_by("PRAGMA quick_check(1)")
     }
@@ -89,10 +90,4 @@ impl Archive {
         let path = self.path.clone();
         HistoryError::Damaged { path, finding }
     }
-}
-
-fn partial_path(target: &Path) -> PathBuf {
-    let mut name = target.as_os_str().to_owned();
-    name.push(".partial");
-    PathBuf::from(name)
 }

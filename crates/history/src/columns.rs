@@ -3,9 +3,11 @@
 //! The order is: [`COLUMNS`], then the value of each parameter, then the expanded uncertainty of each parameter.
 //! `history import` reads the same names.
 
+use super::report::parameter;
 use super::{Moment, Part};
 use std::borrow::Cow;
 use std::fmt;
+use texts::Lang;
 
 /// Content of a cell.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +29,8 @@ pub struct Column {
     /// Name in the header.
     pub name: &'static str,
     of: fn(&Part) -> Cell<'_>,
+    /// Function that puts the codes of the cell into words; `None` for a cell without codes.
+    told: Option<fn(&Part, Lang) -> String>,
 }
 
 /// Columns that every part has, in order.
@@ -34,16 +38,23 @@ pub const COLUMNS: [Column; 13] = [
     column("time", |it| Cell::Time(it.time)),
     column("lot", |it| text(&it.lot)),
     column("run", |it| Cell::Count(it.run.into())),
-    column("kind", |it| text(&it.kind)),
+    column("kind", |it| text(&it.kind))
+        .told(|it, lang| lang.name("part_kind", &it.kind).to_owned()),
     column("seq", |it| Cell::Count(it.seq)),
     column("recipe", |it| text(&it.recipe)),
     column("serial", |it| optional_text(it.serial.as_ref())),
-    column("verdict", |it| text(&it.verdict)),
-    column("bin", |it| optional_text(it.bin.as_ref())),
-    column("landed_bin", |it| optional_text(it.landed_bin.as_ref())),
+    column("verdict", |it| text(&it.verdict))
+        .told(|it, lang| lang.name("paper_verdict", &it.verdict).to_owned()),
+    column("bin", |it| optional_text(it.bin.as_ref())).told(|it, lang| bin(it.bin.as_ref(), lang)),
+    column("landed_bin", |it| optional_text(it.landed_bin.as_ref()))
+        .told(|it, lang| bin(it.landed_bin.as_ref(), lang)),
     column("reasons", |it| match it.reasons.as_slice() {
         [] => Cell::Empty,
         reasons => Cell::Text(Cow::Owned(reasons.join("; "))),
+    })
+    .told(|it, lang| {
+        let reasons = it.reason_codes.iter().map(|it| it.short(lang));
+        reasons.collect::<Vec<_>>().join("; ")
     }),
     column("test_s", |it| number(it.test_s)),
     column("cycle_s", |it| number(it.cycle_s)),
@@ -57,6 +68,23 @@ pub fn header(parameters: &[String]) -> Vec<String> {
         .chain(parameters.iter().cloned())
         .chain(doubts)
         .collect()
+}
+
+/// Returns the names of all columns in a language.
+pub fn header_in(lang: Lang, parameters: &[String]) -> Vec<String> {
+    let fixed = COLUMNS.iter();
+    let fixed = fixed.map(|column| lang.name("column", column.name).to_owned());
+    let named = || parameters.iter().map(|key| parameter(lang, key));
+    let doubts = named().map(|name| format!("U {name}"));
+    fixed.chain(named()).chain(doubts).collect()
+}
+
+/// Returns the cells of [`COLUMNS`] with words of a language in place of codes.
+pub fn texts_in(part: &Part, lang: Lang) -> impl Iterator<Item = Cell<'_>> {
+    COLUMNS.iter().map(move |column| match column.told {
+        Some(told) => Cell::Text(Cow::Owned(told(part, lang))),
+        None => (column.of)(part),
+    })
 }
 
 /// Returns the cells of a part in the order of [`header`].
@@ -84,7 +112,24 @@ impl fmt::Display for Cell<'_> {
 }
 
 const fn column(name: &'static str, of: fn(&Part) -> Cell<'_>) -> Column {
-    Column { name, of }
+    Column {
+        name,
+        of,
+        told: None,
+    }
+}
+
+impl Column {
+    const fn told(self, told: fn(&Part, Lang) -> String) -> Self {
+        Self {
+            told: Some(told),
+            ..self
+        }
+    }
+}
+
+fn bin(code: Option<&String>, lang: Lang) -> String {
+    code.map_or_else(String::new, |code| lang.name("bin", code).to_owned())
 }
 
 fn text(text: &str) -> Cell<'_> {

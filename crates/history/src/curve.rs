@@ -16,6 +16,7 @@ use super::{Archive, Part};
 use machine::instrument::curve::Curve;
 use rusqlite::{Transaction, params};
 use serde::{Deserialize, Serialize, Serializer};
+use utoipa::ToSchema;
 
 /// Samples of one signal during a test.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -31,12 +32,18 @@ pub struct CurveRecord {
 }
 
 /// A curve as JSON shows it.
-#[derive(Serialize)]
-struct Shown<'a> {
+#[derive(Serialize, ToSchema)]
+#[schema(as = Curve)]
+pub(super) struct Shown<'a> {
+    /// Name of the point that was sampled.
     signal: &'a str,
+    /// Unit of the values; empty for bits and counts.
     unit: &'a str,
+    /// Instant of the first sample.
     begin: Moment,
+    /// Time of each sample since `begin`, microseconds.
     t_us: &'a [i64],
+    /// Value of each sample; null for a reading over range.
     values: &'a [Option<f64>],
 }
 

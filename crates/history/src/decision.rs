@@ -30,11 +30,6 @@ impl Decision {
         }
     }
 
-    /// Returns the decision that the order named `word` gives; `None` for any other order.
-    pub fn ordered(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|it| it.order() == word)
-    }
-
     /// Returns the new state of the lot; the history stores `Complete` in place of `Open` for a lot that was complete
     /// before a hold.
     pub const fn becomes(self) -> LotState {

@@ -65,6 +65,29 @@ pub enum HistoryError {
         /// Error of SQLite.
         source: rusqlite::Error,
     },
+    /// A read-only file has a file of SQLite beside it, whose rows SQLite reads with write access only.
+    #[error(
+        "{path} is read-only, and {beside} may hold its last rows: copy {path} and all files that begin with its name \
+         into a folder that can be written"
+    )]
+    Unsettled {
+        /// Path of the file.
+        path: PathBuf,
+        /// File that SQLite keeps beside it.
+        beside: PathBuf,
+    },
+    /// A read-only file has an older schema, which this program would have to migrate.
+    #[error(
+        "{path} is read-only and has schema {found}; this program reads {known}: copy it into a folder that can be written"
+    )]
+    Unmigrated {
+        /// Path of the file.
+        path: PathBuf,
+        /// Schema of the file.
+        found: i64,
+        /// Schema that this program reads.
+        known: i64,
+    },
     /// Any other error of the database.
     #[error("{doing}")]
     Database {
@@ -141,6 +164,30 @@ pub enum HistoryError {
         /// First finding of the integrity check.
         finding: String,
     },
+}
+
+impl HistoryError {
+    /// Returns true when SQLite failed because it could not write, or could not make a file of its own.
+    pub(super) fn wants_to_write(&self) -> bool {
+        let made_no_file =
+            |it: &rusqlite::Error| it.sqlite_error_code() == Some(rusqlite::ErrorCode::CannotOpen);
+        match self {
+            Self::ReadOnly { .. } => true,
+            Self::Database { source, .. } => made_no_file(source),
+            _ => false,
+        }
+    }
+
+    /// Returns the code of the refusal that a page shows, in the family `refusal`.
+    pub fn refusal(&self) -> &'static str {
+        match self {
+            Self::Missing { .. } => "history_missing",
+            Self::Locked { .. } => "history_locked",
+            Self::DiskFull { .. } => "disk_full",
+            Self::ReadOnly { .. } => "history_read_only",
+            _ => "history_failed",
+        }
+    }
 }
 
 /// Result of an access to the history.

@@ -1,4 +1,4 @@
-//! Looks at a history without changing it. A reader would migrate an older schema, and a writer would create the file.
+//! Examines a history without changing it. A reader would migrate an older schema, and a writer would create the file.
 
 use super::error::{Doing, Result};
 use super::{Archive, CalibrationRecord, SCHEMA, open};

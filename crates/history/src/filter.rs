@@ -11,11 +11,9 @@ use super::Moment;
 use super::gates::SUSPECT;
 use rusqlite::types::Value;
 use rusqlite::{Connection, Row, params_from_iter};
-use serde::Deserialize;
 
 /// Selects parts; a member that is absent selects all.
-#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Filter {
     /// Name of the lot.
     pub lot: Option<String>,
@@ -31,6 +29,8 @@ pub struct Filter {
     pub verdict: Option<String>,
     /// Name of the bin that the verdict assigns.
     pub bin: Option<String>,
+    /// Serial number of the part.
+    pub serial: Option<String>,
     /// `lot` for production parts (also when absent), `golden` for reference parts, or `all`.
     pub kind: Option<String>,
     /// Key of a parameter; selects parts with a value of it that counts (judged, and not measured again).
@@ -125,27 +125,6 @@ impl Filter {
         *self == runs
     }
 
-    /// Returns the names of the members that are set; leaves out `suspect`.
-    pub fn members(&self) -> Vec<&'static str> {
-        let set = [
-            ("lot", self.lot.is_some()),
-            ("run", self.run.is_some()),
-            ("recipe", self.recipe.is_some()),
-            ("since", self.since.is_some()),
-            ("until", self.until.is_some()),
-            ("verdict", self.verdict.is_some()),
-            ("bin", self.bin.is_some()),
-            ("kind", self.kind.is_some()),
-            ("param", self.param.is_some()),
-            ("min", self.min.is_some()),
-            ("max", self.max.is_some()),
-            ("limit", self.limit.is_some()),
-            ("offset", self.offset.is_some()),
-        ];
-        let named = set.into_iter().filter(|(_, is_set)| *is_set);
-        named.map(|(name, _)| name).collect()
-    }
-
     /// Selects the columns of the parts, in order of judgement.
     pub(super) fn parts(&self) -> Select {
         let mut select = match &self.param {
@@ -217,7 +196,8 @@ impl Filter {
 
     /// Returns true when a member of the filter needs a column that the index `measurement_value` lacks.
     fn restricts_part(&self) -> bool {
-        self.suspect || self.bin.is_some() || self.since.is_some() || self.until.is_some()
+        let of_part = self.bin.is_some() || self.serial.is_some();
+        self.suspect || of_part || self.since.is_some() || self.until.is_some()
     }
 
     /// Selects the cycle times of the parts that have one.
@@ -313,6 +293,9 @@ impl Filter {
         self.span(select, "part.judged_at_us");
         if let Some(bin) = &self.bin {
             select.add(" AND part.bin = ?", bin.clone());
+        }
+        if let Some(serial) = &self.serial {
+            select.add(" AND part.serial = ?", serial.clone());
         }
         if self.suspect {
             select.sql.push_str(SUSPECT);

@@ -19,9 +19,10 @@ use super::store::{RowIds, source};
 use super::{Archive, Filter, Moment, Store};
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// State of a lot.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LotState {
     /// A run of the lot may begin.
@@ -81,12 +82,14 @@ pub struct ReferenceCheckRecord {
 }
 
 /// State of a lot, with its recipe.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct LotStatus {
     /// State of the lot.
     pub state: LotState,
     /// Reason of the hold; `None` in every other state.
     pub why: Option<String>,
+    /// Reason in Chinese when an alarm holds the lot; `None` for a reason that a person wrote.
+    pub why_zh: Option<String>,
     /// Time of the last change of state.
     pub since: Moment,
     /// Name of the recipe of its last run, imports aside.
@@ -96,7 +99,7 @@ pub struct LotStatus {
 }
 
 /// Yield of a lot over its runs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, ToSchema)]
 pub struct LotYield {
     /// Parts judged in first tests, that is, not in a retest.
     pub parts: u64,
@@ -109,7 +112,7 @@ pub struct LotYield {
 }
 
 /// A reference check, as the history shows it.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct ReferenceCheck {
     /// Number of the run within its lot.
     pub run: u32,
@@ -119,6 +122,8 @@ pub struct ReferenceCheck {
     pub passed: bool,
     /// Result in words: serial numbers of the reference parts, or the deviation found.
     pub text: String,
+    /// Deviation in Chinese; `None` for a passed check.
+    pub text_zh: Option<String>,
     /// Time from which parts are suspect after a failed check; `None` for a passed one.
     pub suspect_since: Option<Moment>,
 }
@@ -185,7 +190,8 @@ impl Store {
 impl Archive {
     /// Returns the state of a lot; `None` for a lot without runs.
     pub fn standing(&self, lot: &str) -> Result<Option<LotStatus>> {
-        self.connection
+        let found = self
+            .connection
             .query_row(
                 "SELECT ifnull(lot_state.state, 'open'), lot_state.why,
                    ifnull(lot_state.since_us, lot.first_opened_us), recipe.name, recipe.hash
@@ -197,6 +203,7 @@ impl Archive {
                     Ok(LotStatus {
                         state: LotState::named(&row.get::<_, String>(0)?),
                         why: row.get(1)?,
+                        why_zh: None,
                         since: Moment(row.get(2)?),
                         recipe: row.get(3)?,
                         recipe_hash: row.get(4)?,
@@ -204,7 +211,14 @@ impl Archive {
                 },
             )
             .optional()
-            .doing("reading the state of a lot")
+            .doing("reading the state of a lot")?;
+        let Some(mut status) = found else {
+            return Ok(None);
+        };
+        if let Some(why) = &status.why {
+            status.why_zh = self.chinese(why, status.since.0)?;
+        }
+        Ok(Some(status))
     }
 
     /// Counts the parts of a lot: first tests, those of them that passed, parts that passed in a retest, suspect parts.
@@ -248,7 +262,8 @@ impl Archive {
 
     /// Returns the latest reference check of the real or the simulated rig.
     pub fn last_reference_check(&self, simulated: bool) -> Result<Option<ReferenceCheck>> {
-        self.connection
+        let mut found = self
+            .connection
             .query_row(
                 "SELECT run.number, golden_check.at_us, passed, text, suspect_since_us
                  FROM golden_check JOIN run ON run.id = golden_check.run_id
@@ -257,7 +272,11 @@ impl Archive {
                 reference_check_of,
             )
             .optional()
-            .doing("reading the last reference check")
+            .doing("reading the last reference check")?;
+        if let Some(failed) = found.as_mut().filter(|it| !it.passed) {
+            failed.text_zh = self.chinese(&failed.text, failed.at.0)?;
+        }
+        Ok(found)
     }
 }
 
@@ -267,6 +286,7 @@ fn reference_check_of(row: &rusqlite::Row<'_>) -> rusqlite::Result<ReferenceChec
         at: Moment(row.get(1)?),
         passed: row.get(2)?,
         text: row.get(3)?,
+        text_zh: None,
         suspect_since: row.get::<_, Option<i64>>(4)?.map(Moment),
     })
 }

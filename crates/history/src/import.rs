@@ -193,7 +193,7 @@ fn column(name: &str, parameters: &[String]) -> Result<Column, ImportError> {
 fn take(row: &mut ImportRow, column: &Column, name: &str, cell: &str) -> Result<(), &'static str> {
     match column {
         Column::Time => {
-            let time: Moment = cell.parse().map_err(|_| "an RFC 3339 time")?;
+            let time: Moment = Moment::exact(cell).map_err(|_| "an RFC 3339 time")?;
             row.part.judged_at_us = time.0;
             row.timed = true;
         }

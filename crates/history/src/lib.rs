@@ -20,6 +20,7 @@ pub mod report;
 
 mod alarm_states;
 mod alarms;
+mod approval;
 mod archive;
 mod backup;
 pub mod columns;
@@ -48,6 +49,7 @@ mod rejudge;
 mod reopening;
 mod retention;
 mod run_end;
+mod serials;
 mod series;
 mod store;
 mod values;
@@ -56,6 +58,7 @@ mod wear;
 
 pub use alarm_states::{AlarmChange, AlarmChangeRecord, UnacknowledgedAlarm};
 pub use alarms::{Alarm, AlarmState, Shelf};
+pub use approval::{SIGNATURES, Signature, signatures};
 pub use archive::Archive;
 pub use curve::CurveRecord;
 pub use decision::Decision;
@@ -71,8 +74,8 @@ pub use lot_book::LotEntry;
 pub use lot_name::{LOT_NAME, is_lot_name};
 pub use lots::{LotSummary, Passed, Yield};
 pub use moment::{Moment, MomentError};
-pub use open::{APPLICATION_ID, SCHEMA};
-pub use orders::{OrderEntry, OrderRecord};
+pub use open::{APPLICATION_ID, SCHEMA, is_in_use, with_end};
+pub use orders::{OrderEntry, OrderRecord, RevisionEntry};
 pub use owner::check_rig;
 pub use part::{Measurement, Part, Sample};
 pub use record::{

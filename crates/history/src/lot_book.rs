@@ -1,11 +1,14 @@
 //! The list of all lots that were run, the latest first; an entry covers all runs of its lot.
 
 use super::error::{Doing, Result};
-use super::{Archive, LotStatus, LotYield, Moment, Reopening};
+use super::{Archive, alarms};
+use super::{LotStatus, LotYield, Moment, Reopening};
 use serde::Serialize;
+use texts::{Args, Lang, Message};
+use utoipa::ToSchema;
 
 /// A lot with the sums over all its runs.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct LotEntry {
     /// Name of the lot.
     pub lot: String,
@@ -17,6 +20,8 @@ pub struct LotEntry {
     pub cause: Option<String>,
     /// Text of the cause, English.
     pub cause_text: Option<String>,
+    /// Text of the cause, Chinese; `None` when this version has none.
+    pub cause_text_zh: Option<String>,
     /// Decisions to open the complete lot again.
     pub reopenings: Vec<Reopening>,
     /// State and recipe.
@@ -27,27 +32,38 @@ pub struct LotEntry {
     pub counts: LotYield,
 }
 
-/// Selects the lots, without imports, with the number of their runs and the cause that ended the last run.
-const BOOK: &str = "SELECT lot.name, count(*), max(run.opened_at_us), run_end.cause, run_end.cause_text
+/// Selects the lots, without imports, with the number of their runs and the cause that ended the last run; if the cause
+/// is an alarm, with the arguments of its text.
+const BOOK: &str = "SELECT lot.name, count(*), max(run.opened_at_us), run_end.cause, run_end.cause_text,
+    (SELECT args FROM alarm WHERE alarm.run_id = run.id AND alarm.code = run_end.cause ORDER BY alarm.id DESC LIMIT 1)
     FROM run JOIN lot ON lot.id = run.lot_id LEFT JOIN run_end ON run_end.run_id = run.id WHERE run.source <> 'import'
     GROUP BY lot.id ORDER BY 3 DESC, lot.id DESC LIMIT ?1 OFFSET ?2";
+
+/// Returns the Chinese text of a cause: of an alarm with these arguments, or of the end of a run.
+fn chinese(cause: &str, args: Args) -> Option<String> {
+    let end = || Message::new("cause", cause.to_owned()).try_say(Lang::Zh);
+    alarms::said(cause, args).or_else(end)
+}
 
 impl Archive {
     /// Returns at most `limit` lots, the latest first; skips the first `offset` ones.
     pub fn lot_book(&self, limit: u32, offset: u32) -> Result<Vec<LotEntry>> {
-        let names: Vec<(String, u32, i64, [Option<String>; 2])> = self
+        let names: Vec<(String, u32, i64, [Option<String>; 3])> = self
             .connection
             .prepare(BOOK)
             .and_then(|mut it| {
                 let read = |row: &rusqlite::Row<'_>| {
-                    let cause = [row.get(3)?, row.get(4)?];
-                    Ok((row.get(0)?, row.get(1)?, row.get(2)?, cause))
+                    let cause: Option<String> = row.get(3)?;
+                    let args = alarms::args(row.get(5)?);
+                    let zh = cause.as_deref().and_then(|it| chinese(it, args));
+                    let causes = [cause, row.get(4)?, zh];
+                    Ok((row.get(0)?, row.get(1)?, row.get(2)?, causes))
                 };
                 it.query_map([limit, offset], read)?.collect()
             })
             .doing("reading the book of lots")?;
         let mut book = Vec::new();
-        for (lot, runs, opened_us, [cause, cause_text]) in names {
+        for (lot, runs, opened_us, [cause, cause_text, cause_text_zh]) in names {
             let Some(standing) = self.standing(&lot)? else {
                 continue;
             };
@@ -59,6 +75,7 @@ impl Archive {
                 runs,
                 cause,
                 cause_text,
+                cause_text_zh,
                 standing,
             });
         }

@@ -4,9 +4,10 @@ use super::error::{Doing, Result};
 use super::{Archive, Filter, Moment};
 use rusqlite::{OptionalExtension, params};
 use serde::Serialize;
+use utoipa::ToSchema;
 
 /// A run, with counts of its production parts.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct LotSummary {
     /// Name of the lot.
     pub lot: String,
@@ -47,7 +48,7 @@ pub struct LotSummary {
 }
 
 /// Number of parts by verdict.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, ToSchema)]
 pub struct Yield {
     /// Number of all parts, judged or not.
     pub parts: u64,

@@ -12,14 +12,14 @@ use super::error::{Doing, HistoryError, Result};
 use super::{reasons, series, views};
 use rusqlite::config::DbConfig;
 use rusqlite::{Connection, ErrorCode, OpenFlags};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Application id in the header of a history file: `RRig` in ASCII.
 pub const APPLICATION_ID: i64 = 0x5252_6967;
 
 /// Step `n` migrates schema `n` to `n + 1`. Existing steps never change.
-pub(super) const MIGRATIONS: [&str; 11] = [
+pub(super) const MIGRATIONS: [&str; 12] = [
     include_str!("schema/v1.sql"),
     include_str!("schema/v2.sql"),
     include_str!("schema/v3.sql"),
@@ -31,6 +31,7 @@ pub(super) const MIGRATIONS: [&str; 11] = [
     include_str!("schema/v9.sql"),
     include_str!("schema/v10.sql"),
     include_str!("schema/v11.sql"),
+    include_str!("schema/v12.sql"),
 ];
 
 /// Schema that this program writes.
@@ -42,6 +43,9 @@ const PACKS: i64 = 6;
 /// First schema that stores reasons as codes.
 const CODES: i64 = 8;
 
+/// Name of the failed step in errors.
+const OPENING: &str = "opening the history";
+
 /// Longest wait for a file that another process has locked; longer than any batch takes.
 const BUSY: Duration = Duration::from_secs(5);
 
@@ -50,40 +54,103 @@ pub(super) fn writer(path: &Path) -> Result<Connection> {
     let flags = OpenFlags::SQLITE_OPEN_READ_WRITE
         | OpenFlags::SQLITE_OPEN_CREATE
         | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    let connection = connected(path, flags).doing("opening the history")?;
+    let connection = connected(path, flags).doing(OPENING)?;
     prepare(&connection, path)?;
     Ok(connection)
 }
 
-/// Opens an existing file for reading; migrates an older schema first.
+/// Opens an existing file for reading; migrates an older schema first. On read-only media SQLite
+/// makes no files beside it.
 pub(super) fn reader(path: &Path) -> Result<Connection> {
-    if !path.exists() {
-        return Err(HistoryError::Missing {
-            path: path.to_owned(),
-        });
-    }
-    let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    let connection = connected(path, flags).doing("opening the history")?;
-    if check(&connection, path)? < SCHEMA {
+    let (connection, schema) = existing(path, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
+    if schema < SCHEMA {
+        if connection.is_readonly(rusqlite::MAIN_DB).doing(OPENING)? {
+            return Err(HistoryError::Unmigrated {
+                path: path.to_owned(),
+                found: schema,
+                known: SCHEMA,
+            });
+        }
         prepare(&connection, path)?;
     }
     connection
         .pragma_update(None, "query_only", true)
-        .doing("opening the history")?;
+        .doing(OPENING)?;
     Ok(connection)
 }
 
 /// Opens an existing file without changing it; returns its schema too, which may be older than this program's.
 pub(super) fn unchanged(path: &Path) -> Result<(Connection, i64)> {
+    existing(path, OpenFlags::SQLITE_OPEN_READ_ONLY)
+}
+
+/// Returns true when another program has the file open. A damaged file, and one that is no database, counts as not in use.
+///
+/// # Errors
+/// Fails when the file cannot be opened or locked, because then another program may have it open.
+pub fn is_in_use(path: &Path) -> Result<bool> {
+    let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let connection = Connection::open_with_flags(path, flags).doing(OPENING)?;
+    connection.busy_timeout(Duration::ZERO).doing(OPENING)?;
+    let alone = connection
+        .pragma_update_and_check(None, "locking_mode", "EXCLUSIVE", |_| Ok(()))
+        .and_then(|()| connection.execute_batch("BEGIN EXCLUSIVE; ROLLBACK"));
+    let code = alone
+        .as_ref()
+        .err()
+        .and_then(rusqlite::Error::sqlite_error_code);
+    if let Some(ErrorCode::NotADatabase | ErrorCode::DatabaseCorrupt) = code {
+        return Ok(false);
+    }
+    match alone.doing(OPENING) {
+        Err(HistoryError::Locked { .. }) => Ok(true),
+        answer => answer.map(|()| false),
+    }
+}
+
+fn existing(path: &Path, access: OpenFlags) -> Result<(Connection, i64)> {
     if !path.exists() {
         return Err(HistoryError::Missing {
             path: path.to_owned(),
         });
     }
-    let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    let connection = connected(path, flags).doing("opening the history")?;
-    let schema = check(&connection, path)?;
-    Ok((connection, schema))
+    let opened = |name: &Path, flags| {
+        let flags = flags | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+        let connection = connected(name, flags).doing(OPENING)?;
+        let schema = check(&connection, path)?;
+        Ok::<_, HistoryError>((connection, schema))
+    };
+    match opened(path, access) {
+        Err(error) if error.wants_to_write() => {
+            let name = immutable_name(path)?;
+            let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_URI;
+            opened(&name, flags)
+        }
+        done => done,
+    }
+}
+
+/// Returns a name with which SQLite opens the file as unchanging and makes no files beside it. Fails when SQLite's files
+/// are there already: it would ignore rows in them.
+fn immutable_name(path: &Path) -> Result<PathBuf> {
+    for end in ["-wal", "-shm"] {
+        let beside = with_end(path, end);
+        if std::fs::metadata(&beside).is_ok_and(|it| it.len() > 0) {
+            let path = path.to_owned();
+            return Err(HistoryError::Unsettled { path, beside });
+        }
+    }
+    let name = path.to_string_lossy().replace('%', "%25");
+    let name = name.replace('?', "%3f").replace('#', "%23");
+    Ok(format!("file:{name}?immutable=1").into())
+}
+
+/// Returns the path with `end` after its name: `rig.db-wal` for `rig.db` and `-wal`.
+#[must_use]
+pub fn with_end(path: &Path, end: &str) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(end);
+    name.into()
 }
 
 fn connected(path: &Path, flags: OpenFlags) -> rusqlite::Result<Connection> {

@@ -4,9 +4,10 @@ use super::{Moment, curve};
 use machine::dut::Reason;
 use machine::instrument::curve::Curve;
 use serde::Serialize;
+use utoipa::ToSchema;
 
 /// A part with its results.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Part {
     /// Always `part`, as in the output of a run.
     #[serde(rename = "type")]
@@ -50,13 +51,14 @@ pub struct Part {
     pub measurements: Vec<Measurement>,
     /// Sampled curves of a part that did not pass; filled only when a single part is read.
     #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "curve::shown")]
+    #[schema(value_type = Vec<curve::Shown>)]
     pub curves: Vec<Curve>,
     #[serde(skip)]
     pub(super) row: i64,
 }
 
 /// One attempt at measuring one parameter.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Measurement {
     /// Key of the parameter.
     pub parameter: String,
@@ -79,7 +81,7 @@ pub struct Measurement {
 }
 
 /// One reply of a module.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Sample {
     /// Name of the serial line.
     pub line: String,

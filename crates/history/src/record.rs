@@ -174,6 +174,13 @@ pub struct CalibrationRecord {
     pub verified: bool,
 }
 
+impl CalibrationRecord {
+    /// Returns true when the calibration has run out at `now_us`, microseconds since 1970 UTC.
+    pub const fn is_overdue(&self, now_us: i64) -> bool {
+        self.due_at_us <= now_us
+    }
+}
+
 /// Reference parts have calibrated the rig during the run of a lot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CalibratedRecord {

@@ -72,6 +72,6 @@ fn is_limit(reason: &Reason, seen: impl Fn(Characteristic) -> bool) -> bool {
         Code::Finding(_) => {
             reason.side == Some(Side::High) && reason.characteristic().is_some_and(seen)
         }
-        Code::Interrupted | Code::RigTrouble | Code::Unclassified => false,
+        Code::Interrupted | Code::RigTrouble | Code::Serial(_) | Code::Unclassified => false,
     }
 }

@@ -4,6 +4,7 @@ use super::error::{Doing, Result};
 use super::{Archive, Moment};
 use rusqlite::{Transaction, params};
 use serde::Serialize;
+use utoipa::ToSchema;
 
 /// A complete lot is opened again.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -19,7 +20,7 @@ pub struct ReopeningRecord {
 }
 
 /// A decision to open a complete lot again.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Reopening {
     /// Time of the decision.
     pub at: Moment,

@@ -107,9 +107,10 @@ fn empty_run(transaction: &Transaction<'_>, run: i64, now_us: i64) -> rusqlite::
     for sql in EMPTYING {
         transaction.execute(sql, [run])?;
     }
-    transaction.execute(
+    let noted = transaction.execute(
         "UPDATE export SET pruned_at_us = ?2 WHERE run_id = ?1",
         params![run, now_us],
     )?;
+    assert_eq!(noted, 1, "run {run} has no copy");
     Ok(())
 }

@@ -40,8 +40,13 @@ impl Archive {
     /// could not be judged. `limit` and `offset` of the filter count values.
     pub fn values(&self, param: &str, filter: &Filter) -> Result<Values> {
         let values = self.series(param, filter).doing("reading values")?;
-        let limits = self.limits(param, filter).doing("reading limits")?;
+        let limits = self.limits_of(param, filter)?;
         Ok(Values { values, limits })
+    }
+
+    /// Returns the limits of `param` in the selected runs.
+    pub fn limits_of(&self, param: &str, filter: &Filter) -> Result<LimitsSeen> {
+        self.limits(param, filter).doing("reading limits")
     }
 
     fn series(&self, param: &str, filter: &Filter) -> rusqlite::Result<Vec<f64>> {

@@ -5,6 +5,7 @@ use super::store::source;
 use super::{Archive, Moment, Store};
 use rusqlite::{Connection, Transaction, params};
 use serde::Serialize;
+use utoipa::ToSchema;
 
 /// Increase of the use count of a wearing part.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -18,7 +19,7 @@ pub struct WearRecord {
 }
 
 /// The use count of a wearing part.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Wear {
     /// Name of the counter.
     pub name: String,
@@ -71,7 +72,7 @@ impl Archive {
 }
 
 impl Store {
-    /// Returns the use counts of all wearing parts of the real or the simulated rig.
+    /// Returns what [`Archive::wear`] returns, for a program that writes.
     pub fn wear(&self, simulated: bool) -> Result<Vec<Wear>> {
         read(self.connection(), simulated)
     }

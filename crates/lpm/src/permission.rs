@@ -73,8 +73,9 @@ pub struct Forbidden {
 impl Model {
     /// Returns the first violation of a permission on a move; `None` is proof that the move is allowed.
     ///
-    /// An element that `permissions` omits must not be touched. The model calls `passing` once for each different
-    /// permission, with the depth (mm) to take off the faces of the mover ([`Shape::less`]).
+    /// An element that `permissions` omits must not be touched. `passing` gets a depth (mm)
+    /// and returns the move with the mover thinned by it ([`Shape::less`]). The model calls it once for each distinct
+    /// depth.
     ///
     /// # Errors
     /// Fails as `passing` does.

@@ -1,6 +1,43 @@
 //! The shape of a configuration file, as data: the check, the JSON schema and the tables of `config/README.md` use the
 //! same description.
 
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::fmt;
+use utoipa::ToSchema;
+
+/// Change of the value of one key.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct KeyChange {
+    /// Path of the key, for example `limits.operate_voltage_v.high`.
+    pub key: String,
+    /// Unit of both values; empty without one.
+    pub unit: String,
+    /// Value before the change; null when the file lacked the key.
+    pub old: Value,
+    /// Value after the change; null when the file no longer has the key.
+    pub new: Value,
+}
+
+impl fmt::Display for KeyChange {
+    /// Writes the line that every list of changes shows: `limits.operate_voltage_v.high: 9.0 V -> 8.75 V`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let said = |value: &Value| match value {
+            Value::Null => "-".to_owned(),
+            Value::String(text) => text.clone(),
+            value if self.unit.is_empty() => value.to_string(),
+            value => format!("{value} {}", self.unit),
+        };
+        write!(
+            f,
+            "{}: {} -> {}",
+            self.key,
+            said(&self.old),
+            said(&self.new)
+        )
+    }
+}
+
 /// Shape of a value.
 #[derive(Debug, Clone, Copy)]
 pub enum Form {

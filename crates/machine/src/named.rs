@@ -1,6 +1,6 @@
 //! Closed lists of names that files, orders, views or modules use.
 
-/// Declares an enum of names: every variant with the text that stands for it outside the program.
+/// Declares an enum whose variants have names for files, interfaces and texts.
 macro_rules! named {
     ($(#[$doc:meta])* $kind:ident { $($(#[$line:meta])* $variant:ident = $name:literal,)+ }) => {
         $(#[$doc])*

@@ -10,7 +10,7 @@ mod traffic;
 pub use machine::{ActuatorView, Button, Machine, Reaction, Token};
 pub use mimic::{Mimic, MimicBody};
 pub use motion::{MotionView, RefusedView, StrokeView};
-pub use order::{AnsweredOrder, By, LOT_ORDERS, ORDERS, Order};
+pub use order::{AnsweredOrder, By, Order};
 pub use request::{Answer, OrderRequest};
 pub use traffic::{LineTraffic, Message};
 
@@ -18,9 +18,10 @@ use crate::dut::Reason;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use texts::Args;
+use utoipa::ToSchema;
 
 /// The whole state shown on the page.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
 pub struct View {
     /// Wall-clock time at which the cycle published this view, microseconds since 1970 UTC, whatever the pace of rig
     /// time.
@@ -74,7 +75,7 @@ pub struct View {
 }
 
 /// Real-time rights of the program, and its lateness.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
 pub struct HostView {
     /// Priority of the cycle under SCHED_FIFO; null when the system refuses it, or in virtual time.
     pub fifo_priority: Option<u8>,
@@ -86,8 +87,8 @@ pub struct HostView {
     pub lateness: LatenessView,
 }
 
-/// Lateness of the waits of a run: from the instant that a wait asks for to the one at which it ends.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+/// Lateness of the cycle in a run: time from the deadline of a wait to its end.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
 pub struct LatenessView {
     /// Waits counted.
     pub waits: u64,
@@ -108,7 +109,7 @@ pub struct LatenessView {
 }
 
 /// Number of waits later than the edge of the previous bucket, up to this one's.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, ToSchema)]
 pub struct Bucket {
     /// Edge, ms.
     pub up_to_ms: f64,
@@ -117,7 +118,7 @@ pub struct Bucket {
 }
 
 /// End of a run of a lot.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, ToSchema)]
 pub struct RunEnd {
     /// The lot.
     pub lot: String,
@@ -130,7 +131,7 @@ pub struct RunEnd {
 }
 
 /// A part in the list of the last ones.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, ToSchema)]
 pub struct RecentPart {
     /// Number in the lot.
     pub seq: u64,
@@ -141,7 +142,7 @@ pub struct RecentPart {
 }
 
 /// The part judged last.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
 pub struct LastPart {
     /// Number in the lot.
     pub seq: u64,
@@ -160,7 +161,7 @@ pub struct LastPart {
 }
 
 /// An alarm as pages show it.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
 pub struct AlarmLine {
     /// Code of the alarm.
     pub code: String,
@@ -189,7 +190,7 @@ pub struct AlarmLine {
 }
 
 /// A line of modules.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
 pub struct LineView {
     /// Name in the wiring.
     pub name: String,
@@ -200,7 +201,7 @@ pub struct LineView {
 }
 
 /// Health of a module, counted since the program started.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
 pub struct ModuleView {
     /// Address on the line: two hexadecimal digits, as on the module.
     pub address: String,

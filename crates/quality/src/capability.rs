@@ -11,6 +11,7 @@
 use super::ordered::Ordered;
 use serde::Serialize;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
+use utoipa::ToSchema;
 
 /// d2 of moving ranges between two neighbours (ASTM manual of control charts, table of factors).
 pub const D2_PAIR: f64 = 1.128;
@@ -25,7 +26,7 @@ const TAIL: f64 = 0.001_349_898_031_630_095;
 const ENOUGH_FOR_TAILS: usize = 741;
 
 /// Limits of a value, in its unit; either may be missing.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, ToSchema)]
 pub struct Limits {
     /// Lower limit.
     pub low: Option<f64>,

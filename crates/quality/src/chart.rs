@@ -8,6 +8,7 @@ use super::capability::D2_PAIR;
 use super::rules::{self, Rules, Signal};
 use super::spread::{self, Spread};
 use serde::Serialize;
+use utoipa::ToSchema;
 
 /// Factors for subgroups of n values: (n, A2, D3, D4), from the ASTM manual of control charts.
 const FACTORS: [(usize, f64, f64, f64); 9] = [
@@ -23,7 +24,7 @@ const FACTORS: [(usize, f64, f64, f64); 9] = [
 ];
 
 /// One control chart. Every point has limits of its own, because on a chart of shares they differ from point to point.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Chart {
     /// Kind of chart: `individuals`, `moving range`, `means`, `ranges`, `share`.
     pub kind: &'static str,
@@ -36,7 +37,7 @@ pub struct Chart {
 }
 
 /// A point with its limits.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, ToSchema)]
 pub struct Point {
     /// Plotted value.
     pub value: f64,

@@ -9,6 +9,7 @@ use super::crossing;
 use super::squares::{Sizes, Squares};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
+use utoipa::ToSchema;
 
 /// Value of p above which the interaction counts as chance (AIAG MSA, 4th edition, appendix on ANOVA).
 const POOL_ABOVE: f64 = 0.25;
@@ -30,7 +31,7 @@ pub struct Reading {
 }
 
 /// Standard deviation of each source of variation, in the unit of the readings.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, ToSchema)]
 pub struct GaugeRr {
     /// `anova`, or `average and range`.
     pub method: &'static str,

@@ -4,6 +4,7 @@
 //!   last digits. [`ordered`]: quantiles, histogram.
 //! - [`capability`]: capability indices of a process, with confidence intervals.
 //! - [`chart`]: control charts. [`rules`]: patterns of points that are unlikely by chance.
+//! - [`equality`]: tests whether groups of values, such as lots, have the same mean and the same spread.
 //! - [`effectiveness`]: overall equipment effectiveness and losses of time.
 //! - [`summary`]: mean, spread and capability of one parameter, as `history stats` prints them.
 //! - [`tally`]: mean, spread and histogram of values that arrive one at a time.
@@ -15,6 +16,7 @@ pub mod chart;
 mod crossing;
 mod double;
 pub mod effectiveness;
+pub mod equality;
 pub mod gauge_rr;
 pub mod ordered;
 pub mod rules;

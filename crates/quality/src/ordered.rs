@@ -4,13 +4,14 @@
 //! "inclusive" in spreadsheets), so p = 0, 1/2 and 1 give minimum, median and maximum.
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 /// Finite values in ascending order.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Ordered(Vec<f64>);
 
 /// Histogram: number of values in each of several classes of equal width.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Histogram {
     /// Lower edge of the first class.
     pub from: f64,

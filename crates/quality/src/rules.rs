@@ -18,9 +18,10 @@
 
 use super::chart::Point;
 use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
 
 /// A published set of rules.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, ToSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rules {
     /// L. S. Nelson, Journal of Quality Technology 16 (1984).
@@ -30,7 +31,7 @@ pub enum Rules {
 }
 
 /// Signal of a rule: a point that completes its pattern.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Signal {
     /// Index of the point that completes the pattern, from 0.
     pub at: usize,

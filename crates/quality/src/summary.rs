@@ -3,9 +3,10 @@
 use super::capability::{Capability, D2_PAIR, Index, Limits};
 use super::spread::{self, Spread};
 use serde::Serialize;
+use utoipa::ToSchema;
 
 /// Statistics of one parameter. A figure that cannot be computed is `None`, null in JSON.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Summary {
     /// Key of the parameter.
     pub param: String,

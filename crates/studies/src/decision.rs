@@ -114,7 +114,7 @@ fn at_limit(order: &Order, lots: &[Lot]) -> anyhow::Result<Vec<Figure>> {
         return Ok(Vec::new());
     };
     let mean = limits.end() - usual.sd;
-    let of_lot = LOT_V / order.nominal_v();
+    let of_lot = LOT_V / order.nominal_v()?;
     let recipe = vec![("test.expected_operate_v", mean.into())];
     let variant = Variant::erring(BAUDS[0], recipe)
         .in_world(vec![("lot.operate_v_mean", (mean * of_lot).into())]);

@@ -6,7 +6,7 @@
 
 use super::chart::Chart;
 use super::figure::{Bar, Figure};
-use super::order::Order;
+use super::order::{Order, memory_kb};
 use super::output::Report;
 use anyhow::Context;
 use app::generate::{GenerateOptions, generate};
@@ -233,16 +233,10 @@ fn exported(order: &Order, db: &Path, parts: u64) -> anyhow::Result<(f64, Option
             anyhow::ensure!(status.success(), "the export ended with {status}");
             return Ok((from.elapsed().as_secs_f64(), peak));
         }
-        peak = peak_memory_mb(child.id()).or(peak);
+        let kb = memory_kb(child.id(), "VmHWM");
+        peak = kb.map(|kb| kb as f64 / 1024.0).or(peak);
         std::thread::sleep(LOOK);
     }
-}
-
-fn peak_memory_mb(process: u32) -> Option<f64> {
-    let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
-    let line = status.lines().find(|it| it.starts_with("VmHWM:"))?;
-    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kilobytes / 1024.0)
 }
 
 /// Returns the quantile `p` of times in milliseconds, with median and 99 % quantile as further columns.

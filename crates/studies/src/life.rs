@@ -1,11 +1,12 @@
-//! Memory, open files and rows of `serve` over a long life: lots one after another, ordered at the page as a person does.
+//! Memory, open files and rows of `serve` over many lots, which the study orders one after another, as a person does at
+//! the page.
 //!
-//! The program runs in a process of its own. The first lot fills what the program keeps; from its end on, memory and open
-//! files must not grow. Every ordered part must have one row.
+//! The program runs in a process of its own. The first lot fills caches and buffers; after it, memory and open files
+//! must not grow. Every ordered part must have one row.
 
 use super::chart::Chart;
 use super::figure::{Bar, Figure, percent};
-use super::order::Order;
+use super::order::{Order, memory_kb};
 use super::output::Report;
 use anyhow::{Context, bail, ensure};
 use app::progress::{PIECES, progress};
@@ -27,7 +28,7 @@ const STATE_TIMEOUT: Duration = Duration::from_secs(120);
 /// Longest wait for one part of a lot.
 const PART_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// What the operating system says of the program.
+/// Memory and open files of the program.
 #[derive(Debug, Clone, Copy)]
 struct Footprint {
     /// Resident memory, kB.
@@ -108,17 +109,14 @@ fn report(order: &Order, footprints: &[Footprint], rows: u64) -> Report {
 
 /// Counts the parts of all lots in the history.
 fn rows(db: &Path) -> anyhow::Result<u64> {
-    let all = Archive::open(db)?.query(&Filter::default())?;
-    Ok(all.iter().filter(|it| it.kind == "lot").count() as u64)
+    let runs = Archive::open(db)?.lots(&Filter::default())?;
+    Ok(runs.iter().map(|it| it.counts.parts).sum())
 }
 
-/// Reads what `/proc` says of a process.
 fn footprint(process: u32) -> anyhow::Result<Footprint> {
-    let status = std::fs::read_to_string(format!("/proc/{process}/status"))?;
-    let resident = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
-    let kb = resident.and_then(|it| it.split_whitespace().next()?.parse().ok());
+    let resident_kb = memory_kb(process, "VmRSS");
     Ok(Footprint {
-        resident_kb: kb.context("/proc/PID/status has no VmRSS")?,
+        resident_kb: resident_kb.context("/proc/PID/status has no VmRSS")?,
         files: std::fs::read_dir(format!("/proc/{process}/fd"))?.count() as u64,
     })
 }
@@ -170,9 +168,9 @@ impl Served {
             }
         };
         std::thread::spawn(move || std::io::copy(&mut log, &mut std::io::sink()));
-        let password = after(&text, "log in as engineer with ", ' ').context("no first login")?;
-        let login = json!({"user": "engineer", "password": password});
-        let session = served.ask("POST /api/login", &login)?;
+        let code = after(&text, "set-up code ", ',').context("no set-up code")?;
+        let engineer = json!({"code": code, "user": "engineer", "password": "of this study"});
+        let session = served.ask("POST /api/setup", &engineer)?;
         served.token = session["token"].as_str().context("no session")?.to_owned();
         Ok(served)
     }

@@ -1,7 +1,7 @@
 //! Comparison of measuring methods: a row of error and a row of seconds for each, and their plot.
 //!
-//! Seconds are rig time: the mean over good parts of the stages of the method. Error is the median over lots of the rms
-//! against the truth, bias the median over lots of the mean error, max the greatest error of any part.
+//! Seconds are the rig time that the stages of the method take, as a mean over good parts. Error is the median over lots of
+//! the rms against the truth, bias the median over lots of the mean error, max the greatest error of any part.
 
 use super::chart::Chart;
 use super::error::{Pooled, unit};

@@ -49,9 +49,16 @@ impl Order {
         Folder::Directory(self.config.clone())
     }
 
-    /// Returns the nominal coil voltage of the recipe, V; NaN for a kind without one.
-    pub fn nominal_v(&self) -> f64 {
-        self.recipe.device.part().nominal_v.unwrap_or(f64::NAN)
+    /// Returns the nominal coil voltage of the recipe, V.
+    ///
+    /// # Errors
+    /// Fails for a kind of part without a coil.
+    pub fn nominal_v(&self) -> anyhow::Result<f64> {
+        let nominal_v = self.recipe.device.part().nominal_v;
+        let name = &self.recipe.name;
+        nominal_v.with_context(|| {
+            format!("--recipe {name}: found a part without a coil, expected a relay")
+        })
     }
 
     /// Returns the range that the recipe admits for every parameter; a limit that it does not set is infinite.
@@ -161,4 +168,11 @@ pub fn finished(command: &mut Command, accepted: &[i32]) -> anyhow::Result<Outpu
         String::from_utf8_lossy(&output.stderr).trim()
     );
     Ok(output)
+}
+
+/// Returns a figure of `/proc/PID/status` in kB, such as `VmRSS` (resident memory now) and `VmHWM` (its peak).
+pub fn memory_kb(process: u32, key: &str) -> Option<u64> {
+    let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
+    let line = status.lines().find(|line| line.starts_with(key))?;
+    line.split_whitespace().nth(1)?.parse().ok()
 }

@@ -1,8 +1,9 @@
 //! The studies with one figure per parameter: accuracy and coverage. Below the figures of the parameters the report
 //! shows where the parts went, alarms, errors and EEPROM writes, and the parts worth a look.
 //!
-//! - Accuracy: the bar holds for the median over lots of the rms error over good parts; beside it the worst lot, the
-//!   median over lots of the mean error, the greatest error of any part and the pooled coverage.
+//! - Accuracy: the limit ([`Bar`]) applies to the rms error over good parts, as a median over lots. Further columns
+//!   have the worst lot, the bias (median over lots of the mean error), the greatest error of any part and the pooled
+//!   coverage.
 //! - Coverage: how often the stated uncertainty (k = 2) covers the truth, pooled over good parts of many lots. Every
 //!   lot has a rig of its own, which samples the errors that stay the same within a lot. Too high is as wrong as too
 //!   low: an uncertainty that always covers the truth is stated too large.
@@ -26,9 +27,9 @@ const CHART_FROM_PCT: f64 = 80.0;
 /// Compares the error of every parameter with the error that it may have.
 ///
 /// # Errors
-/// Fails when a lot cannot be run.
+/// Fails for a part without a coil, or when a lot cannot be run.
 pub fn accuracy(order: &Order) -> anyhow::Result<Report> {
-    let nominal_v = order.nominal_v();
+    let nominal_v = order.nominal_v()?;
     let row = |parameter: Parameter, errors: &Pooled| {
         let (n, rms) = (errors.n(), errors.median_rms());
         Figure::new(parameter.name(), n, rms, unit(parameter))

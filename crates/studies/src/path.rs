@@ -9,7 +9,7 @@
 use super::figure::{self, Bar, Figure};
 use super::lot::{Lot, Part};
 use super::order::Order;
-use rigsim::config::{Files, read_world};
+use rigsim::config::read_world;
 use rigsim::world::table::MechanismTable;
 
 /// Bar of the parts per hour with the default recipe: at least this many.
@@ -40,13 +40,8 @@ fn strokes(mechanism: &MechanismTable) -> [(&'static str, f64); 6] {
 /// # Errors
 /// Fails when the world file cannot be read.
 pub fn path(order: &Order, lots: &[Lot]) -> anyhow::Result<Vec<Figure>> {
-    let strokes = strokes(
-        &read_world(
-            &Files::Directory(order.config.clone()),
-            order.world.as_deref(),
-        )?
-        .mechanism,
-    );
+    let world = read_world(&order.config.as_path().into(), order.world.as_deref())?;
+    let strokes = strokes(&world.mechanism);
     let parts: Vec<&Part> = lots.iter().flat_map(|lot| &lot.parts).collect();
     let mean = |of: fn(&Part) -> Option<f64>| {
         let whole = parts.iter().filter(|part| part.cycle_s.is_some());

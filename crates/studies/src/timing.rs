@@ -63,7 +63,8 @@ fn rows(name: &str, lots: &[Lot]) -> Vec<Figure> {
     DIRECTIONS.iter().flat_map(of).collect()
 }
 
-/// Returns the error of the raw gate: time plus bounce against the true time, ms.
+/// Returns the error that counter gate 1 (not latched) alone would make, ms: measured time plus measured bounce, minus
+/// the true time.
 fn raw(part: &Part, time: Parameter, bounce: Parameter) -> Option<f64> {
     let (time, bounce) = (part.reading(time)?, part.reading(bounce)?);
     Some(time.value + bounce.value - time.truth)

@@ -80,7 +80,7 @@ impl Answer {
             .transient
             .events
             .iter()
-            .map(|event| json!([event.t_s, event.kind.name(), u8::from(event.on)]))
+            .map(|event| json!([event.t_s, event.element.name(), u8::from(event.on)]))
             .collect();
         json!({
             "name": self.name, "results": results(&Outcome::of(&self.transient.events)), "events": events,

@@ -6,7 +6,8 @@
 
 use super::order::Order;
 use anyhow::{Context, anyhow};
-use std::path::{Path, PathBuf};
+use app::backup_folder::copy_folder;
+use std::path::Path;
 use tempfile::TempDir;
 use toml::{Table, Value};
 
@@ -90,7 +91,7 @@ impl Variant {
     pub fn of(&self, order: &Order) -> anyhow::Result<ChangedConfig> {
         let folder = TempDir::new()?;
         let to = folder.path().join("config");
-        copy(&order.config, &to)?;
+        copy_folder(&order.config, &to)?;
         let recipe = to
             .join("recipes")
             .join(format!("{}.toml", order.recipe.name));
@@ -193,21 +194,6 @@ fn edit(path: &Path, change: impl Fn(&mut Table) -> anyhow::Result<()>) -> anyho
     let mut read = table(path)?;
     change(&mut read).with_context(|| path.display().to_string())?;
     write(path, &read)
-}
-
-fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
-    let named = || format!("copying {}", from.display());
-    std::fs::create_dir(to).with_context(named)?;
-    for entry in std::fs::read_dir(from).with_context(named)? {
-        let entry = entry.with_context(named)?;
-        let (path, target): (PathBuf, PathBuf) = (entry.path(), to.join(entry.file_name()));
-        if path.is_dir() {
-            copy(&path, &target)?;
-        } else {
-            std::fs::copy(&path, &target).with_context(named)?;
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -40,16 +40,19 @@ impl Filter {
     }
 
     /// Selects the orders of the filter, with their lot and run, in order of time.
-    pub(in super::super) fn orders(&self, who: Option<&str>) -> Select {
+    pub(in super::super) fn orders(&self, who: Option<&str>, order: Option<&str>) -> Select {
         let mut select = Select::new(
             "SELECT ordered.at_us, lot.name, run.number, ordered.who, ordered.role, ordered.origin, \
-             ordered.what, ordered.refused FROM ordered LEFT JOIN run ON run.id = ordered.run_id \
+             ordered.what, ordered.refused, ordered.refusal FROM ordered LEFT JOIN run ON run.id = ordered.run_id \
              LEFT JOIN lot ON lot.id = run.lot_id WHERE 1",
         );
         self.run_conditions(&mut select, "ordered");
         self.span(&mut select, "ordered.at_us");
         if let Some(who) = who {
             select.add(" AND ordered.who = ?", who.to_owned());
+        }
+        if let Some(order) = order {
+            select.add(" AND ordered.what ->> 'order' = ?", order.to_owned());
         }
         select.sql.push_str(" ORDER BY ordered.id");
         select

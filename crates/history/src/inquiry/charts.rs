@@ -8,12 +8,13 @@ use quality::chart::{Chart, individuals, shares, subgroups};
 use quality::rules::Rules;
 use serde::Serialize;
 use std::collections::BTreeSet;
+use utoipa::ToSchema;
 
 /// Allowed number of parts in a subgroup; 1 gives charts of individual values.
 pub const SUBGROUPS: std::ops::RangeInclusive<u8> = 1..=10;
 
 /// A control chart, and what it is about.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Charted {
     /// Parameter key or name of a bin.
     pub of: String,

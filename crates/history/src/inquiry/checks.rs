@@ -30,21 +30,6 @@ pub fn validate(filter: &Filter) -> Result<()> {
     }
 }
 
-/// Fails on a member that is not among `used`, because the inquiry would ignore it and so mislead.
-pub fn only(filter: &Filter, question: &str, used: &[&str]) -> Result<()> {
-    match filter
-        .members()
-        .into_iter()
-        .find(|name| !used.contains(name))
-    {
-        Some(field) => {
-            let reason = format!("`{question}` takes {} only", used.join(", "));
-            Err(InquiryError::member(field, reason))
-        }
-        None => Ok(()),
-    }
-}
-
 /// Fails on a word that is not among `known`; the message shows its first 40 characters.
 pub fn one_of(field: &'static str, found: Option<&str>, known: &[&str]) -> Result<()> {
     match found {

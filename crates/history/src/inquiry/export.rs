@@ -1,9 +1,11 @@
-//! Exports the selected parts as CSV or spreadsheet; the memory needed does not grow with their number.
+//! Exports the selected parts as CSV or spreadsheet; the memory needed does not grow with their number. A spreadsheet
+//! names the filter, so that a reader knows which parts its figures are about.
 
 use super::Result;
+use super::figures::agreed;
 use crate::columns::{self, Cell};
-use crate::report::Paper;
-use crate::report::sheet::Sheet;
+use crate::report::sheet::{Sheet, SheetFacts};
+use crate::report::{Paper, figure, parameter, short_hash};
 use crate::{Archive, Filter, csv};
 use rust_xlsxwriter::Workbook;
 use std::io::Write;
@@ -40,5 +42,62 @@ pub fn spreadsheet(
         each();
         sheet.part(&part)
     })??;
-    Ok(sheet.finish()?)
+    let limits = |key: &String| Ok(agreed(archive.limits_of(key, filter)?));
+    let about = SheetFacts {
+        facts: facts(archive, filter, paper)?,
+        limits: parameters.iter().map(limits).collect::<Result<_>>()?,
+    };
+    Ok(sheet.finish(&about)?)
+}
+
+/// Returns the recipes of the runs and the members of the filter, named in the language of the paper.
+fn facts(archive: &Archive, filter: &Filter, paper: &Paper) -> Result<Vec<(String, String)>> {
+    let language = paper.language;
+    let mut recipes: Vec<String> = archive
+        .lots(filter)?
+        .iter()
+        .map(|run| format!("{} ({})", run.recipe, short_hash(&run.recipe_hash)))
+        .collect();
+    recipes.sort();
+    recipes.dedup();
+    let name = |code| language.name("bin", code).to_owned();
+    let verdict = |code| language.name("paper_verdict", code).to_owned();
+    let number = |it: u64| it.to_string();
+    let members = [
+        ("paper-lot", filter.lot.clone()),
+        ("paper-run", filter.run.map(|it| it.to_string())),
+        ("paper-since", filter.since.map(|it| paper.time(it))),
+        ("paper-until", filter.until.map(|it| paper.time(it))),
+        ("paper-verdict", filter.verdict.as_deref().map(verdict)),
+        ("paper-bin", filter.bin.as_deref().map(name)),
+        (
+            "column-kind",
+            filter
+                .kind
+                .as_deref()
+                .map(|it| language.name("part_kind", it).to_owned()),
+        ),
+        (
+            "paper-parameter",
+            filter.param.as_deref().map(|it| parameter(language, it)),
+        ),
+        ("paper-min", filter.min.map(|it| figure(Some(it)))),
+        ("paper-max", filter.max.map(|it| figure(Some(it)))),
+        (
+            "paper-suspect",
+            filter
+                .suspect
+                .then(|| language.text("paper-yes_only").to_owned()),
+        ),
+        ("paper-first_parts", filter.limit.map(number)),
+        ("paper-left_out", filter.offset.map(number)),
+    ];
+    let members = members
+        .into_iter()
+        .filter_map(|(id, text)| Some((language.text(id).to_owned(), text?)));
+    let recipe = language.text("paper-recipe").to_owned();
+    Ok([(recipe, recipes.join(", "))]
+        .into_iter()
+        .chain(members)
+        .collect())
 }

@@ -5,6 +5,7 @@ use crate::{Archive, Filter, LimitsSeen};
 use quality::ordered::Histogram;
 use quality::{Limits, Ordered, Summary};
 use serde::Serialize;
+use utoipa::ToSchema;
 
 /// Approximate number of classes of a histogram.
 const CLASSES: usize = 30;
@@ -36,11 +37,27 @@ pub fn figures(
     })
 }
 
+/// Members of a [`Histogram`] that may be absent, for the schema of [`Classes`].
+#[derive(ToSchema)]
+#[expect(dead_code, reason = "describes an optional histogram")]
+struct SomeHistogram {
+    /// Lower edge of the first class.
+    #[schema(nullable = false)]
+    from: Option<f64>,
+    /// Width of every class: 1, 2 or 5 times a power of ten.
+    #[schema(nullable = false)]
+    width: Option<f64>,
+    /// Number of values per class; a value on an edge belongs to the class above it.
+    #[schema(nullable = false)]
+    counts: Option<Vec<u64>>,
+}
+
 /// A histogram, with limits.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Classes {
     /// Classes of equal width; `None` when the values have no spread.
     #[serde(flatten)]
+    #[schema(value_type = SomeHistogram)]
     pub histogram: Option<Histogram>,
     /// Limits that all runs share; none when they differ.
     #[serde(flatten)]

@@ -7,12 +7,13 @@ use machine::dut::Characteristic;
 use machine::dut::instruments::{Certificate, factors};
 use serde::Serialize;
 use units::Unit;
+use utoipa::ToSchema;
 
 /// Coverage factor of all expanded uncertainties in [`Instruments`].
 const K: f64 = 2.0;
 
 /// Calibrations and reference parts of a rig.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Instruments {
     /// Newest calibration for each coil voltage.
     pub calibrations: Vec<CalibrationStatus>,
@@ -23,7 +24,7 @@ pub struct Instruments {
 }
 
 /// A calibration, and until when it is valid.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct CalibrationStatus {
     /// Nominal coil voltage of its reference parts, V.
     pub nominal_v: Option<f64>,
@@ -42,11 +43,12 @@ pub struct CalibrationStatus {
 }
 
 /// A calibration factor with its expanded uncertainty.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, ToSchema)]
 pub struct ShownFactor {
     /// Name of the factor.
     pub name: &'static str,
     /// Unit of value and uncertainty, `1` for a ratio.
+    #[schema(value_type = String)]
     pub unit: Unit,
     /// Value of the factor.
     pub value: f64,
@@ -55,7 +57,7 @@ pub struct ShownFactor {
 }
 
 /// A reference part, with its certificate and latest readings.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct ReferencePartStatus {
     /// Serial number.
     pub serial: String,
@@ -70,9 +72,10 @@ pub struct ReferencePartStatus {
 }
 
 /// A certified quantity, with its latest reading.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, ToSchema)]
 pub struct CertifiedReading {
     /// Characteristic that is certified.
+    #[schema(value_type = String)]
     pub parameter: Characteristic,
     /// Certified value.
     pub certified: f64,
@@ -118,7 +121,7 @@ fn held(record: CalibrationRecord, now_us: i64) -> CalibrationStatus {
         nominal_v,
         made: Moment(record.made_at_us),
         due: Moment(record.due_at_us),
-        overdue: record.due_at_us <= now_us,
+        overdue: record.is_overdue(now_us),
         verified: record.verified,
         hash: record.hash,
         factors: factors.collect(),

@@ -6,6 +6,9 @@
 //! | statistics of one parameter | [`figures`] |
 //! | control charts of a parameter, or of the share of every bin | [`charts`] |
 //! | lot report, certificate, list of alarms | [`paper`] |
+//! | reasons of rejects and alarms, the most frequent first | [`pareto`] |
+//! | lots side by side, with tests of equality | [`comparison`] |
+//! | readings of a gauge study | [`gauge`] |
 //! | use of the time of a lot (OEE) | [`use_of_time`] |
 //! | calibrations with their due dates, reference parts | [`instruments`] |
 //! | verdicts of another recipe on a lot | [`rejudge`] |
@@ -16,11 +19,14 @@
 
 pub mod charts;
 pub mod checks;
+pub mod comparison;
 mod error;
 pub mod export;
 pub mod figures;
+pub mod gauge;
 pub mod instruments;
 pub mod paper;
+pub mod pareto;
 pub mod rejudge;
 mod use_of_time;
 

@@ -2,13 +2,16 @@
 
 use super::figures::agreed;
 use super::use_of_time::use_of_time;
-use super::{InquiryError, Result, checks};
+use super::{InquiryError, Result, checks, pareto};
 use crate::report::certificate::certificate;
 use crate::report::lot::{LotReport, ParameterValues};
 use crate::report::{Lang, Paper, alarms};
 use crate::store::PROGRAM;
 use crate::{Archive, Filter};
 use jiff::{Timestamp, tz::TimeZone};
+
+/// Largest number of rejects that a lot report lists.
+const LISTED: usize = 200;
 
 /// Returns the settings of a page about the selected runs, marked SIMULATION when one of them was on the simulated rig.
 pub fn paper_of(archive: &Archive, filter: &Filter, language: Lang) -> Result<Paper> {
@@ -59,6 +62,7 @@ pub fn lot_report(
         passed: archive.passed(filter)?,
         parameters: measured(archive, filter)?,
         effectiveness: use_of_time(archive, filter, &runs, ideal_cycle_s)?,
+        rejects: pareto::rejects(archive, filter, LISTED)?,
         alarms: &archive.alarms(filter)?,
     };
     Ok(report.html(paper))

@@ -6,9 +6,10 @@ use machine::dut::rejudge::{Basis, Misfit};
 use machine::dut::{Reason, Recipe};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use utoipa::ToSchema;
 
 /// A part, judged again.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct RejudgedPart {
     /// Always `part`.
     #[serde(rename = "type")]
@@ -41,7 +42,7 @@ impl RejudgedPart {
 }
 
 /// Number of parts by old and new verdict, with the other recipe.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Changes {
     /// Always `summary`.
     #[serde(rename = "type")]
@@ -55,7 +56,8 @@ pub struct Changes {
 }
 
 /// Number of parts with one pair of old and new verdict.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[schema(as = VerdictChange)]
 pub struct Change {
     /// Verdict that the run gave.
     pub was: String,

@@ -1,36 +1,8 @@
 //! Tests of inquiries and their answers.
 #![allow(clippy::unwrap_used)]
 
-use super::checks::{only, validate};
+use crate::Part;
 use crate::columns::{COLUMNS, header, row};
-use crate::{Filter, Part};
-
-#[test]
-fn an_unused_member_is_refused_by_name() {
-    let filter = Filter {
-        lot: Some("A".into()),
-        bin: Some("coil".into()),
-        ..Filter::default()
-    };
-    assert!(only(&filter, "list", &["lot", "bin"]).is_ok());
-    let refusal = only(&filter, "list", &["lot", "run"]).unwrap_err();
-    assert_eq!(refusal.to_string(), "bin: `list` takes lot, run only");
-}
-
-#[test]
-fn every_member_of_the_filter_has_its_name() {
-    let text = r#"{"lot":"A","run":1,"recipe":"r","since":"2026-01-01T00:00:00Z",
-        "until":"2026-01-02T00:00:00Z","verdict":"pass","bin":"pass","kind":"lot","param":"p",
-        "min":1.0,"max":2.0,"limit":3,"offset":4}"#;
-    let filter: Filter = serde_json::from_str(text).unwrap();
-    let json: serde_json::Value = serde_json::from_str(text).unwrap();
-    let mut members = filter.members();
-    members.sort_unstable();
-    let names: Vec<&String> = json.as_object().unwrap().keys().collect();
-    assert_eq!(members, names);
-    assert!(validate(&filter).is_ok());
-    assert!(Filter::default().members().is_empty());
-}
 
 #[test]
 fn a_part_has_one_cell_per_column() {

@@ -1,9 +1,9 @@
 //! Printable list of alarms with state (ISA-18.2), acknowledgement and shelving.
 
-use super::Paper;
 use super::page::{Format, head, page};
 use super::words::span;
-use crate::{Alarm, AlarmState};
+use super::{Paper, pareto};
+use crate::{Alarm, AlarmState, inquiry};
 use maud::{Markup, html};
 use texts::Lang;
 
@@ -11,8 +11,14 @@ use texts::Lang;
 pub fn list(paper: &Paper, about: &str, alarms: &[Alarm]) -> String {
     let language = paper.language;
     let title = language.text("paper-alarm_list");
-    let body = html! { (head(title, about)) (table(paper, alarms)) };
+    let body = html! { (head(title, about)) (ranked(language, alarms)) (table(paper, alarms)) };
     page(paper, Format::Portrait, title, &body)
+}
+
+/// Returns the alarms by code, with their counts and the time for which they were active.
+pub(super) fn ranked(language: Lang, alarms: &[Alarm]) -> Markup {
+    let title = language.text("paper-alarms_ranked");
+    pareto::pareto(language, title, &inquiry::pareto::alarms(alarms), None)
 }
 
 pub(super) fn table(paper: &Paper, alarms: &[Alarm]) -> Markup {
@@ -58,7 +64,7 @@ fn text(language: Lang, alarm: &Alarm) -> Markup {
 
 /// Returns state, acknowledgement and shelving as one cell.
 fn state(paper: &Paper, alarm: &Alarm) -> Markup {
-    let say = |id| paper.language.text(id);
+    let (say, comma) = (|id| paper.language.text(id), paper.language.comma());
     let name = match alarm.state {
         AlarmState::Unacknowledged => say("paper-unacknowledged"),
         AlarmState::Acknowledged => say("paper-acknowledged"),
@@ -69,10 +75,10 @@ fn state(paper: &Paper, alarm: &Alarm) -> Markup {
         (name)
         @if let Some(at) = alarm.acknowledged {
             br; (say("paper-acknowledged_at")) " " (paper.time(at))
-            @if let Some(by) = &alarm.acknowledged_by { ", " (by) }
+            @if let Some(by) = &alarm.acknowledged_by { (comma) (by) }
         }
         @if let Some(shelf) = &alarm.shelf {
-            br; (say("paper-shelved_until")) " " (paper.time(shelf.until)) ", " (shelf.by) ": " (shelf.reason)
+            br; (say("paper-shelved_until")) " " (paper.time(shelf.until)) (comma) (shelf.by) (paper.language.colon()) (shelf.reason)
         }
     }
 }

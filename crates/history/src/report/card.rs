@@ -125,7 +125,7 @@ fn steps(language: Lang, recipe: &Recipe, kind: &Card, plant: &CardSettings) -> 
 fn joined(language: Lang, pieces: &[Piece]) -> String {
     let one = |piece: &Piece| match piece {
         Piece::Figure(value) => figure(Some(*value)),
-        Piece::Literal(text) => (*text).to_owned(),
+        Piece::Literal(text) => text.replace(", ", language.comma()),
         Piece::Text(id) => language.text(id).to_owned(),
     };
     pieces.iter().map(one).collect()
@@ -147,7 +147,7 @@ fn demands(language: Lang, recipe: &Recipe, characteristics: &[Characteristic]) 
         is_limited.then(|| format!("{name} {}", limits(Limits { low, high })))
     };
     let all: Vec<String> = characteristics.iter().filter_map(one).collect();
-    all.join("; ")
+    all.join(language.semicolon())
 }
 
 fn remarks(language: Lang, recipe: &Recipe, kind: &Card) -> String {
@@ -156,14 +156,14 @@ fn remarks(language: Lang, recipe: &Recipe, kind: &Card) -> String {
         Rule::GuardBand => language.text("paper-decision_guard_band"),
         Rule::Simple => language.text("paper-decision_simple"),
     };
-    let repeats = language.text("paper-confirmations");
+    let (repeats, mark) = (language.text("paper-confirmations"), language.semicolon());
     let counts = kind.counts.iter();
     let counts: String = counts
-        .map(|(words, count)| format!("; {} {count}", language.text(words)))
+        .map(|(words, count)| format!("{mark}{} {count}", language.text(words)))
         .collect();
     let recipe_text = language.text("paper-card_recipe_sha_256");
     format!(
-        "{rule}; {repeats} {}{counts}; {recipe_text} {}",
+        "{rule}{mark}{repeats} {}{counts}{mark}{recipe_text} {}",
         decision.slow_repeats,
         short_hash(&recipe.hash)
     )

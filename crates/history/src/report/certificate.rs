@@ -1,11 +1,12 @@
 //! Certificate of one part: results with uncertainty and limits, the calibration, and what was not tested.
 
+use super::data_matrix::data_matrix;
 use super::lot::{limits, source};
 use super::page::{Format, facts, head, page, sign_off};
-use super::words::{figure, parameter, short_hash};
+use super::words::{doubt_decimals, figure, parameter, short_hash};
 use super::{Paper, words};
 use crate::{LotSummary, Measurement, Part};
-use maud::{Markup, html};
+use maud::{Markup, PreEscaped, html};
 use quality::Limits;
 use texts::Lang;
 
@@ -21,6 +22,9 @@ pub fn certificate(paper: &Paper, part: &Part, run: &LotSummary) -> String {
     let body = html! {
         (head(title, &format!("{} {number}", language.text("paper-number"))))
         (facts(&about(paper, part, run)))
+        @if let Some(symbol) = part.serial.as_deref().and_then(data_matrix) {
+            figure.symbol { (PreEscaped(symbol)) figcaption { (part.serial.as_deref().unwrap_or_default()) } }
+        }
         div class={ "verdict " (part.verdict) } { (language.name("paper_verdict", &part.verdict)) }
         @for reason in &part.reason_codes { p { (words::reason(language, reason)) } }
         (results(language, part))
@@ -91,7 +95,7 @@ fn rounded(value: Option<f64>, uncertainty: Option<f64>) -> (String, String) {
     let Some(doubt) = uncertainty.filter(|it| it.is_finite() && *it > 0.0) else {
         return (figure(value), figure(uncertainty));
     };
-    let decimals = (1.0 - doubt.log10().floor()).clamp(0.0, 9.0) as usize;
+    let decimals = doubt_decimals(doubt);
     let value = value.map_or_else(|| figure(None), |it| format!("{it:.decimals$}"));
     (value, format!("{doubt:.decimals$}"))
 }

@@ -1,9 +1,10 @@
-//! Printable report of a lot: counts, capability, use of time, alarms.
+//! Printable report of a lot: counts, reasons, capability, use of time, alarms, rejects.
 
 use super::charts;
 use super::page::{Format, facts, head, page, sign_off};
 use super::words::{figure, parameter, percent, short_hash, span, unbroken};
-use super::{Paper, alarms};
+use super::{Paper, alarms, pareto};
+use crate::inquiry::pareto::Rejects;
 use crate::{Alarm, LotSummary, Passed, Reopening};
 use maud::{Markup, PreEscaped, html};
 use quality::capability::{Index, by_percentiles};
@@ -26,6 +27,8 @@ pub struct LotReport<'a> {
     pub parameters: Vec<ParameterValues>,
     /// Use of the time; `None` for an import.
     pub effectiveness: Option<Effectiveness>,
+    /// Rejects with their reasons.
+    pub rejects: Rejects,
     /// Alarms in order of time.
     pub alarms: &'a [Alarm],
 }
@@ -52,13 +55,17 @@ impl LotReport<'_> {
             @for it in self.reopenings { p.remark { (reopening(paper, it)) } }
             h2 { (language.text("paper-result")) }
             (self.counts(language))
+            (pareto::pareto(language, language.text("paper-reasons"), &self.rejects.reasons, Some(self.rejects.parts)))
             h2 { (language.text("paper-parameters")) }
             (self.table(language))
             p.note { (language.text("paper-capability_note")) }
             (self.histograms(language))
             @if let Some(it) = &self.effectiveness { (use_of_time(language, it)) }
             h2 { (language.text("paper-alarms")) }
+            (alarms::ranked(language, self.alarms))
             (alarms::table(paper, self.alarms))
+            h2 { (language.text("paper-rejects")) }
+            (pareto::rejects(language, &self.rejects))
             p.remark { (language.text("paper-not_tested")) }
             (sign_off(language))
         };

@@ -6,6 +6,7 @@
 //! | certificate of one part, with the line that says what was not tested | [`certificate`] |
 //! | control charts | [`spc`] |
 //! | alarm list | [`alarms`] |
+//! | lots side by side | [`comparison`] |
 //! | operation process card of a recipe | [`card`] |
 //! | spreadsheet with native charts | [`sheet`] |
 //!
@@ -16,16 +17,21 @@ pub mod alarms;
 pub mod card;
 pub mod certificate;
 mod charts;
+pub mod comparison;
+mod data_matrix;
 pub mod lot;
 mod page;
+mod pareto;
 mod plot;
 pub mod sheet;
+mod sheet_cells;
 pub mod spc;
 pub mod svg;
 mod words;
 
 pub use texts::Lang;
 pub use words::significant;
+pub(crate) use words::{figure, parameter, short_hash};
 
 use crate::Moment;
 use jiff::{Timestamp, tz::TimeZone};

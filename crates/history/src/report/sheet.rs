@@ -1,18 +1,24 @@
 //! Spreadsheet of an export: a summary with native charts, then one row per part.
 //!
-//! Memory does not grow with the number of parts: the library writes rows to a temporary file, and only a [`Tally`] per
-//! parameter stays in memory. After [`ROWS`] rows a new sheet begins. Texts are written as texts, never as formulas.
+//! Headings and texts are in the language of the paper; numbers show as many digits as on paper. CSV has keys and
+//! codes. Memory does not grow with the number of parts: the library writes rows to a temporary file, and only a
+//! [`Tally`] per parameter stays in memory. After [`ROWS`] rows a new sheet begins. Texts are written as texts, never
+//! as formulas.
 
 use super::Paper;
-use super::words::parameter;
-use crate::columns::{self, Cell};
-use crate::{Moment, Part};
-use jiff::tz::TimeZone;
-use jiff::{Timestamp, Unit};
+use super::sheet_cells::{Formats, written};
+use super::words::{doubt_decimals, parameter};
+use crate::Part;
+use crate::columns;
+use quality::capability::D2_PAIR;
 use quality::ordered::Histogram;
 use quality::tally::Tally;
+use quality::{Capability, Limits};
 use rust_xlsxwriter::{Chart, ChartType, Color, Format, Workbook, Worksheet, XlsxError};
+use serde_json::{Map, Value};
 use std::collections::BTreeMap;
+use std::iter::repeat;
+use texts::Lang;
 
 /// Largest number of parts on one sheet; a spreadsheet can hold 1,048,576 rows.
 const ROWS: u32 = 1_000_000;
@@ -21,16 +27,42 @@ pub const EPOCH_DAYS: f64 = 25_569.0;
 /// Height of a chart, in rows of the summary.
 const CHART_ROWS: u32 = 16;
 
-/// Column of the charts in the summary.
-const CHART_COLUMN: u16 = 7;
+/// Column of the charts in the summary, right of the figures.
+const CHART_COLUMN: u16 = 12;
+
+/// Facts about the parts of a spreadsheet, for its summary.
+#[derive(Debug, Clone, Default)]
+pub struct SheetFacts {
+    /// Facts by name, such as the filter and the recipes.
+    pub facts: Vec<(String, String)>,
+    /// Limits of each parameter, in the order of the columns.
+    pub limits: Vec<Limits>,
+}
+
+/// Figures of one parameter over the parts written so far.
+#[derive(Debug, Clone, Default)]
+struct Figures {
+    tally: Tally,
+    /// Sum of the absolute differences between successive values.
+    ranges: f64,
+    last: Option<f64>,
+}
+
+impl Figures {
+    fn add(&mut self, value: f64) {
+        let range = self.last.replace(value).map(|last| (value - last).abs());
+        self.ranges += range.unwrap_or(0.0);
+        self.tally.add(value);
+    }
+}
 
 /// A spreadsheet under construction.
 pub struct Sheet {
     workbook: Workbook,
     paper: Paper,
-    time: Format,
+    formats: Formats,
     keys: Vec<String>,
-    tallies: Vec<Tally>,
+    figures: Vec<Figures>,
     bins: BTreeMap<String, u64>,
     sheets: usize,
     row: u32,
@@ -51,9 +83,9 @@ impl Sheet {
         let mut sheet = Self {
             workbook,
             paper: paper.clone(),
-            time: Format::new().set_num_format("yyyy-mm-dd hh:mm:ss"),
+            formats: Formats::new(),
             keys: parameters.to_vec(),
-            tallies: vec![Tally::default(); parameters.len()],
+            figures: vec![Figures::default(); parameters.len()],
             bins: BTreeMap::new(),
             sheets: 0,
             row: 0,
@@ -68,17 +100,22 @@ impl Sheet {
             self.next_sheet()?;
         }
         let to = self.workbook.worksheet_from_index(self.sheets)?;
-        for (column, cell) in (0..).zip(columns::row(part, &self.keys)) {
-            written(
-                to,
-                (self.row, column),
-                &cell,
-                (&self.paper.zone, &self.time),
-            )?;
+        let (row, zone) = (self.row, &self.paper.zone);
+        let texts = columns::texts_in(part, self.paper.language);
+        for (column, cell) in (0..).zip(texts) {
+            written(to, (row, column), &cell, (zone, &self.formats))?;
         }
-        for (key, tally) in self.keys.iter().zip(&mut self.tallies) {
-            let value = part.values.get(key).and_then(serde_json::Value::as_f64);
-            value.into_iter().for_each(|value| tally.add(value));
+        let first = columns::COLUMNS.len() as u16;
+        let count = self.keys.len() as u16;
+        for ((column, key), figures) in (first..).zip(&self.keys).zip(&mut self.figures) {
+            let number = |of: &Map<String, Value>| of.get(key).and_then(Value::as_f64);
+            let (value, doubt) = (number(&part.values), number(&part.uncertainty));
+            let doubt = doubt.filter(|it| *it > 0.0);
+            let decimals = doubt.map(doubt_decimals);
+            for (column, value) in [(column, value), (column + count, doubt)] {
+                self.formats.number(to, (row, column), value, decimals)?;
+            }
+            value.into_iter().for_each(|value| figures.add(value));
         }
         let bin = part.bin.as_deref().unwrap_or_default();
         *self.bins.entry(bin.to_owned()).or_default() += 1;
@@ -87,35 +124,37 @@ impl Sheet {
     }
 
     /// Writes the summary and returns the workbook.
-    pub fn finish(mut self) -> Result<Workbook, XlsxError> {
+    pub fn finish(mut self, about: &SheetFacts) -> Result<Workbook, XlsxError> {
         let language = self.paper.language;
         let name = language.text("paper-summary").to_owned();
         let bold = Format::new().set_bold();
         let to = self.workbook.worksheet_from_index(0)?;
-        let header = [
-            language.text("paper-sheet_parameter"),
-            "n",
-            language.text("paper-sheet_mean"),
-            language.text("paper-sheet_sd"),
-            language.text("paper-sheet_min"),
-            language.text("paper-sheet_max"),
-        ];
-        for (column, text) in (0..).zip(header) {
+        let header = HEADER.map(|id| language.text(id));
+        for (column, text) in (0..).zip(header.into_iter().chain(["Cp", "Cpk", "Ppk"])) {
             to.write_string_with_format(0, column, text, &bold)?;
         }
         to.set_column_width(0, 28)?;
         let mut row = 1;
         let mut histograms = Vec::new();
-        for (key, tally) in self.keys.iter().zip(self.tallies) {
-            let (spread, histogram) = tally.finish();
-            to.write_string(row, 0, parameter(language, key))?;
-            to.write_number(row, 1, spread.n() as f64)?;
-            let figures = [spread.mean(), spread.sd(), spread.min(), spread.max()];
-            for (column, value) in (2..).zip(figures) {
-                number(to, row, column, value)?;
-            }
+        let limits = about
+            .limits
+            .iter()
+            .copied()
+            .chain(repeat(Limits::default()));
+        for ((key, figures), limits) in self.keys.iter().zip(self.figures).zip(limits) {
+            let histogram = summary_row(to, row, (language, key), figures, limits, &self.formats)?;
             row += 1;
             histograms.extend(histogram.map(|it| (parameter(language, key), it)));
+        }
+        row += 1;
+        let made = (
+            language.text("paper-made").to_owned(),
+            self.paper.made.clone(),
+        );
+        for (name, text) in about.facts.iter().chain([&made]) {
+            to.write_string_with_format(row, 0, name, &bold)?;
+            to.write_string(row, 1, text)?;
+            row += 1;
         }
         row += 1;
         let bins: Vec<(String, u64)> = self
@@ -144,7 +183,7 @@ impl Sheet {
         head(to, &self.paper);
         to.set_freeze_panes(1, 0)?;
         to.set_column_width(0, 19)?;
-        for (column, name) in (0..).zip(columns::header(&self.keys)) {
+        for (column, name) in (0..).zip(columns::header_in(self.paper.language, &self.keys)) {
             to.write_string_with_format(0, column, name, &bold)?;
         }
         self.row = 1;
@@ -200,46 +239,40 @@ fn classes(it: &Histogram) -> Vec<(String, u64)> {
         .collect()
 }
 
-/// Writes a cell; leaves it empty for an instant beyond the range of the calendar.
-fn written(
+/// Ids of the headings of the summary; `Cp`, `Cpk` and `Ppk` follow them.
+const HEADER: [&str; 8] = [
+    "paper-sheet_parameter",
+    "paper-tested",
+    "paper-sheet_mean",
+    "paper-sheet_sd",
+    "paper-sheet_min",
+    "paper-sheet_max",
+    "paper-low_limit",
+    "paper-high_limit",
+];
+
+/// Writes the figures of one parameter; returns its histogram.
+fn summary_row(
     to: &mut Worksheet,
-    (row, column): (u32, u16),
-    cell: &Cell<'_>,
-    (zone, time): (&TimeZone, &Format),
-) -> Result<(), XlsxError> {
-    match cell {
-        Cell::Empty => {}
-        Cell::Text(text) if text.is_empty() => {}
-        Cell::Text(text) => {
-            to.write_string(row, column, text.as_ref())?;
-        }
-        Cell::Count(count) => {
-            to.write_number(row, column, *count as f64)?;
-        }
-        Cell::Number(number) => {
-            to.write_number(row, column, *number)?;
-        }
-        Cell::Time(at) => {
-            if let Some(at) = serial(*at, zone) {
-                to.write_number_with_format(row, column, at, time)?;
-            }
-        }
+    row: u32,
+    (language, key): (Lang, &str),
+    figures: Figures,
+    limits: Limits,
+    formats: &Formats,
+) -> Result<Option<Histogram>, XlsxError> {
+    let (spread, histogram) = figures.tally.finish();
+    let pairs = spread.n().saturating_sub(1);
+    let within = (pairs > 0).then(|| figures.ranges / pairs as f64 / D2_PAIR);
+    let able = Capability::of(limits, spread.n(), spread.mean(), within, spread.sd());
+    to.write_string(row, 0, parameter(language, key))?;
+    to.write_number(row, 1, spread.n() as f64)?;
+    let values = [spread.mean(), spread.sd(), spread.min(), spread.max()];
+    let values = values.into_iter().chain([limits.low, limits.high]);
+    for (column, value) in (2..).zip(values) {
+        formats.number(to, (row, column), value, None)?;
     }
-    Ok(())
-}
-
-fn number(to: &mut Worksheet, row: u32, column: u16, value: Option<f64>) -> Result<(), XlsxError> {
-    if let Some(value) = value.filter(|it| it.is_finite()) {
-        to.write_number(row, column, value)?;
+    for (column, index) in (8..).zip([able.cp, able.cpk, able.ppk]) {
+        formats.number(to, (row, column), index.map(|it| it.value), Some(2))?;
     }
-    Ok(())
-}
-
-/// Converts an instant to the serial date of a spreadsheet: local time in days, to the second; `None` beyond the range
-/// of the calendar.
-fn serial(at: Moment, zone: &TimeZone) -> Option<f64> {
-    let stamp = Timestamp::from_microsecond(at.0).ok()?;
-    let stamp = stamp.round(Unit::Second).ok()?;
-    let local = stamp.as_second() + i64::from(zone.to_offset(stamp).seconds());
-    Some(local as f64 / 86_400.0 + EPOCH_DAYS)
+    Ok(histogram)
 }

@@ -94,7 +94,10 @@ fn signals(language: Lang, signals: &[Signal]) -> String {
     let one = |rule: u8| {
         let count = signals.iter().filter(|it| it.rule == rule).count();
         let name = language.text("paper-rule");
-        (count > 0).then(|| format!("{name} {rule}: {count}"))
+        (count > 0).then(|| format!("{name} {rule}{}{count}", language.colon()))
     };
-    (1..=8).filter_map(one).collect::<Vec<_>>().join(", ")
+    (1..=8)
+        .filter_map(one)
+        .collect::<Vec<_>>()
+        .join(language.comma())
 }

@@ -3,16 +3,20 @@
 
 use super::card::card;
 use super::certificate::certificate;
+use super::comparison::comparison;
 use super::lot::{LotReport, ParameterValues};
 use super::spc::{NamedChart, spc};
 use super::*;
+use crate::inquiry::comparison::{ComparedLot, Comparison};
+use crate::inquiry::pareto::{Ranked, Rejects};
 use crate::{Alarm, AlarmState, LotSummary, Measurement, Part, Passed, Reopening, Shelf, Yield};
 use config::{Folder, load_recipe};
 use machine::dut::card::{CardSettings, Quota, STEPS};
 use machine::dut::{Reason, Recipe};
-use quality::Limits;
 use quality::chart::{individuals, shares};
+use quality::equality::Equality;
 use quality::rules::Rules;
+use quality::{Limits, Summary};
 
 const LANGUAGES: [Lang; 2] = [Lang::En, Lang::Zh];
 /// Text that an operator might type to inject a script.
@@ -121,9 +125,74 @@ fn lot_report_on(paper: &Paper) -> String {
         },
         parameters: vec![values],
         effectiveness: None,
+        rejects: some_rejects(),
         alarms: &alarms,
     };
     report.html(paper)
+}
+
+fn some_rejects() -> Rejects {
+    let why = ["operate_voltage_v high", "coil open"].map(Reason::from_text);
+    Rejects {
+        reasons: vec![Ranked {
+            en: EVIL.into(),
+            zh: EVIL.into(),
+            n: 2,
+            cumulative: 1.0,
+            active_s: None,
+        }],
+        rejects: 3,
+        parts: 8,
+        first: vec![part("fail").with_reasons(why.into())],
+    }
+}
+
+#[test]
+fn a_lot_report_ranks_reasons_and_lists_rejects() {
+    for (language, words) in [
+        (
+            Lang::En,
+            [
+                "2 · 25.00 %",
+                "above the upper limit: 7.7042",
+                "2 more rejects",
+            ],
+        ),
+        (Lang::Zh, ["2 · 25.00 %", "超出上限: 7.7042", "另有 2 件"]),
+    ] {
+        let page = lot_report(language);
+        for word in words {
+            assert!(page.contains(word), "{word}: {page}");
+        }
+    }
+}
+
+#[test]
+fn a_comparison_draws_every_lot() {
+    let lot = |shares: [f64; 2]| ComparedLot {
+        lot: EVIL.into(),
+        limits: Limits::default(),
+        summary: Summary::of("operate_voltage_v", &[7.1, 7.3], Limits::default()),
+        shares: shares.into(),
+    };
+    let test = Equality {
+        f: 4.2,
+        df1: 1.0,
+        df2: 9.0,
+        p: 0.07,
+    };
+    let compared = Comparison {
+        param: "operate_voltage_v".into(),
+        lots: vec![lot([0.5, 0.5]), lot([0.25, 0.75])],
+        means: Some(test),
+        spreads: None,
+        from: Some(7.0),
+        width: Some(0.2),
+    };
+    let page = comparison(&paper(Lang::En), &compared);
+    assert_eq!(page.matches("<polyline").count(), 2);
+    assert!(page.contains("0.0700") && page.contains("no difference shown"));
+    assert!(!page.contains("<script"));
 }
 
 #[test]

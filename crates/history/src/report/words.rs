@@ -29,12 +29,12 @@ pub(super) fn unbroken(name: &str) -> String {
 }
 
 /// Returns the first 16 digits of a hash.
-pub(super) fn short_hash(hash: &str) -> String {
+pub(crate) fn short_hash(hash: &str) -> String {
     hash.get(..16).unwrap_or(hash).to_owned()
 }
 
 /// Formats a value with five significant digits and without trailing zeros; a dash for `None`.
-pub(super) fn figure(value: Option<f64>) -> String {
+pub(crate) fn figure(value: Option<f64>) -> String {
     let Some(value) = value.filter(|it| it.is_finite()) else {
         return "–".to_owned();
     };
@@ -43,6 +43,11 @@ pub(super) fn figure(value: Option<f64>) -> String {
         true => significant(value, 5),
         false => format!("{value:.3e}"),
     }
+}
+
+/// Returns the number of decimals that show an uncertainty above zero with two significant digits (GUM 7.2.6).
+pub(super) fn doubt_decimals(doubt: f64) -> usize {
+    (1.0 - doubt.log10().floor()).clamp(0.0, 9.0) as usize
 }
 
 /// Formats a value with `digits` significant digits, without trailing zeros or exponent.

@@ -1,6 +1,7 @@
 //! Tests: states of lots, reference checks and suspect parts, retests, orders, state changes of alarms, wear.
 
 use super::*;
+use texts::Message;
 
 fn check(lot: &str, at_us: i64, passed: bool) -> Row {
     Row::ReferenceCheck(ReferenceCheckRecord {
@@ -283,7 +284,7 @@ fn an_order_keeps_person_origin_content_and_refusal() {
     let file = File::new();
     let mut store = file.store();
     store.begin_lot(&lot("A")).unwrap();
-    let order = |at_us, who: &str, refused: Option<&str>| {
+    let order = |at_us, who: &str, refused: Option<Message>| {
         Row::Order(OrderRecord {
             lot: (at_us > 1).then(|| "A".into()),
             at_us,
@@ -291,22 +292,23 @@ fn an_order_keeps_person_origin_content_and_refusal() {
             role: "operator".into(),
             origin: "127.0.0.1".into(),
             what: r#"{"order":"start"}"#.into(),
-            refused: refused.map(str::to_owned),
+            refused,
         })
     };
     let rows = [
-        order(1, "", Some("nobody is logged in")),
+        order(1, "", Some(Message::new("refusal", "not_logged_in"))),
         order(2, "li'na", None),
         order(3, "li'na", None),
     ];
     store.record(&rows).unwrap();
     let archive = file.archive();
-    let all = archive.orders(&Filter::default(), None).unwrap();
+    let all = archive.orders(&Filter::default(), None, None).unwrap();
     assert_eq!(all.len(), 3);
     assert_eq!(
         (all[0].run, all[0].refused.as_deref()),
-        (None, Some("nobody is logged in"))
+        (None, Some("log in first"))
     );
+    assert_eq!(all[0].refused_zh.as_deref(), Some("请先登录"));
     assert_eq!((all[1].lot.as_deref(), all[1].at), (Some("A"), Moment(2)));
     assert_eq!(all[1].what["order"], "start");
     let late = Filter {
@@ -314,10 +316,16 @@ fn an_order_keeps_person_origin_content_and_refusal() {
         lot: Some("A".into()),
         ..Filter::default()
     };
-    assert_eq!(archive.orders(&late, Some("li'na")).unwrap().len(), 1);
+    assert_eq!(archive.orders(&late, Some("li'na"), None).unwrap().len(), 1);
     assert!(
         archive
-            .orders(&late, Some("somebody else"))
+            .orders(&late, None, Some("login"))
+            .unwrap()
+            .is_empty()
+    );
+    assert!(
+        archive
+            .orders(&late, Some("somebody else"), None)
             .unwrap()
             .is_empty()
     );
@@ -348,7 +356,10 @@ fn an_alarm_stays_listed_until_it_is_acknowledged() {
         store.alarm(&alarm).unwrap();
     }
     store
-        .record(&[change(Some("door_open"), AlarmChange::Returned)])
+        .record(&[change(
+            Some("door_open"),
+            AlarmChange::Returned { only: None },
+        )])
         .unwrap();
     let shelved = AlarmChange::Shelved {
         until_us: 99,
@@ -434,10 +445,8 @@ fn the_book_of_lots_counts_runs_without_imports() {
 #[test]
 fn a_repeated_decision_is_refused() {
     for decision in Decision::ALL {
-        assert_eq!(Decision::ordered(decision.order()), Some(decision));
         let again = decision.refusal(decision.becomes());
         let texts = again.map(|why| texts::Lang::ALL.map(|lang| why.say(lang)));
         assert!(texts.is_some_and(|[en, zh]| en != zh));
     }
-    assert_eq!(Decision::ordered("start"), None);
 }

@@ -41,6 +41,10 @@ fn of_schema(file: &File, schema: usize) {
     if schema >= 8 {
         super::super::reasons::read_texts(&by_hand).unwrap();
     }
+    if schema >= 11 {
+        let rig = "INSERT INTO rig (id, source) VALUES (1, 'rig')";
+        by_hand.execute_batch(rig).unwrap();
+    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Tests of the history, one file per subject.
 #![allow(clippy::unwrap_used)]
 
+mod approval;
 mod gates;
 mod migrating;
 mod plans;

@@ -72,6 +72,29 @@ fn a_file_locked_elsewhere_is_an_error_by_name() {
     store.begin_lot(&lot("A")).unwrap();
 }
 
+/// A dangling link named `-shm` keeps SQLite from opening the file with write access, as read-only media do.
+#[test]
+fn read_only_media_open_for_reading() {
+    let file = File::new();
+    drop(filled(&file, 3));
+    let beside = |end: &str| {
+        let mut name = file.path.clone().into_os_string();
+        name.push(end);
+        PathBuf::from(name)
+    };
+    std::os::unix::fs::symlink("nowhere", beside("-shm")).unwrap();
+    let archive = Archive::open(&file.path).unwrap();
+    assert_eq!(archive.count_parts(&Filter::default()).unwrap(), 3);
+    archive.check().unwrap();
+    assert_eq!(examine(&file.path).unwrap().schema, SCHEMA);
+    std::fs::write(beside("-wal"), "rows").unwrap();
+    let refusal = Archive::open(&file.path).unwrap_err();
+    assert!(
+        matches!(refusal, HistoryError::Unsettled { .. }),
+        "{refusal}"
+    );
+}
+
 #[test]
 fn read_only_file_is_readable_and_names_its_error() {
     let file = File::new();

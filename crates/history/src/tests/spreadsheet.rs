@@ -2,10 +2,11 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::Part;
-use crate::report::sheet::Sheet;
+use crate::report::sheet::{Sheet, SheetFacts};
 use crate::report::{Lang, Paper};
 use calamine::{Data, Reader, Xlsx};
 use jiff::tz::TimeZone;
+use quality::Limits;
 use std::io::Cursor;
 
 const LOT: &str = "<b>批次\"1\"</b>";
@@ -31,11 +32,12 @@ fn paper(simulated: bool) -> Paper {
 fn a_spreadsheet_of_simulated_parts_says_so() {
     for simulated in [false, true] {
         let sheet = Sheet::new(&paper(simulated), &[]).unwrap();
-        let bytes = sheet.finish().unwrap().save_to_buffer().unwrap();
+        let mut book = sheet.finish(&SheetFacts::default()).unwrap();
+        let bytes = book.save_to_buffer().unwrap();
         let mut book: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).unwrap();
         let summary = book.worksheet_range("Summary").unwrap();
         let word = Data::String("SIMULATION".into());
-        assert_eq!(summary.get((0, 7)) == Some(&word), simulated);
+        assert_eq!(summary.get((0, 12)) == Some(&word), simulated);
     }
 }
 
@@ -47,7 +49,14 @@ fn a_spreadsheet_reads_back_with_charts_without_formula() {
         sheet.part(&part(7.704_22)).unwrap();
     }
     sheet.part(&part(9.5)).unwrap();
-    let bytes = sheet.finish().unwrap().save_to_buffer().unwrap();
+    let about = SheetFacts {
+        facts: vec![("Lot".into(), LOT.into())],
+        limits: vec![Limits {
+            low: None,
+            high: Some(9.0),
+        }],
+    };
+    let bytes = sheet.finish(&about).unwrap().save_to_buffer().unwrap();
     let chart = b"xl/charts/chart2.xml";
     assert!(bytes.windows(chart.len()).any(|it| it == chart));
     let mut book: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).unwrap();
@@ -60,7 +69,18 @@ fn a_spreadsheet_reads_back_with_charts_without_formula() {
     assert!(book.worksheet_formula("Parts").unwrap().is_empty());
     let summary = book.worksheet_range("Summary").unwrap();
     assert_eq!(
-        (&summary[(1, 1)], &summary[(1, 5)]),
-        (&Data::Float(4.0), &Data::Float(9.5))
+        [1, 5, 7].map(|column| &summary[(1, column)]),
+        [4.0, 9.5, 9.0].map(Data::Float).each_ref()
+    );
+    assert!(matches!(summary[(1, 9)], Data::Float(cpk) if cpk > 0.0));
+    assert_eq!(summary[(3, 1)], Data::String(LOT.into()));
+    assert_eq!(
+        [(0, 7), (0, 13), (0, 14), (1, 7)].map(|at| parts[at].to_string()),
+        [
+            "Verdict",
+            "Operate voltage / V",
+            "U Operate voltage / V",
+            "pass"
+        ]
     );
 }

@@ -39,8 +39,8 @@ struct Nearest {
 }
 
 impl Nearest {
-    /// Returns the length of the weighted sum of the corners, mm; `v` itself may be inaccurate when the simplex is
-    /// thin.
+    /// Returns the distance of the nearest point from the origin, mm. Computes it from corners and weights, because `v`
+    /// may be inaccurate when the simplex is thin.
     fn distance(&self) -> f64 {
         let weighted =
             |sum: Vec3, index: usize| along(sum, self.weights[index], self.corners[index].w);

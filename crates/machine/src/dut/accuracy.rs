@@ -34,38 +34,15 @@ pub struct AccuracySettings {
     pub rtd_k: f64,
     /// Difference between the temperatures of part and magazine track, K (standard deviation).
     pub part_minus_track_k: f64,
-    /// Scatter of a threshold from operation to operation, for a coil of [`SCATTERING_COIL_V`], mV (standard
-    /// deviation).
+    /// Scatter of a threshold from operation to operation, for a 12 V coil, mV (standard deviation).
     pub operation_scatter_mv: f64,
     /// Conversions of an I-7017F in fast mode, all enabled channels together, per second.
     pub conversions_per_s: f64,
 }
 
-/// Nominal coil voltage for which `operation_scatter_mv` is stated, V. For other coils the scatter in volts is
-/// proportional to the nominal voltage, because an armature responds to current.
-const SCATTERING_COIL_V: f64 = 12.0;
-
 impl AccuracySettings {
-    /// Returns the standard deviation of a threshold from operation to operation, volts, for a coil of this nominal
-    /// voltage.
-    pub fn operation_v(&self, nominal_v: f64) -> f64 {
-        self.operation_scatter_mv / 1e3 * nominal_v / SCATTERING_COIL_V
-    }
-
     /// Returns the refresh interval assumed for an I-7021P where `rig.toml` states none.
     fn usual_refresh_ms() -> f64 {
         1.0
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::dut::em_relay::tests::context;
-
-    #[test]
-    fn operation_scatter_is_proportional_to_nominal_voltage() {
-        let accuracy = context().accuracy;
-        let volts = [24.0, 12.0, 6.0].map(|nominal_v| accuracy.operation_v(nominal_v));
-        assert_eq!(volts, [0.004, 0.002, 0.001]);
     }
 }

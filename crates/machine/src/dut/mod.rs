@@ -15,6 +15,7 @@ pub mod keys;
 pub mod made_up;
 pub mod procedure;
 pub mod promise;
+pub mod prompt;
 pub mod reason;
 pub mod recipe;
 pub mod record;

@@ -8,10 +8,22 @@ use super::characteristic::Characteristic;
 use super::finding::Finding;
 use super::verdict::Bin;
 use crate::gauge::Side;
-use serde::ser::SerializeStruct;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 use std::fmt;
 use texts::{Lang, Message};
+use utoipa::ToSchema;
+
+named! {
+    /// What is wrong with the serial number of a part.
+    SerialFault {
+        /// No reading, or one without a code.
+        Missing = "serial_missing",
+        /// Another part of the lot has the number.
+        Repeated = "serial_repeated",
+        /// Two different readings for one part.
+        Ambiguous = "serial_ambiguous",
+    }
+}
 
 /// What a test found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -27,6 +39,8 @@ pub enum Code {
     Interrupted,
     /// A line or module failed in the middle of the test; detail: which, and how.
     RigTrouble,
+    /// The part cannot be identified, so it is not tested; detail: the readings.
+    Serial(SerialFault),
     /// Finding of a test of one kind.
     Finding(Finding),
     /// A text that has no code, because it is imported or written by a version with other codes; the detail is the
@@ -43,6 +57,8 @@ pub struct Reason {
     pub side: Option<Side>,
     /// What the text adds to the code: a figure, a pin, a module; may be empty.
     pub detail: String,
+    /// Message of [`Code::RigTrouble`], which has `detail` as English text; `None` for a reason that a history stored.
+    pub trouble: Option<Box<Message>>,
 }
 
 impl Reason {
@@ -56,6 +72,7 @@ impl Reason {
             code,
             side: None,
             detail: detail.into(),
+            trouble: None,
         }
     }
 
@@ -80,9 +97,17 @@ impl Reason {
         Self::detailed(Code::Interrupted, why)
     }
 
-    /// Returns the reason for a failed line or module, which `why` names.
-    pub fn rig_trouble(why: impl Into<String>) -> Self {
-        Self::detailed(Code::RigTrouble, why)
+    /// Returns the reason for a failed line or module; `why`, of family `detail`, names it.
+    pub fn rig_trouble(why: Message) -> Self {
+        Self {
+            trouble: Some(Box::new(why.clone())),
+            ..Self::detailed(Code::RigTrouble, why.say(Lang::En))
+        }
+    }
+
+    /// Returns the reason for a part that cannot be identified; `read` holds the readings.
+    pub fn serial(fault: SerialFault, read: impl Into<String>) -> Self {
+        Self::detailed(Code::Serial(fault), read)
     }
 
     /// Returns the reason for a text without a code.
@@ -97,9 +122,11 @@ impl Reason {
                 characteristic.bin()
             }
             Code::Finding(finding) => finding.entry().bin.unwrap_or(Bin::RETEST),
-            Code::NotMeasured(_) | Code::Interrupted | Code::RigTrouble | Code::Unclassified => {
-                Bin::RETEST
-            }
+            Code::NotMeasured(_)
+            | Code::Interrupted
+            | Code::RigTrouble
+            | Code::Serial(_)
+            | Code::Unclassified => Bin::RETEST,
         }
     }
 
@@ -113,7 +140,7 @@ impl Reason {
         match self.code {
             Code::OutsideLimit(it) | Code::NotProven(it) | Code::NotMeasured(it) => Some(it),
             Code::Finding(finding) => finding.entry().proves.map(|(of, _)| of),
-            Code::Interrupted | Code::RigTrouble | Code::Unclassified => None,
+            Code::Interrupted | Code::RigTrouble | Code::Serial(_) | Code::Unclassified => None,
         }
     }
 
@@ -126,9 +153,8 @@ impl Reason {
         detail: &str,
     ) -> Option<Self> {
         Some(Self {
-            code: Code::from_name(code, characteristic)?,
             side,
-            detail: detail.to_owned(),
+            ..Self::detailed(Code::from_name(code, characteristic)?, detail)
         })
     }
 
@@ -137,6 +163,7 @@ impl Reason {
         let every = Finding::all()
             .map(Self::from)
             .chain([Self::interrupted("")])
+            .chain(SerialFault::ALL.iter().map(|it| Self::serial(*it, "")))
             .chain(Self::of_limits(text));
         let found = every.filter_map(|reason| reason.read(text)).next();
         found.unwrap_or_else(|| Self::unclassified(text))
@@ -173,19 +200,25 @@ impl Reason {
         Some(detailed(detail))
     }
 
-    fn message(&self) -> Message {
+    /// Returns the message for the reason; its text omits the name of the characteristic.
+    pub fn message(&self) -> Message {
         let param = self.characteristic().map_or("", Characteristic::key);
-        let message = Message::new("reason", self.code.name())
-            .with("param", param)
-            .with("detail", &self.detail);
+        let message = Message::new("reason", self.code.name()).with("param", param);
+        if let Some(trouble) = &self.trouble {
+            return message.with_inner("detail", trouble).case("known");
+        }
+        let message = message.with("detail", &self.detail);
         match (self.code, self.side) {
             (Code::Interrupted, _) => message.with("interruption", &self.detail),
+            (Code::Finding(_), None) => message.with("pins", &self.detail),
+            (Code::RigTrouble, _) if self.detail.is_empty() => message,
+            (Code::RigTrouble, _) => message.with("said", &self.detail).case("stored"),
             (_, None) => message,
             (Code::OutsideLimit(_) | Code::NotProven(_), Some(side)) => {
                 message.case(side.name()).with("side", side)
             }
             (
-                Code::NotMeasured(_) | Code::Finding(_) | Code::RigTrouble | Code::Unclassified,
+                Code::NotMeasured(_) | Code::Finding(_) | Code::Serial(_) | Code::Unclassified,
                 Some(side),
             ) => message.with("side", side),
         }
@@ -201,9 +234,10 @@ impl Reason {
         let message = self.message();
         let said = message.try_attribute(lang, "short");
         let said = said.unwrap_or_else(|| message.say(lang));
-        match self.characteristic() {
-            None => said,
-            Some(it) => format!("{} {said}", it.name(lang)),
+        match (self.characteristic(), lang) {
+            (None, _) => said,
+            (Some(it), Lang::En) => format!("{} {said}", it.name(lang)),
+            (Some(it), Lang::Zh) => format!("{}{said}", it.name(lang)),
         }
     }
 }
@@ -217,6 +251,7 @@ impl Code {
             Self::NotMeasured(_) => "not_measured",
             Self::Interrupted => "interrupted",
             Self::RigTrouble => "rig_trouble",
+            Self::Serial(fault) => fault.name(),
             Self::Finding(finding) => finding.entry().code,
             Self::Unclassified => "unclassified",
         }
@@ -230,9 +265,11 @@ impl Code {
             "interrupted" => Some(Self::Interrupted),
             "rig_trouble" => Some(Self::RigTrouble),
             "unclassified" => Some(Self::Unclassified),
-            finding => Finding::all()
-                .find(|it| it.entry().code == finding)
-                .map(Self::Finding),
+            name => SerialFault::from_name(name).map(Self::Serial).or_else(|| {
+                let mut findings = Finding::all();
+                let finding = findings.find(|it| it.entry().code == name);
+                finding.map(Self::Finding)
+            }),
         }
     }
 }
@@ -247,18 +284,39 @@ impl<F: Into<Finding>> From<F> for Reason {
     }
 }
 
-impl Serialize for Reason {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut object = serializer.serialize_struct("Reason", 6)?;
-        object.serialize_field("code", self.code.name())?;
-        object.serialize_field("param", &self.characteristic())?;
-        object.serialize_field("side", &self.side)?;
-        object.serialize_field("detail", &self.detail)?;
-        object.serialize_field("en", &self.short(Lang::En))?;
-        object.serialize_field("zh", &self.short(Lang::Zh))?;
-        object.end()
+/// JSON form of a [`Reason`].
+#[derive(Serialize, ToSchema)]
+#[schema(as = Reason)]
+struct Shown<'a> {
+    /// Code of the reason.
+    code: &'a str,
+    /// Characteristic that the reason is about; null without one.
+    #[schema(value_type = Option<String>)]
+    param: Option<Characteristic>,
+    /// Side of the limits that the reason is about; null without one.
+    side: Option<Side>,
+    /// Detail that the text adds to the code, for example pins; may be empty.
+    detail: &'a str,
+    /// English text.
+    en: String,
+    /// Chinese text.
+    zh: String,
+}
+
+impl<'a> From<&'a Reason> for Shown<'a> {
+    fn from(reason: &'a Reason) -> Self {
+        Self {
+            code: reason.code.name(),
+            param: reason.characteristic(),
+            side: reason.side,
+            detail: &reason.detail,
+            en: reason.short(Lang::En),
+            zh: reason.short(Lang::Zh),
+        }
     }
 }
+
+texts::json_form!(Reason, Shown);
 
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -270,6 +328,7 @@ impl fmt::Display for Reason {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::dut::em_relay::{self, Parameter};
 
@@ -291,6 +350,10 @@ mod tests {
                 "operate_voltage_v not measured",
             ),
             (Reason::interrupted("door_open"), "interrupted: door_open"),
+            (
+                Reason::serial(SerialFault::Repeated, "S-1"),
+                "serial number read again: S-1",
+            ),
             (em_relay::Finding::CoilOpen.into(), "coil open"),
             (
                 em_relay::Finding::PinOpen.with("COM"),
@@ -310,7 +373,8 @@ mod tests {
             Reason::not_proven(OPERATE, Side::Low),
             Reason::of(Code::NotMeasured(OPERATE)),
             Reason::interrupted("door_open"),
-            Reason::rig_trouble("module 03 silent"),
+            Reason::stored("rig_trouble", None, None, "module 03 silent").unwrap(),
+            Reason::serial(SerialFault::Ambiguous, "S-1, S-2"),
             Reason::unclassified("refused by the clerk"),
         ];
         let of_kinds = Finding::all().map(|it| Reason {
@@ -351,7 +415,7 @@ mod tests {
         }
         let high = Reason::outside(OPERATE, Side::High);
         assert_eq!(high.short(Lang::En), "Operate voltage high");
-        assert_eq!(high.short(Lang::Zh), "动作电压 偏高");
+        assert_eq!(high.short(Lang::Zh), "动作电压偏高");
         assert_eq!(high.text(Lang::Zh), "超出上限");
     }
 

@@ -9,6 +9,7 @@ use super::characteristic::Characteristic;
 use super::device::Rig;
 use super::em_relay::recipe::RelayRecipe;
 use super::made_up::MadeUp;
+use super::prompt::{self, Prompt};
 use super::resistor::recipe::ResistorRecipe;
 use super::{Calibration, Device, Kind};
 use crate::gauge::{Limit, Rule};
@@ -178,6 +179,9 @@ pub struct Recipe {
     pub limits: Limits,
     /// How results become verdicts.
     pub decision: Decision,
+    /// What a person must answer during a lot.
+    #[serde(rename = "prompt", default)]
+    pub prompts: Vec<Prompt>,
     /// Sections of the kind: the part, and how it is measured.
     #[serde(flatten)]
     pub device: DeviceRecipe,
@@ -205,6 +209,7 @@ impl Recipe {
         for (characteristic, limit) in self.limits.named() {
             check_limit(&format!("limits.{characteristic}"), limit)?;
         }
+        prompt::check(&self.prompts)?;
         self.device.check()
     }
 

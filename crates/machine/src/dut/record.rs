@@ -10,6 +10,7 @@ use crate::instrument::act::Spent;
 use crate::instrument::trace::Trace;
 use crate::rig::sample::{CountSample, Origin, Sample};
 use std::collections::BTreeMap;
+use texts::Message;
 use units::Span;
 
 /// Sample behind a result: line, module, channel and raw text lead back to the bytes on the line.
@@ -165,7 +166,7 @@ impl<T> TestRecord<T> {
     }
 
     /// Ends the test early because the rig is in trouble; this replaces any finding that ended it before.
-    pub fn trouble(&mut self, why: String) {
+    pub fn trouble(&mut self, why: Message) {
         if !matches!(self.stop, Some(Stop::Trouble(_))) {
             self.stop = Some(Stop::Trouble(Reason::rig_trouble(why)));
         }

@@ -8,6 +8,7 @@ use super::budget::Reading;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use units::Unit;
+use utoipa::ToSchema;
 
 /// Limits of one characteristic, inclusive; `None` leaves a side open.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +39,7 @@ pub enum Rule {
 }
 
 /// Side of a limit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
     /// Below the lower limit.

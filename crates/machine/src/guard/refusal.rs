@@ -3,6 +3,7 @@
 use super::actuator::Actuator;
 use super::motion::Stroke;
 use std::fmt;
+use texts::Message;
 
 /// Refusal of a motion: a normal result, not a program error.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,6 +77,28 @@ impl fmt::Display for Refusal {
 }
 
 impl std::error::Error for Refusal {}
+
+impl Refusal {
+    /// Returns the refusal as a message of family `detail`, for alarms and refused orders.
+    pub fn message(&self) -> Message {
+        let Self::Blocked(it) = self else {
+            return Message::detail("impossible_motion", self);
+        };
+        let mm = |value: f64| format!("{value:.1}");
+        let message = Message::detail("collision", self)
+            .with("actuator", it.stroke.actuator.name())
+            .with("to_mm", mm(it.stroke.to_mm))
+            .with("mover", &it.mover)
+            .with("blocker", &it.blocker)
+            .with("at_mm", it.at.map(mm).join(", "));
+        match it.last_clear_mm {
+            Some(clear) => message
+                .with("clear_mm", format!("{clear:.2}"))
+                .case("clear_up_to"),
+            None => message,
+        }
+    }
+}
 
 impl fmt::Display for Blocked {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -38,7 +38,7 @@ pub struct Situation {
     positions: [Option<Position>; 8],
     /// Places that hold a part.
     pub parts: PartPlaces,
-    /// Size of those parts.
+    /// Size of a part, the same in every place of `parts`.
     pub part_size: PartSize,
 }
 

@@ -4,6 +4,7 @@
 //! empty -> releasing -> holding -> ready -> pushing -> retracting -> empty
 //!              \-> closing -> empty (no part came: retry, then the line waits for parts)
 //! ```
+//! In a lot with a code reader the pusher also waits for the reading of the part ([`super::serial`]).
 //! The pocket fills during the test of the previous part. The pusher starts only when the nest is empty, the jaws are
 //! open, the probes down and the gripper up; the guard checks the same with the real geometry.
 
@@ -53,10 +54,12 @@ impl Feed {
         match self {
             Feed::Empty if wanted && turn.shows(DigitalIn::PocketPresent, true) => {
                 // A part left by an earlier run is fed like any other.
-                turn.ledger.enter_pocket();
+                turn.enter_pocket(false);
                 Feed::Ready
             }
-            Feed::Empty if wanted && turn.arrived(Move::PusherRetract) => release(turn, 1),
+            Feed::Empty if wanted && turn.may_release() && turn.arrived(Move::PusherRetract) => {
+                release(turn, 1)
+            }
             Feed::Empty => Feed::Empty,
             Feed::Releasing { since, attempt } => releasing(turn, since, attempt),
             Feed::Closing { attempts } if turn.arrived(Move::EscapementHold) => {
@@ -69,7 +72,11 @@ impl Feed {
             Feed::Closing { attempts } => Feed::Closing { attempts },
             Feed::Holding if turn.arrived(Move::EscapementHold) => Feed::Ready,
             Feed::Holding => Feed::Holding,
-            Feed::Ready if turn.nest_is_free(nest) && (push || turn.ledger.is_pocket_found()) => {
+            Feed::Ready
+                if turn.nest_is_free(nest)
+                    && (push || turn.ledger.is_pocket_found())
+                    && turn.is_identified() =>
+            {
                 turn.drive(Move::PusherExtend);
                 Feed::Pushing
             }
@@ -88,6 +95,7 @@ fn release(turn: &mut Turn, attempt: u8) -> Feed {
         "escapement attempt {attempt}"
     );
     turn.drive(Move::EscapementRelease);
+    turn.serials.released();
     Feed::Releasing {
         since: turn.now,
         attempt,
@@ -98,7 +106,7 @@ fn releasing(turn: &mut Turn, since: RigTime, attempt: u8) -> Feed {
     if turn.shows(DigitalIn::PocketPresent, true)
         && turn.image.input_at(DigitalIn::PocketPresent) > Some(since)
     {
-        turn.ledger.enter_pocket();
+        turn.enter_pocket(true);
         turn.drive(Move::EscapementHold);
         return Feed::Holding;
     }

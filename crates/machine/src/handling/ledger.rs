@@ -8,6 +8,8 @@
 
 use super::inside::Inside;
 use super::place::{NestId, Place};
+use crate::dut::Reason;
+use crate::dut::reason::SerialFault;
 use crate::rig::bin::Bin;
 use std::collections::BTreeMap;
 use units::{RigTime, Second};
@@ -28,7 +30,7 @@ pub enum PartRole {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
     /// Role and number of the part.
-    pub kind: PartRole,
+    pub role: PartRole,
     /// Number among all parts of the run, reference parts included, from 1; the records come in this order.
     pub ordinal: u64,
     /// Bin of the part, after its verdict.
@@ -39,9 +41,22 @@ pub struct Part {
     pub probed_at: Option<RigTime>,
     /// Reason why the part goes to retest without a (complete) test.
     pub interrupted: Option<String>,
+    /// Serial number of a part of the lot; `None` in a lot without them, and when no reading gives one.
+    pub serial: Option<String>,
+    /// What is wrong with the serial number, so that the part goes to retest without a test; the readings.
+    pub serial_fault: Option<(SerialFault, String)>,
 }
 
 impl Part {
+    /// Returns why the part goes to retest without a complete test, if it does.
+    pub fn why_untested(&self) -> Option<Reason> {
+        let interrupted = self.interrupted.as_deref().map(Reason::interrupted);
+        interrupted.or_else(|| {
+            let (fault, read) = self.serial_fault.as_ref()?;
+            Some(Reason::serial(*fault, read))
+        })
+    }
+
     /// Marks the part as interrupted, unless it already is; returns the reason that remains.
     pub fn interrupt(&mut self, why: &str) -> String {
         let why = self.interrupted.get_or_insert_with(|| why.to_owned());
@@ -297,7 +312,7 @@ impl Ledger {
 
     fn number(&mut self, reference: Option<String>, interrupted: Option<String>) -> Part {
         self.numbered += 1;
-        let kind = match reference {
+        let role = match reference {
             Some(serial) => PartRole::Reference(serial),
             None => {
                 self.lot_numbered += 1;
@@ -306,12 +321,14 @@ impl Ledger {
         };
         assert!(self.lot_numbered <= self.numbered, "numbers given twice");
         Part {
-            kind,
+            role,
             ordinal: self.numbered,
             bin: None,
             test: None,
             probed_at: None,
             interrupted,
+            serial: None,
+            serial_fault: None,
         }
     }
 

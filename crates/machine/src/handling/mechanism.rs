@@ -59,6 +59,17 @@ pub struct MechanismUpdate {
     pub motions: Vec<Move>,
 }
 
+/// How a motion ordered by hand ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HandEnd {
+    /// Every sensor shows the end of the motion.
+    Arrived,
+    /// The fingers are closed and hold no part.
+    ClosedOnNothing,
+    /// The motion ended before its sensors showed the end.
+    Cut,
+}
+
 /// End sensors and motions in progress.
 #[derive(Debug)]
 pub struct Mechanism {
@@ -70,6 +81,8 @@ pub struct Mechanism {
     again: Vec<Repetition>,
     /// Work strokes already repeated for the current part.
     tried: Vec<Move>,
+    /// Motion that a person ordered, until [`Self::take_hand_end`] returns its end.
+    by_hand: Option<Move>,
     watch: Watch,
     strokes_made: Vec<(&'static str, u64)>,
     uses: Uses,
@@ -87,6 +100,7 @@ impl Mechanism {
             waiting: Vec::new(),
             again: Vec::new(),
             tried: Vec::new(),
+            by_hand: None,
             watch: Watch::default(),
             strokes_made: Vec::new(),
             uses: Uses::default(),
@@ -220,6 +234,35 @@ impl Mechanism {
         }
     }
 
+    /// Records that a person ordered this motion, which has just begun.
+    pub fn driven_by_hand(&mut self, movement: Move) {
+        assert!(self.is_moving(movement), "a motion by hand was not driven");
+        self.by_hand = Some(movement);
+    }
+
+    /// Returns how the motion by hand ended, but only once; `None` while it moves, and without one.
+    pub fn take_hand_end(&mut self, now: RigTime, image: &Image) -> Option<HandEnd> {
+        let movement = self.by_hand.filter(|it| !self.is_moving(*it))?;
+        let end = if self.has_arrived(movement, now, image) {
+            HandEnd::Arrived
+        } else if self.closed_on_nothing(movement, now, image) {
+            HandEnd::ClosedOnNothing
+        } else {
+            HandEnd::Cut
+        };
+        self.by_hand = None;
+        Some(end)
+    }
+
+    /// Returns true when a person ordered the fingers to close and they hold no part; by hand, this is no trouble.
+    fn closed_on_nothing(&self, movement: Move, now: RigTime, image: &Image) -> bool {
+        let shows = |point| image.input(point, now, SENSOR_AGE);
+        movement == Move::GripperClose
+            && self.by_hand == Some(movement)
+            && shows(DigitalIn::GripperOpen) == Some(false)
+            && shows(DigitalIn::GripperPart) == Some(false)
+    }
+
     /// Records arrivals; repeats a late stroke or reports it.
     pub fn update(&mut self, now: RigTime, image: &Image) -> MechanismUpdate {
         let mut found = MechanismUpdate::default();
@@ -227,7 +270,9 @@ impl Mechanism {
             if self.is_there(&underway, now, image) {
                 self.arrived(underway.movement, &mut found);
             } else if self.is_late(&underway, image) {
-                self.late(underway, &mut found);
+                if !self.closed_on_nothing(underway.movement, now, image) {
+                    self.late(underway, &mut found);
+                }
             } else {
                 self.underway.push(underway);
             }

@@ -25,6 +25,7 @@ pub mod nest;
 pub mod output;
 pub mod place;
 pub mod recovery;
+pub mod serial;
 pub mod sort;
 pub mod trouble;
 pub mod turn;

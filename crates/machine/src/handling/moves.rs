@@ -203,7 +203,7 @@ impl Move {
     }
 
     /// Returns the name in orders, views and alarms; the axis goes to a bin ([`Self::bin`]) as `axis_bin`.
-    pub fn code(self) -> &'static str {
+    pub const fn code(self) -> &'static str {
         match self {
             Move::EscapementRelease => "escapement_release",
             Move::EscapementHold => "escapement_hold",

@@ -151,18 +151,17 @@ impl Nest {
     }
 }
 
-/// Starts the test of a clamped part. An interrupted part goes to retest without one; a row records it, unless it has a
-/// row already.
+/// Starts the test of a clamped part. A part that is interrupted or not identified goes to retest without one; a row
+/// records it, unless it has a row already.
 fn clamped(id: NestId, turn: &mut Turn) -> NestState {
     let part = turn.ledger.part_mut(Place::Nest(id));
-    let interrupted = part.as_ref().and_then(|part| part.interrupted.clone());
-    let Some(why) = interrupted else {
+    let Some(why) = part.as_ref().and_then(|part| part.why_untested()) else {
         turn.drive(Move::ProbesUp);
         return NestState::Probing;
     };
     if let Some(part) = part.filter(|part| part.bin.is_none()) {
         part.bin = Some(Bin::RETEST);
-        let judged = Judged::interrupted(part.clone(), &why, turn.now);
+        let judged = Judged::untested(part.clone(), why, turn.now);
         turn.parts.judged.push(judged);
     }
     NestState::Judged
@@ -212,13 +211,13 @@ fn testing(
 
 /// Returns the trouble to report before another test of a void reference part; `None` when there is no further test.
 fn repeat_reason(id: NestId, turn: &Turn, test: &Procedure) -> Option<Trouble> {
-    let PartRole::Reference(serial) = &turn.ledger.part(Place::Nest(id))?.kind else {
+    let PartRole::Reference(serial) = &turn.ledger.part(Place::Nest(id))?.role else {
         return None;
     };
     // A complete test is inconclusive while overshoots are learned, but needs no repetition.
     let why = test.why_void()?;
     (test.number() < REFERENCE_TESTS)
-        .then(|| Trouble::ReferenceRepeated(serial.clone(), why.to_string()))
+        .then(|| Trouble::ReferenceRepeated(serial.clone(), why.clone()))
 }
 
 fn judged(id: NestId, turn: &mut Turn, test: &mut Procedure) {
@@ -229,7 +228,7 @@ fn judged(id: NestId, turn: &mut Turn, test: &mut Procedure) {
         panic!("the judged part is not in its nest");
     };
     part.test = part.probed_at.map(|at| Second(now.since(at).as_seconds()));
-    part.bin = Some(match part.kind {
+    part.bin = Some(match part.role {
         PartRole::Reference(_) => Bin::RETEST,
         PartRole::Lot(_) => verdict.bin(),
     });

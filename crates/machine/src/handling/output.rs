@@ -89,11 +89,11 @@ pub struct Judged {
 }
 
 impl Judged {
-    /// Makes the record of a part whose test did not finish.
-    pub fn interrupted(part: Part, why: &str, at: RigTime) -> Self {
+    /// Makes the record of a part without a complete test.
+    pub fn untested(part: Part, why: Reason, at: RigTime) -> Self {
         Self {
             part,
-            verdict: Verdict::Void(vec![Reason::interrupted(why)]),
+            verdict: Verdict::Void(vec![why]),
             judgements: Vec::new(),
             record: TestRecord::default(),
             at,

@@ -2,6 +2,7 @@
 
 use super::moves::Move;
 use super::place::Place;
+use crate::dut::Reason;
 use crate::rig::bin::Bin;
 use crate::rig::supply::RangeMismatch;
 use units::Span;
@@ -42,7 +43,7 @@ pub enum Trouble {
     /// The fingers closed, but the part is still in the nest.
     Stuck,
     /// A reference part is tested again: serial number and reason.
-    ReferenceRepeated(String, String),
+    ReferenceRepeated(String, Reason),
     /// The supply is in another range than the one selected.
     SupplyRange(RangeMismatch),
 }

@@ -5,6 +5,7 @@ use super::mechanism::{Mechanism, SENSOR_AGE};
 use super::moves::Move;
 use super::output::{Commands, PartEvents};
 use super::place::{NestId, Place};
+use super::serial::Serials;
 use super::trouble::Trouble;
 use crate::rig::image::Image;
 use crate::rig::point::{DigitalIn, DigitalInput};
@@ -29,6 +30,8 @@ pub struct Turn<'a> {
     pub trouble: &'a mut Vec<Trouble>,
     /// Serial numbers of the reference parts to come, in the order of the magazine.
     pub reference_serials: &'a mut VecDeque<String>,
+    /// Serial numbers of the parts of the lot.
+    pub serials: &'a mut Serials,
     /// Ordinal up to which parts are durably recorded.
     pub recorded: u64,
     /// True while the sequence goes to rest: no new action begins.
@@ -79,5 +82,26 @@ impl Turn<'_> {
             false => self.reference_serials.pop_front(),
         };
         self.ledger.enter_nest(nest, reference);
+        self.serials.assign(self.ledger, Place::Nest(nest));
+    }
+
+    /// Adds a part to the empty pocket; `fed` is false for one that lay there already.
+    pub fn enter_pocket(&mut self, fed: bool) {
+        self.ledger.enter_pocket();
+        let is_reference = !self.reference_serials.is_empty();
+        self.serials.arrived(self.now, fed && !is_reference);
+    }
+
+    /// Returns true when another part may leave the magazine: a reference part, or one whose serial number needs no
+    /// scan before.
+    pub fn may_release(&self) -> bool {
+        !self.reference_serials.is_empty() || self.serials.may_release()
+    }
+
+    /// Returns true when the part in the pocket needs no further reading.
+    pub fn is_identified(&self) -> bool {
+        !self.reference_serials.is_empty()
+            || self.ledger.is_pocket_found()
+            || self.serials.is_settled(self.now)
     }
 }

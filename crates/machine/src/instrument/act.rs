@@ -8,6 +8,7 @@ use super::readings::{Readings, Unread};
 use crate::rig::image::Image;
 use crate::rig::point::{AnalogInput, AnalogOutput, DigitalInput, DigitalOutput, Point};
 use std::sync::Arc;
+use texts::Message;
 use units::{RigTime, Span, Volt};
 
 /// Longest normal time from the last poll before an awaited event to the end of the write that answers the event: a
@@ -124,7 +125,7 @@ pub struct JobDone {
     /// Time at which the last reply of the job was complete.
     pub at: RigTime,
     /// Reason for a failure (line, address, command, number of tries); none after a success.
-    pub trouble: Option<String>,
+    pub trouble: Option<Message>,
 }
 
 /// State of a runner after a step.
@@ -139,7 +140,7 @@ pub enum RunnerState {
     /// All acts are done.
     Done,
     /// A job failed; the stage cannot produce a result.
-    Trouble(String),
+    Trouble(Message),
 }
 
 /// Time of a test, by what it was spent on.
@@ -237,7 +238,7 @@ impl Runner {
             self.pending = false;
             self.since = done.at;
             if let Err(trouble) = self.keep(image, now) {
-                return RunnerState::Trouble(trouble.to_string());
+                return RunnerState::Trouble(Message::detail("unread", trouble));
             }
         }
         while let Some(act) = &self.current {

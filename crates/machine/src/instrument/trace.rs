@@ -98,7 +98,7 @@ impl Trace {
         }
     }
 
-    /// Adds the values commanded to sources, at the time of their answer.
+    /// Records the voltages that a job commanded to sources; `at` is the time at which the module answered.
     pub(super) fn commanded(&mut self, wiring: &Wiring, to: &[(AnalogOutput, Volt)], at: RigTime) {
         for (output, volts) in to {
             let signal = Signal::source(wiring.source_name(*output));

@@ -18,6 +18,7 @@ use super::comparison::Comparison;
 use super::model::Terminals;
 use super::wiring::{Module, ModuleId, Wiring};
 use dcon::{Address, Command, Common, Digital, Reply, Stored};
+use texts::Message;
 use thiserror::Error;
 
 /// One request to one module.
@@ -49,6 +50,16 @@ pub struct Mismatch {
     pub expected: String,
     /// Command that corrects the setting, if there is one; it writes the module's EEPROM.
     pub remedy: Option<Command>,
+}
+
+impl Mismatch {
+    /// Returns the mismatch as a message of family `detail`, for an alarm.
+    pub fn message(&self) -> Message {
+        Message::detail("mismatch", self)
+            .with("line", &self.line)
+            .with("address", self.address)
+            .with("module", &self.module)
+    }
 }
 
 /// Returns every request to every module, line by line.
@@ -121,6 +132,7 @@ pub fn judge(wiring: &Wiring, check: &Check, reply: &Reply) -> Option<Mismatch> 
         | Reply::Gate(_)
         | Reply::Inputs(_)
         | Reply::Alarm(_)
+        | Reply::AlarmMode(_)
         | Reply::Reading(_)
         | Reply::Readings(_)
         | Reply::OutputChannel { .. }

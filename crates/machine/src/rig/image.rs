@@ -294,13 +294,6 @@ impl Image {
         self.analog[point.index()].as_ref()
     }
 
-    /// Returns the last sample of an analog input, if its request came at `not_before` or later. It may be out of
-    /// range: see [`Sample::good`].
-    pub fn fresh_analog(&self, point: AnalogInput, not_before: RigTime) -> Option<&Sample> {
-        self.analog(point)
-            .filter(|sample| sample.origin.at >= not_before)
-    }
-
     /// Returns the last sample of a thermometer, of any age.
     pub fn temperature(&self, point: Thermometer) -> Option<&Sample> {
         self.temperatures[point.index()].as_ref()

@@ -149,15 +149,6 @@ impl Wiring {
         Digital::ReadEvents { channel }.to(self.module(module).address)
     }
 
-    /// Returns the command that clears a digital input's event counter. Prefer the difference of two counts modulo
-    /// 65536.
-    pub fn clear_events(&self, point: impl Into<DigitalInput>) -> Command {
-        let Terminal {
-            module, channel, ..
-        } = self.digital_in(point);
-        Digital::ClearEvents { channel }.to(self.module(module).address)
-    }
-
     fn read_one(&self, terminal: AnalogTerminal) -> Command {
         let module = self.module(terminal.module);
         match module.input_form() {

@@ -8,7 +8,7 @@ mod reaction;
 mod supply;
 
 use super::settings::RigSettings;
-use super::wiring::{LineId, Wiring};
+use super::wiring::{LineId, ModuleId, Wiring};
 use dcon::Command;
 use std::sync::Arc;
 
@@ -16,6 +16,11 @@ fn wiring() -> Arc<Wiring> {
     let settings: RigSettings =
         toml::from_str(include_str!("../../../../config/rig.toml")).unwrap();
     Arc::new(Wiring::resolve(&settings, crate::dut::FIXTURES).unwrap())
+}
+
+fn module(wiring: &Wiring, name: &str) -> ModuleId {
+    let mut ids = wiring.module_ids();
+    ids.find(|id| wiring.module(*id).name == name).unwrap()
 }
 
 fn motion(wiring: &Wiring) -> LineId {

@@ -154,14 +154,6 @@ impl Wiring {
             .map(LineId)
     }
 
-    /// Returns the module with this name.
-    pub fn module_named(&self, name: &str) -> Option<ModuleId> {
-        self.modules
-            .iter()
-            .position(|module| module.name == name)
-            .map(ModuleId)
-    }
-
     /// Returns the module at an address of a line.
     pub fn at(&self, line: LineId, address: Address) -> Option<ModuleId> {
         let here = |module: &Module| module.line == line && module.address == address;
@@ -289,6 +281,15 @@ impl Wiring {
         (machine..self.digital_out.len())
             .chain(0..machine)
             .map(|at| (self.digital_out[at].0.name, DigitalOutput::at(at)))
+    }
+
+    /// Yields name and state of every digital signal of a module, whose channels have the levels `bits`.
+    pub fn signals(&self, module: ModuleId, bits: u16) -> impl Iterator<Item = (&str, bool)> {
+        let inputs = self.digital_in.iter().map(|it| (it.0.as_str(), it.1));
+        let outputs = self.digital_out.iter().map(|it| (it.0.name, it.1));
+        let own = move |it: &(&str, Terminal)| it.1.module == module;
+        let all = inputs.chain(outputs).filter(own);
+        all.map(move |(name, terminal)| (name, terminal.read(bits)))
     }
 
     /// Returns the lines with points of a fixture, which take the measuring jobs; in order, each once.

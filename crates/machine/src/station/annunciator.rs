@@ -7,8 +7,10 @@
 //! | returned | no | no |
 //! | shelved | either | hidden until its time is over |
 //!
-//! An acknowledged alarm without cause leaves the list. A listed alarm that occurs again raises its count. The first
-//! active alarm is the *first-out*, and remains so until no alarm is active. Acknowledging resets nothing.
+//! An acknowledged alarm without cause leaves the list. Alarms of one code share a line when they have the same
+//! distinction: parts lost in two places take two lines. A listed alarm whose cause comes again raises its count; while
+//! the cause lasts, only the alarms of [`PER_PART`] do. So the counts of the list equal the occurrences in the history.
+//! The first active alarm is the *first-out*, and remains so until no alarm is active. Acknowledging resets nothing.
 
 use super::catalogue::{ClearedBy, Entry, PER_PART, Reaction};
 use super::trouble::Alarm;
@@ -89,7 +91,7 @@ impl Annunciator {
         });
     }
 
-    /// Lists an alarm or raises its count; returns true when its cause is new, or when it concerns another part.
+    /// Lists an alarm or raises its count; returns true when it did either.
     pub fn raise(&mut self, alarm: &Alarm, now: RigTime) -> bool {
         let quiet = !self.listed.iter().any(ListedAlarm::is_active);
         let at_once = alarm.code.entry().cleared_by == ClearedBy::Itself;
@@ -98,15 +100,12 @@ impl Annunciator {
         } else {
             Condition::Unacknowledged
         };
-        let twice = self
-            .listed
-            .iter()
-            .filter(|one| one.alarm.code == alarm.code);
-        assert!(twice.count() <= 1, "{} is listed twice", alarm.code);
-        let known = self
+        let mut same = self
             .listed
             .iter_mut()
-            .find(|one| one.alarm.code == alarm.code);
+            .filter(|one| one.alarm.is_same(alarm));
+        let known = same.next();
+        assert!(same.next().is_none(), "{} is listed twice", alarm.code);
         let Some(known) = known else {
             self.changed = true;
             self.listed.push(ListedAlarm {
@@ -121,24 +120,25 @@ impl Annunciator {
             return true;
         };
         let again = !known.is_active();
-        if again || known.entry().cleared_by == ClearedBy::Operator {
-            self.changed = true;
-            known.count += 1;
-            known.alarm = alarm.clone();
+        if !again && !PER_PART.contains(&known.alarm.code) {
+            return false;
         }
+        self.changed = true;
+        known.count += 1;
+        known.alarm = alarm.clone();
         if again {
             known.condition = condition;
             known.first_out = quiet && !at_once;
             known.inherited = false;
         }
-        again || PER_PART.contains(&known.alarm.code)
+        true
     }
 
-    /// Clears the alarms that a sensor clears, except those whose code `there` contains: their cause remains.
+    /// Clears the alarms that a sensor clears, except those that `there` contains: their cause remains.
     pub fn sensed(&mut self, there: &[Alarm]) {
         self.gone(|one| {
             let by_sensor = one.entry().cleared_by == ClearedBy::Sensor;
-            by_sensor && !there.iter().any(|alarm| alarm.code == one.alarm.code)
+            by_sensor && !there.iter().any(|alarm| alarm.is_same(&one.alarm))
         });
     }
 
@@ -148,19 +148,16 @@ impl Annunciator {
     }
 
     fn gone(&mut self, is_gone: impl Fn(&ListedAlarm) -> bool) {
-        for one in &mut self.listed {
-            if one.is_active() && is_gone(one) {
-                self.changed = true;
-                one.condition = match one.condition {
-                    Condition::Acknowledged => {
-                        one.count = 0;
-                        Condition::Returned
-                    }
-                    Condition::Unacknowledged | Condition::Returned => Condition::Returned,
-                };
+        let changed = &mut self.changed;
+        self.listed.retain_mut(|one| {
+            if !one.is_active() || !is_gone(one) {
+                return true;
             }
-        }
-        self.listed.retain(|one| one.count > 0);
+            *changed = true;
+            let stays = one.condition == Condition::Unacknowledged;
+            one.condition = Condition::Returned;
+            stays
+        });
         let active = self
             .listed
             .iter()
@@ -171,29 +168,30 @@ impl Annunciator {
     /// Acknowledges the alarm with this code, or every alarm when `code` is `None`; returns false when there is none.
     pub fn acknowledge(&mut self, code: Option<&str>) -> bool {
         let mut found = false;
-        for one in &mut self.listed {
-            if code.is_none_or(|code| one.alarm.code.name() == code) {
-                found = true;
-                match one.condition {
-                    Condition::Unacknowledged => one.condition = Condition::Acknowledged,
-                    Condition::Acknowledged => {}
-                    Condition::Returned => one.count = 0,
-                }
+        self.listed.retain_mut(|one| {
+            if code.is_some_and(|code| one.alarm.code.name() != code) {
+                return true;
             }
-        }
-        self.listed.retain(|one| one.count > 0);
+            found = true;
+            let stays = one.is_active();
+            one.condition = Condition::Acknowledged;
+            stays
+        });
         self.changed |= found;
         found
     }
 
-    /// Shelves the alarm with this code; returns false when there is none.
+    /// Shelves every alarm with this code; returns false when there is none.
     pub fn shelve(&mut self, code: &str, until: RigTime) -> bool {
-        let one = self
-            .listed
-            .iter_mut()
-            .find(|one| one.alarm.code.name() == code);
-        self.changed |= one.is_some();
-        one.map(|one| one.shelved_until = Some(until)).is_some()
+        let mut found = false;
+        for one in &mut self.listed {
+            if one.alarm.code.name() == code {
+                found = true;
+                one.shelved_until = Some(until);
+            }
+        }
+        self.changed |= found;
+        found
     }
 
     /// Shows alarms again whose shelving time is over.

@@ -7,8 +7,9 @@ use super::orders::{Order, Refused, shelf_minutes};
 use super::packml::{self, Command, Mode, On, State};
 use super::trouble::Alarm;
 use super::turn::{Ending, TurnOutput};
-use crate::handling::Place;
+use crate::handling::mechanism::HandEnd;
 use crate::handling::output::Jog;
+use crate::handling::{Move, Place};
 use crate::rig::image::Image;
 use units::{RigTime, Span};
 
@@ -34,6 +35,9 @@ impl Station {
             }
             Order::Jog(movement) => {
                 self.may_jog()?;
+                if output.rig.jog.is_some() {
+                    return Err(Refused::StillMoving);
+                }
                 let answer = output.answers.len();
                 output.rig.jog = Some(Jog { movement, answer });
             }
@@ -67,6 +71,16 @@ impl Station {
                     return Err(Refused::NoSuchAlarm);
                 }
             }
+            Order::Scan(serial) => {
+                let scanned = self.line.serials.scan(&serial, &self.line.ledger);
+                scanned.map_err(Refused::Scan)?;
+            }
+            Order::Answer(prompt, choice) => {
+                if self.prompts.answer(&prompt, &choice)? {
+                    self.leave(Ending::Stopped, now, output);
+                }
+            }
+            Order::Unscan => self.line.serials.unscan().map_err(Refused::Scan)?,
         }
         Ok(())
     }
@@ -97,6 +111,15 @@ impl Station {
             return Err(Refused::WrongState(command, self.machine.state));
         }
         match command {
+            Command::Reset
+            | Command::Start
+            | Command::Unhold
+            | Command::Unsuspend
+            | Command::Complete
+                if self.prompt().is_some() =>
+            {
+                Err(Refused::PromptOpen)
+            }
             Command::Reset | Command::Clear => gone(self.alarms.annunciator.still_sensed()),
             Command::Start => self.may_start(),
             Command::Unsuspend => gone(self.alarms.annunciator.stopping(Reaction::Suspend)),
@@ -134,7 +157,7 @@ impl Station {
             self.machine.state,
             State::Stopped | State::Idle | State::Complete
         ) {
-            return Err(self.not_at_rest());
+            return Err(Refused::NotAtRest(self.machine.state));
         }
         if self.line.ledger.holds(Place::NEST) || self.line.ledger.holds(Place::Gripper) {
             return Err(Refused::PartInside);
@@ -149,18 +172,6 @@ impl Station {
             found,
             needed,
         }
-    }
-
-    /// Returns the refusal, with the command that brings the machine to rest.
-    fn not_at_rest(&self) -> Refused {
-        let state = self.machine.state;
-        let first = if packml::is_aborted(state) {
-            Some(Command::Clear)
-        } else {
-            let stop = packml::next(state, On::Command(Command::Stop));
-            stop.map(|_| Command::Stop)
-        };
-        Refused::NotAtRest(state, first)
     }
 
     /// Checks that the lot may end before its count.
@@ -187,6 +198,9 @@ impl Station {
     /// # Errors
     /// Fails with the reason when no actuator may be jogged.
     pub fn may_jog(&self) -> Result<(), Refused> {
+        if self.prompt().is_some() {
+            return Err(Refused::PromptOpen);
+        }
         if self.machine.mode == Mode::Production {
             return Err(self.wrong_mode("jog", Mode::Manual));
         }
@@ -213,9 +227,15 @@ impl Station {
         Ok(())
     }
 
-    /// Records a jog: the machine is no longer homed.
-    pub fn jogged(&mut self) {
+    /// Records that the motion that has just begun is a jog: the machine is no longer homed.
+    pub fn jogged(&mut self, movement: Move) {
         self.line.homed = false;
+        self.line.mechanism.driven_by_hand(movement);
+    }
+
+    /// Returns how the last jog ended, but only once; `None` while it moves.
+    pub fn take_jog_end(&mut self, now: RigTime, image: &Image) -> Option<HandEnd> {
+        self.line.mechanism.take_hand_end(now, image)
     }
 
     fn leave(&mut self, ending: Ending, now: RigTime, output: &mut TurnOutput) {

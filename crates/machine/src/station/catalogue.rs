@@ -8,17 +8,18 @@ use crate::rig::stroke::ActuatorKey;
 use std::fmt;
 use texts::{Args, Lang, Message};
 
-/// Reaction of the machine to an alarm; each variant says what the machine does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Reaction {
-    /// Makes the outputs safe at once.
-    Abort,
-    /// Brings the line to rest at the next possible point and waits for an order.
-    Hold,
-    /// Brings the line to rest at the next possible point and resumes when the cause outside the machine has gone.
-    Suspend,
-    /// Shows the alarm only.
-    Nothing,
+named! {
+    /// Reaction of the machine to an alarm; each variant says what the machine does.
+    Reaction {
+        /// Makes the outputs safe at once.
+        Abort = "abort",
+        /// Brings the line to rest at the next possible point and waits for an order.
+        Hold = "hold",
+        /// Brings the line to rest at the next possible point and resumes when the cause outside the machine has gone.
+        Suspend = "suspend",
+        /// Shows the alarm only.
+        Nothing = "nothing",
+    }
 }
 
 /// What clears an alarm, that is, ends its cause.
@@ -41,9 +42,10 @@ pub struct Entry {
     pub cleared_by: ClearedBy,
 }
 
-/// Declares [`AlarmCode`], a row per code: its subject if it has one, the id of its text, [`Reaction`], [`ClearedBy`].
+/// Declares [`AlarmCode`], a row per code: after `by` the argument that distinguishes its alarms, after `of` the type
+/// of its subject (both optional), the id of its text, [`Reaction`], [`ClearedBy`].
 macro_rules! codes {
-    ($($(#[$doc:meta])* $code:ident $(of $subject:ty)? = $id:literal, $reaction:ident, $by:ident;)+) => {
+    ($($(#[$doc:meta])* $code:ident $(by $argument:literal)? $(of $subject:ty)? = $id:literal, $reaction:ident, $by:ident;)+) => {
         /// Code of an alarm, stable over versions.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum AlarmCode { $($(#[$doc])* $code $(($subject))?,)+ }
@@ -67,6 +69,14 @@ macro_rules! codes {
                         cleared_by: ClearedBy::$by,
                     }),+
                 }
+            }
+
+            /// Returns the name of the argument that distinguishes alarms of this code, such as `place` of a lost part.
+            pub(super) fn distinguished_by(self) -> Option<&'static str> {
+                $($(if matches!(self, Self::$code { .. }) {
+                    return Some($argument);
+                })?)+
+                None
             }
 
             /// Returns the name of the actuator or of the wearing part that the code carries.
@@ -135,33 +145,35 @@ codes! {
     /// A step of the sequence has exceeded its timeout.
     StepTooLong = "step_too_long", Abort, Operator;
     /// The beam of a bin has counted no part, or more than one.
-    BinBeam = "bin_beam", Hold, Operator;
+    BinBeam by "bin" = "bin_beam", Hold, Operator;
     /// Parts wait in the track but none has come into the pocket.
     PartNotArrived = "part_not_arrived", Hold, Operator;
     /// The track is empty.
     MagazineEmpty = "magazine_empty", Suspend, Sensor;
+    /// The port of the code reader is lost.
+    SerialReaderLost = "serial_reader_lost", Suspend, Sensor;
     /// The beam of a bin stays dark.
-    BinFull = "bin_full", Suspend, Sensor;
+    BinFull by "bin" = "bin_full", Suspend, Sensor;
     /// A stroke has not reached its end; the machine repeats the stroke once.
     Retried of ActuatorKey = "retried", Nothing, Itself;
     /// A push button stays down.
-    ButtonStuck = "button_stuck", Nothing, Sensor;
+    ButtonStuck by "input" = "button_stuck", Nothing, Sensor;
     /// The host watchdog of a module has made its outputs safe.
-    WatchdogTripped = "watchdog_tripped", Nothing, Itself;
+    WatchdogTripped by "module" = "watchdog_tripped", Nothing, Itself;
     /// The previous run ended while it measured the references.
-    CalibrationCutOff = "calibration_cut_off", Nothing, Itself;
+    CalibrationCutOff by "module" = "calibration_cut_off", Nothing, Itself;
     /// No sensor shows a part that was inside.
-    PartLost = "part_lost", Nothing, Itself;
+    PartLost by "place" = "part_lost", Nothing, Itself;
     /// The previous run ended while a part fell into its bin.
-    FallUnseen = "fall_unseen", Nothing, Itself;
+    FallUnseen by "bin" = "fall_unseen", Nothing, Itself;
     /// A sensor shows a part that the ledger does not have.
-    PartFound = "part_found", Nothing, Itself;
+    PartFound by "place" = "part_found", Nothing, Itself;
     /// The last reference check is older than the lot allows.
     ReferenceCheckDue = "golden_check_due", Hold, Operator;
     /// A reference part disagrees with its certificate.
     ReferenceCheckFailed = "golden_check_failed", Hold, Operator;
     /// The test of a reference part was interrupted and begins again.
-    ReferenceRepeated = "golden_repeated", Nothing, Operator;
+    ReferenceRepeated by "serial" = "golden_repeated", Nothing, Operator;
     /// More parts have failed than the reject-rate limit of the lot allows.
     RejectRateLimit = "lot_discard_limit", Hold, Operator;
     /// The contact of the probes at the coil exceeds its limit.

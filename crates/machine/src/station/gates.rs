@@ -16,10 +16,12 @@ use super::catalogue::AlarmCode;
 use super::packml::State;
 use super::trouble::Alarm;
 use super::turn::{Checked, TurnOutput};
+use crate::dut::prompt::Prompt;
 use crate::dut::verdict::Verdict;
 use crate::handling::Place;
 use crate::handling::ledger::PartRole;
 use crate::handling::output::Judged;
+use crate::handling::serial::SerialSettings;
 use crate::handling::wear::{Uses, Wearing};
 use serde::Deserialize;
 use units::{Ohm, RigTime, Span};
@@ -41,6 +43,11 @@ pub struct LotSettings {
     pub reference_check: CheckSettings,
     /// Use counts at which probes and jaws count as worn, and the limit of the probe contact.
     pub wear: WearSettings,
+    /// What a person must answer during every lot.
+    #[serde(rename = "prompt")]
+    pub prompts: Vec<Prompt>,
+    /// Source of the serial numbers; without it the parts have none.
+    pub serial: Option<SerialSettings>,
 }
 
 /// When a reference part is checked.
@@ -182,7 +189,7 @@ impl Station {
 
     /// Returns true when every result of the part in the nest gets confirmation measurements.
     pub(super) fn is_thorough(&self) -> bool {
-        match self.line.ledger.part(Place::NEST).map(|part| &part.kind) {
+        match self.line.ledger.part(Place::NEST).map(|part| &part.role) {
             Some(PartRole::Lot(seq)) => *seq <= self.plan.lot.first_article_parts,
             Some(PartRole::Reference(_)) => self.lot.gates.checking,
             None => false,

@@ -31,6 +31,7 @@ impl Station {
     pub(super) fn recalibrate(&mut self) {
         self.plan.calibrated = false;
         self.referenced = false;
+        self.prompts.calibrate_again();
         self.lot.plan_references(&self.plan.reference_serials);
         self.device.forget_calibration();
     }
@@ -39,11 +40,12 @@ impl Station {
     pub(super) fn learn(&mut self, output: &mut TurnOutput) {
         let mut outcome = Outcome::default();
         for judged in &output.record.parts.judged {
-            match &judged.part.kind {
+            match &judged.part.role {
                 PartRole::Reference(serial) if self.lot.gates.is_checking() => {
                     self.check(judged, serial, &mut outcome);
                 }
-                PartRole::Reference(_) | PartRole::Lot(_) if judged.part.interrupted.is_some() => {}
+                PartRole::Reference(_) | PartRole::Lot(_)
+                    if judged.part.why_untested().is_some() => {}
                 PartRole::Reference(serial) => {
                     let last = self.lot.reference_left.is_empty();
                     let learned = self.device.learn_reference(serial, &judged.record, last);
@@ -66,7 +68,7 @@ impl Station {
 
     /// Returns the serial number of the reference part in the nest, unless it serves a check.
     pub(super) fn teaching(&self) -> Option<&str> {
-        match self.line.ledger.part(Place::NEST).map(|part| &part.kind) {
+        match self.line.ledger.part(Place::NEST).map(|part| &part.role) {
             Some(PartRole::Reference(serial)) if !self.lot.gates.is_checking() => Some(serial),
             Some(PartRole::Reference(_) | PartRole::Lot(_)) | None => None,
         }

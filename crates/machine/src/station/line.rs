@@ -4,6 +4,7 @@ use super::turn::{Inputs, TurnOutput};
 use crate::guard::Situation;
 use crate::handling::mechanism::DEBOUNCE;
 use crate::handling::recovery::Recovery;
+use crate::handling::serial::Serials;
 use crate::handling::turn::Turn;
 use crate::handling::{Feeder, Ledger, Mechanism, Move, Place};
 use crate::rig::image::Image;
@@ -18,6 +19,7 @@ pub(super) struct Line {
     pub ledger: Ledger,
     pub mechanism: Mechanism,
     pub recovery: Recovery,
+    pub serials: Serials,
     /// True while every actuator is homed; a jog and the safe state reset it.
     pub homed: bool,
     /// Beams that are dark, each with the time since which it has been dark.
@@ -29,12 +31,13 @@ pub(super) struct Line {
 }
 
 impl Line {
-    pub fn new(feeder: Feeder, ledger: Ledger, mechanism: Mechanism) -> Self {
+    pub fn new(feeder: Feeder, ledger: Ledger, mechanism: Mechanism, serials: Serials) -> Self {
         Self {
             feeder,
             ledger,
             mechanism,
             recovery: Recovery::default(),
+            serials,
             homed: false,
             dark: Vec::new(),
             stepwise: VecDeque::new(),
@@ -64,6 +67,7 @@ impl Line {
             parts: &mut output.record.parts,
             trouble: &mut output.notes.feeder,
             reference_serials,
+            serials: &mut self.serials,
             recorded: inputs.recorded,
             resting,
         };

@@ -34,6 +34,7 @@ pub mod orders;
 pub mod packml;
 mod panel;
 mod produce;
+mod prompts;
 mod resetting;
 mod safety;
 mod starting;
@@ -43,8 +44,10 @@ pub mod trouble;
 pub mod turn;
 
 use crate::dut::Device;
+use crate::dut::prompt::Prompt;
 use crate::guard::{Motion, Situation};
 use crate::handling::inside::Inside;
+use crate::handling::serial::Serials;
 use crate::handling::wear::Uses;
 use crate::handling::{Feeder, Ledger, Mechanism, Move};
 use crate::rig::axis::AxisTable;
@@ -57,6 +60,7 @@ use line::Line;
 use machine::Machine;
 use packml::{Mode, State};
 use panel::Panel;
+use prompts::Prompts;
 use starting::Start;
 use std::collections::VecDeque;
 use timeouts::Timeouts;
@@ -89,6 +93,10 @@ pub struct Plan {
     pub worn: Uses,
     /// Parts that the previous run left inside.
     pub left: Inside,
+    /// Serial numbers of the parts.
+    pub serials: Serials,
+    /// What a person must answer during the lot.
+    pub prompts: Vec<Prompt>,
 }
 
 impl Plan {
@@ -110,6 +118,7 @@ pub struct Station {
     machine: Machine,
     line: Line,
     lot: LotControl,
+    prompts: Prompts,
     alarms: Alarms,
 }
 
@@ -159,15 +168,17 @@ impl Station {
     /// Returns a station before the first reading of its sensors.
     pub fn new(plan: Plan, device: Device, table: AxisTable, mechanism: Mechanism) -> Self {
         let ledger = Ledger::after(plan.left);
+        let serials = plan.serials.clone();
         let mut station = Self {
             machine: Machine::new(plan.between_lots.unwrap_or(State::Stopped)),
-            line: Line::new(Feeder::new(table), ledger, mechanism),
+            line: Line::new(Feeder::new(table), ledger, mechanism, serials),
             lot: LotControl {
                 gates: Gates::default(),
                 reference_planned: 0,
                 reference_left: VecDeque::new(),
                 began: false,
             },
+            prompts: Prompts::new(plan.prompts.clone()),
             alarms: Alarms::default(),
             plan,
             device,
@@ -185,6 +196,16 @@ impl Station {
     /// Returns the part ledger.
     pub fn ledger(&self) -> &Ledger {
         &self.line.ledger
+    }
+
+    /// Returns the prompt that waits for its answer.
+    pub fn prompt(&self) -> Option<&Prompt> {
+        self.prompts.open()
+    }
+
+    /// Returns the serial numbers of the lot.
+    pub fn serials(&self) -> &Serials {
+        &self.line.serials
     }
 
     /// Returns the mechanism: end sensors and motions.
@@ -274,6 +295,7 @@ impl Station {
             output.answers.push(answer);
         }
         let stuck = self.pressed(now, inputs.image, &mut output);
+        self.prompts.turn();
         self.own_commands(now, &inputs, &mut output);
         if self.machine.ended {
             return output;
@@ -284,6 +306,7 @@ impl Station {
             self.act(now, inputs, &mut output);
             self.raise_all(now, &mut output);
         }
+        output.record.prompted = self.prompts.opened().cloned();
         self.line.postpone(now, &mut output);
         self.alarms.annunciator.unshelve(now);
         self.show(now, &mut output);

@@ -3,9 +3,10 @@
 //! The station answers every order in its turn: it performs the order or refuses it with a code and arguments, which a
 //! screen shows next to a disabled button.
 
-use super::packml::{self, Command, Mode, State};
+use super::packml::{self, Command, Mode, NextStep, State};
 use super::trouble::Alarm;
 use crate::handling::Move;
+use crate::handling::serial::ScanRefused;
 use texts::Message;
 
 /// One order.
@@ -29,6 +30,12 @@ pub enum Order {
     Acknowledge(Option<String>),
     /// Hides the alarm with this code for a number of minutes, see [`shelf_minutes`].
     Shelve(String, u32),
+    /// The code of the part that a person is about to load.
+    Scan(String),
+    /// Forgets the newest scan.
+    Unscan,
+    /// Answers the prompt of this name with this choice.
+    Answer(String, String),
 }
 
 /// Returns the shelving time in minutes: 1 to 480, 30 when the order names none.
@@ -58,14 +65,16 @@ pub enum Refused {
     NoLot,
     /// A part of the lot is still in nest or gripper.
     PartInside,
-    /// Another lot needs a machine at rest; holds the state, and the command that leads to rest, if there is one.
-    NotAtRest(State, Option<Command>),
+    /// Another lot needs a machine at rest.
+    NotAtRest(State),
     /// The mode can change only at rest.
     ModeLocked(State),
     /// A jog needs known positions.
     Unhomed(State),
     /// The previous motion has not arrived.
     StillMoving,
+    /// A motion by hand ended before its sensors showed the end.
+    NotArrived,
     /// No motion waits for a step.
     NoMotionWaits,
     /// The cause of this alarm remains.
@@ -73,32 +82,37 @@ pub enum Refused {
     /// The list has no alarm with this code.
     NoSuchAlarm,
     /// The guard refuses the motion, for this reason.
-    Collision(String),
-    /// The program has refused the order before it reached the station, for this reason.
-    Denied(String),
-    /// A member of the order has an unknown word.
-    UnknownWord {
-        /// Name of the member.
-        member: &'static str,
-        /// The unknown word; empty when the member is missing.
-        found: String,
-        /// Every allowed word.
-        known: Vec<&'static str>,
-    },
+    Collision(Box<Message>),
+    /// The program refused the order, with this message, before the station received it.
+    Denied(Box<Message>),
+    /// The order `start` has a recipe, a count or a retest, but no lot.
+    StartWithoutLot,
+    /// The order changes rows of the history and does not concern the rig.
+    NotOfTheRig,
     /// A shelving order needs a reason.
     ShelveWithoutReason,
+    /// The scan cannot be the serial number of a further part.
+    Scan(ScanRefused),
+    /// A prompt waits for its answer.
+    PromptOpen,
+    /// No prompt of this name waits.
+    NoPrompt,
+    /// The prompt has no such choice.
+    NoSuchChoice,
 }
 
 impl Refused {
-    /// Returns the text of the refusal, with its arguments.
+    /// Returns the message for the refusal; its text gives the reason or the next step.
     pub fn message(&self) -> Message {
         let of = |code| Message::new("refusal", code);
-        let in_state = |code, state: &State| of(code).with("state", state.name());
+        let step = |code, state: &State, next: NextStep| {
+            of(code).with("state", state.name()).with("next", next)
+        };
         match self {
             Self::RunEnded => of("run_ended"),
             Self::WrongState(command, state) => {
                 let states: Vec<&str> = packml::states_for(*command).map(State::name).collect();
-                in_state("wrong_state", state)
+                step("wrong_state", state, packml::next_step(*command, *state))
                     .with("command", command.name())
                     .with("states", states.join(", "))
             }
@@ -110,60 +124,70 @@ impl Refused {
                 .with("command", order)
                 .with("found", found.name())
                 .with("needed", needed.name()),
-            Self::MovedByHand => of("moved_by_hand"),
+            Self::MovedByHand => of("moved_by_hand").with("next", NextStep::Stop),
             Self::NoLot => of("no_lot"),
-            Self::PartInside => of("part_inside"),
-            Self::NotAtRest(state, None) => in_state("not_at_rest", state),
-            Self::NotAtRest(state, Some(first)) => {
-                in_state("not_at_rest", state).case(first.name())
-            }
-            Self::ModeLocked(state) => in_state("mode_locked", state),
-            Self::Unhomed(state) => in_state("unhomed", state),
+            Self::PartInside => of("part_inside").with("next", NextStep::Reset),
+            Self::NotAtRest(state) => step("not_at_rest", state, packml::to_rest(*state)),
+            Self::ModeLocked(state) => step("mode_locked", state, packml::to_rest(*state)),
+            Self::Unhomed(state) => step("unhomed", state, packml::to_idle(*state)),
             Self::StillMoving => of("still_moving"),
+            Self::NotArrived => of("not_arrived"),
             Self::NoMotionWaits => of("no_motion_waits"),
-            Self::CauseRemains(alarm) => alarm.inside("cause_remains"),
+            Self::CauseRemains(alarm) => alarm
+                .inside("cause_remains")
+                .with("next", alarm.code.text_id()),
             Self::NoSuchAlarm => of("no_such_alarm"),
-            Self::Collision(why) => of("collision").with("detail", why),
-            Self::Denied(why) => of("denied").with("detail", why),
-            Self::UnknownWord {
-                member,
-                found,
-                known,
-            } => of("unknown_word")
-                .with("member", member)
-                .with("found", if found.is_empty() { "nothing" } else { found })
-                .with("known", known.join(", ")),
+            Self::Collision(why) => of("collision").with_inner("detail", why),
+            Self::Denied(why) => (**why).clone(),
+            Self::StartWithoutLot => of("start_without_lot"),
+            Self::NotOfTheRig => of("not_of_the_rig"),
             Self::ShelveWithoutReason => of("shelve_without_reason"),
+            Self::PromptOpen => of("prompt_open"),
+            Self::NoPrompt => of("no_prompt"),
+            Self::NoSuchChoice => of("no_such_choice"),
+            Self::Scan(ScanRefused::NotScanned) => of("not_scanned"),
+            Self::Scan(ScanRefused::Unreadable) => of("scan_unreadable"),
+            Self::Scan(ScanRefused::Repeated) => of("scan_repeated"),
+            Self::Scan(ScanRefused::TooMany) => of("scans_too_many"),
         }
     }
 }
 
-/// Motions that may be jogged, with their names in orders.
-pub const JOGS: [(&str, Move); 15] = {
+/// Motions that may be jogged; [`Move::code`] is their name in orders.
+pub const JOGS: [Move; 15] = {
     use crate::rig::axis::AxisStation;
     use crate::rig::bin::Bin;
     [
-        ("escapement_release", Move::EscapementRelease),
-        ("escapement_hold", Move::EscapementHold),
-        ("pusher_extend", Move::PusherExtend),
-        ("pusher_retract", Move::PusherRetract),
-        ("clamp_close", Move::ClampClose),
-        ("clamp_open", Move::ClampOpen),
-        ("probes_up", Move::ProbesUp),
-        ("probes_down", Move::ProbesDown),
-        ("sort_down", Move::SortDown),
-        ("sort_up", Move::SortUp),
-        ("gripper_close", Move::GripperClose),
-        ("gripper_open", Move::GripperOpen),
-        ("axis_nest", Move::AxisTo(AxisStation::Nest)),
-        ("axis_park", Move::AxisTo(AxisStation::Park)),
-        ("axis_retest", Move::AxisTo(AxisStation::Bin(Bin::RETEST))),
+        Move::EscapementRelease,
+        Move::EscapementHold,
+        Move::PusherExtend,
+        Move::PusherRetract,
+        Move::ClampClose,
+        Move::ClampOpen,
+        Move::ProbesUp,
+        Move::ProbesDown,
+        Move::SortDown,
+        Move::SortUp,
+        Move::GripperClose,
+        Move::GripperOpen,
+        Move::AxisTo(AxisStation::Nest),
+        Move::AxisTo(AxisStation::Park),
+        Move::AxisTo(AxisStation::Bin(Bin::RETEST)),
     ]
+};
+
+/// Names of the motions in [`JOGS`], in the same order.
+pub const JOG_NAMES: [&str; JOGS.len()] = {
+    let mut names = [""; JOGS.len()];
+    let mut place = 0;
+    while place < JOGS.len() {
+        names[place] = JOGS[place].code();
+        place += 1;
+    }
+    names
 };
 
 /// Returns the motion of this name.
 pub fn jog(name: &str) -> Option<Move> {
-    JOGS.iter()
-        .find(|(known, _)| *known == name)
-        .map(|(_, movement)| *movement)
+    JOGS.into_iter().find(|it| it.code() == name)
 }

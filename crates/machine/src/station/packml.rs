@@ -86,6 +86,85 @@ named! {
     }
 }
 
+named! {
+    /// Next step towards a command that the state does not allow, or the reason why there is none. The names are codes
+    /// of the text family `next`.
+    NextStep {
+        /// Wait until the machine rests.
+        Wait = "wait",
+        /// Clear the alarm.
+        Clear = "clear",
+        /// Reset the machine.
+        Reset = "reset",
+        /// Start the lot.
+        Start = "start",
+        /// Stop the machine.
+        Stop = "stop",
+        /// Go on after the hold.
+        Unhold = "unhold",
+        /// None: the machine is already where the command leads.
+        Already = "already",
+        /// None: the machine resumes by itself.
+        Resumes = "resumes",
+        /// None: no alarm has stopped the machine.
+        NothingToClear = "nothing_to_clear",
+    }
+}
+
+/// Returns the next step towards `command`, which `state` does not allow.
+pub fn next_step(command: Command, state: State) -> NextStep {
+    match (state, command) {
+        (
+            State::Resetting
+            | State::Starting
+            | State::Completing
+            | State::Holding
+            | State::Unholding
+            | State::Suspending
+            | State::Unsuspending
+            | State::Stopping
+            | State::Aborting
+            | State::Clearing,
+            _,
+        ) => NextStep::Wait,
+        (State::Aborted | State::Stopped, Command::Stop)
+        | (State::Aborted, Command::Abort)
+        | (State::Idle, Command::Reset)
+        | (State::Complete, Command::Complete)
+        | (State::Held, Command::Hold)
+        | (State::Suspended, Command::Suspend)
+        | (State::Execute, Command::Start | Command::Unhold | Command::Unsuspend) => {
+            NextStep::Already
+        }
+        (State::Aborted, _) => NextStep::Clear,
+        (_, Command::Clear) => NextStep::NothingToClear,
+        (State::Stopped | State::Complete, _) => NextStep::Reset,
+        (State::Idle, _) => NextStep::Start,
+        (State::Held | State::Suspended | State::Execute, Command::Reset) => NextStep::Stop,
+        (State::Held, _) => NextStep::Unhold,
+        (State::Suspended | State::Execute, _) => NextStep::Resumes,
+    }
+}
+
+/// Returns the next step that brings the machine to rest, where mode and lot may change.
+pub fn to_rest(state: State) -> NextStep {
+    if state == State::Aborted {
+        NextStep::Clear
+    } else if may_stop(state) {
+        NextStep::Stop
+    } else {
+        NextStep::Wait
+    }
+}
+
+/// Returns the next step towards state `Idle`, in which a person may jog actuators.
+pub fn to_idle(state: State) -> NextStep {
+    match next(state, On::Command(Command::Reset)) {
+        Some(_) => NextStep::Reset,
+        None => next_step(Command::Reset, state),
+    }
+}
+
 /// Cause of a transition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum On {

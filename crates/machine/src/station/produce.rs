@@ -3,9 +3,13 @@
 use super::Station;
 use super::packml::Mode;
 use super::turn::{Inputs, TurnOutput};
+use crate::dut::prompt::PromptMoment;
 use crate::handling::feeder::Permits;
 use crate::handling::nest::TestTerms;
 use units::RigTime;
+
+/// PromptMoment of the prompts before the first part.
+const FIRST_PART: PromptMoment = PromptMoment::AfterCalibration;
 
 impl Station {
     /// Performs one turn of the sequence.
@@ -41,10 +45,37 @@ impl Station {
     }
 
     fn note_begin(&mut self, output: &mut TurnOutput) {
-        if !self.lot.began && self.lot.reference_left.is_empty() && self.device.is_calibrated() {
+        if !self.lot.began && self.is_calibration_over() && !self.prompts.is_due(FIRST_PART) {
             self.lot.began = true;
             output.record.lot_began = true;
         }
+    }
+
+    /// Returns true when calibration and reference parts are complete.
+    pub(super) fn is_calibration_over(&self) -> bool {
+        self.lot.reference_left.is_empty() && self.device.is_calibrated()
+    }
+
+    /// Returns true when a prompt waits for the last reference part to leave, or for its answer.
+    pub(super) fn is_prompt_due(&self) -> bool {
+        self.is_calibration_over() && self.prompts.is_due(FIRST_PART)
+    }
+
+    /// Opens the prompt before the first part once the machine rests; returns true while it is open.
+    pub(super) fn asks_before_the_first_part(
+        &mut self,
+        inputs: &Inputs,
+        output: &TurnOutput,
+    ) -> bool {
+        self.is_prompt_due()
+            && self.rests_empty(inputs.recorded, output)
+            && self.prompts.asks(FIRST_PART)
+    }
+
+    /// Returns true when no part is in nest, fingers or chute and nothing moves.
+    pub(super) fn rests_empty(&self, recorded: u64, output: &TurnOutput) -> bool {
+        let moving = self.line.mechanism.moving().next().is_some();
+        self.line.is_finished(false, recorded, output) && !moving && output.rig.motions.is_empty()
     }
 
     /// Returns true while the magazine is to deliver more parts of the lot.

@@ -2,6 +2,7 @@
 
 use super::Station;
 use super::turn::{Inputs, TurnOutput};
+use crate::dut::Reason;
 use crate::handling::Place;
 use crate::handling::output::{Interrupted, Judged};
 use crate::rig::bin::Bin;
@@ -69,7 +70,7 @@ impl Station {
         let is_recorded = part.interrupted.is_some();
         let why = part.interrupt(BY_A_RESET);
         if part.bin.replace(Bin::RETEST).is_none() {
-            let judged = Judged::interrupted(part.clone(), &why, now);
+            let judged = Judged::untested(part.clone(), Reason::interrupted(&why), now);
             output.record.parts.judged.push(judged);
         } else if !is_recorded {
             let ordinal = part.ordinal;

@@ -2,9 +2,11 @@
 
 use super::Station;
 use super::catalogue::{self, AlarmCode, ClearedBy, Reaction};
+use super::orders::Refused;
 use super::packml::{self, Command, On, State};
 use super::trouble::Alarm;
 use super::turn::{Ending, HistoryState, Inputs, TurnOutput};
+use crate::dut::Reason;
 use crate::dut::verdict::Verdict;
 use crate::handling::ledger::Part;
 use crate::handling::mechanism::SENSOR_AGE;
@@ -14,6 +16,7 @@ use crate::handling::{Move, Place};
 use crate::rig::bin::Bin;
 use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
+use texts::Message;
 use units::{RigTime, Span};
 
 /// Time after the start within which every safety input must have a sample.
@@ -39,6 +42,7 @@ impl Station {
         stuck: Vec<Alarm>,
         output: &mut TurnOutput,
     ) {
+        self.line.serials.readings(&inputs.readings);
         let mut found = self.line.mechanism.update(now, inputs.image);
         output.rig.motions.extend(found.motions);
         output.rig.restart_check = self.line.mechanism.needs_restart_check(now);
@@ -48,18 +52,23 @@ impl Station {
         there.extend(self.full_bins(now, inputs.image));
         there.extend(self.still_starved(now, inputs.image));
         there.extend(inputs.history.alarm().cloned());
+        there.extend(inputs.reader.clone());
         self.alarms.annunciator.sensed(&there);
         let trouble = &mut output.notes.trouble;
         if !packml::is_aborted(self.machine.state) {
             trouble.extend(found.trouble.into_iter().map(Alarm::from));
         }
-        trouble.extend(inputs.bus.clone());
+        trouble.extend(inputs.bus.iter().cloned());
         trouble.extend(there);
         trouble.extend(self.worn());
         let reference = &mut self.lot.reference_left;
         let (feeder, _, mut turn) = self.line.at(now, inputs, output, reference, false);
         feeder.confirm(&mut turn);
         output.notes.take_over();
+        for landed in &output.record.parts.landed {
+            let serial = landed.part.serial.as_ref();
+            self.line.serials.landed(serial, landed.bin);
+        }
         if !self.line.dark.is_empty() {
             self.alarms.timeouts.wait_for_bin();
         }
@@ -118,7 +127,10 @@ impl Station {
             && (late || self.alarms.sensed)
         {
             alarms.push(match inputs.host_late {
-                Some(late) => Alarm::host_late(point, late),
+                Some(late) => {
+                    let missed = Message::new("detail", "input").with("input", point);
+                    Alarm::host_late(&missed, late)
+                }
                 None => Alarm::stale(*point),
             });
         }
@@ -166,7 +178,7 @@ impl Station {
     pub fn refused(
         &mut self,
         movement: Move,
-        refusal: &str,
+        refusal: &Message,
         now: RigTime,
         output: &mut TurnOutput,
     ) {
@@ -251,7 +263,9 @@ impl Station {
     /// Makes the outputs safe and forgets every position.
     pub(super) fn make_safe(&mut self, why: &str, now: RigTime, output: &mut TurnOutput) {
         output.rig.motions.clear();
-        output.rig.jog = None;
+        if let Some(jog) = output.rig.jog.take() {
+            output.answers[jog.answer] = Err(Refused::NotArrived);
+        }
         output.rig.job = None;
         output.rig.safe = true;
         self.interrupt(why, now, output);
@@ -271,7 +285,7 @@ impl Station {
                 parts.interrupted.push(Interrupted { ordinal, why });
                 continue;
             }
-            let mut judged = Judged::interrupted(part.clone(), &why, now);
+            let mut judged = Judged::untested(part.clone(), Reason::interrupted(&why), now);
             if let Some(test) = self.line.feeder.test() {
                 judged.record = test.record();
                 judged.judgements = test.judgements();

@@ -3,6 +3,7 @@
 use super::Station;
 use super::trouble::Alarm;
 use super::turn::{Inputs, TurnOutput};
+use crate::dut::prompt::PromptMoment;
 use crate::handling::output::NestJob;
 use crate::handling::{Move, NestId};
 use crate::instrument::act::{Runner, RunnerState};
@@ -26,6 +27,10 @@ impl Station {
     pub(super) fn begin(&mut self, now: RigTime, inputs: &Inputs, output: &mut TurnOutput) {
         if self.plan.calibrated || self.referenced {
             return self.done(now, output);
+        }
+        if matches!(self.start, Start::Begin) && self.prompts.asks(PromptMoment::BeforeCalibration)
+        {
+            return;
         }
         match std::mem::replace(&mut self.start, Start::Begin) {
             Start::Begin => {
@@ -72,7 +77,7 @@ impl Station {
             RunnerState::Wait(until) => output.rig.wake_at = Some(until),
             RunnerState::Busy => {}
             RunnerState::Trouble(why) => {
-                let fault = Message::new("fault", "line").with("detail", why);
+                let fault = Message::new("fault", "line").with_inner("detail", &why);
                 output.notes.trouble.push(Alarm::calibration(&fault));
             }
             RunnerState::Done => {

@@ -7,6 +7,7 @@ use super::safety::{FIRST_SCAN, safety_was_read};
 use super::starting::Start;
 use super::trouble::Alarm;
 use super::turn::{Ending, Inputs, TurnOutput};
+use crate::dut::prompt::PromptMoment;
 use crate::handling::Place;
 use crate::handling::feeder::Permits;
 use crate::handling::recovery::Recovery;
@@ -37,6 +38,8 @@ impl Station {
             self.machine.state,
             State::Stopped | State::Complete | State::Aborted
         );
+        let begins = self.machine.state == State::Stopped && self.machine.entered == RigTime(0);
+        let asked = begins && !self.is_between_lots() && self.prompts.asks(PromptMoment::LotStart);
         match (
             self.machine.stopping,
             self.plan.attended,
@@ -57,7 +60,7 @@ impl Station {
                 );
             }
             (false, ..) if self.is_between_lots() => {}
-            (false, _, State::Stopped) if self.machine.entered == RigTime(0) => {
+            (false, _, State::Stopped) if begins && !asked => {
                 self.enter(Command::Reset, now, output)
             }
             (false, _, State::Idle) if self.machine.fresh => {
@@ -149,10 +152,14 @@ impl Station {
             State::Resetting => self.reset(now, inputs, output),
             State::Starting => self.begin(now, &inputs, output),
             State::Execute => {
+                if self.asks_before_the_first_part(&inputs, output) {
+                    return;
+                }
                 self.begin_due_check(now, output);
+                let goes_on = !self.is_prompt_due();
                 let permits = Permits {
-                    release: self.expects_more(),
-                    push: true,
+                    release: goes_on && self.expects_more(),
+                    push: goes_on,
                 };
                 self.produce(now, inputs, output, permits);
                 let done = !self.expects_more() && !self.lot.gates.is_checking();
@@ -203,9 +210,16 @@ impl Station {
             push,
         };
         self.produce(now, inputs, output, permits);
-        if self.machine.state == state && self.line.is_finished(push, recorded, output) {
-            self.done(now, output);
+        if self.machine.state != state || !self.line.is_finished(push, recorded, output) {
+            return;
         }
+        if state == State::Completing && self.prompts.is_due(PromptMoment::LotEnd) {
+            if self.rests_empty(recorded, output) {
+                self.prompts.asks(PromptMoment::LotEnd);
+            }
+            return;
+        }
+        self.done(now, output);
     }
 
     fn wait_for_safe(&mut self, now: RigTime, inputs: &Inputs, output: &mut TurnOutput) {

@@ -35,6 +35,7 @@ enum Owner {
 #[derive(Debug, Clone, Copy)]
 struct Step {
     who: Owner,
+    /// Code of its text in family `step`, which has texts only for steps with a limit.
     name: &'static str,
     limit: Option<Span>,
 }
@@ -128,11 +129,11 @@ fn runs(state: State) -> bool {
 fn of_feed(feed: Feed) -> (&'static str, Option<Span>) {
     let stroke = Some(Span::ms(6000));
     match feed {
-        Feed::Empty => ("feed empty", None),
+        Feed::Empty => ("feed_empty", None),
         Feed::Releasing { .. } => ("releasing", stroke),
-        Feed::Closing { .. } => ("escapement closing", stroke),
-        Feed::Holding => ("escapement holding", stroke),
-        Feed::Ready => ("part ready", None),
+        Feed::Closing { .. } => ("escapement_closing", stroke),
+        Feed::Holding => ("escapement_holding", stroke),
+        Feed::Ready => ("part_ready", None),
         Feed::Pushing => ("pushing", stroke),
         Feed::Retracting => ("retracting", stroke),
     }
@@ -141,11 +142,11 @@ fn of_feed(feed: Feed) -> (&'static str, Option<Span>) {
 fn of_nest(nest: &NestState) -> (&'static str, Option<Span>) {
     let stroke = Some(Span::ms(6000));
     match nest {
-        NestState::Empty => ("nest empty", None),
+        NestState::Empty => ("nest_empty", None),
         NestState::Clamping => ("clamping", stroke),
         NestState::Probing => ("probing", stroke),
         NestState::Testing(test) => ("testing", Some(test.longest())),
-        NestState::Judged => ("waiting for the gripper", Some(Span::ms(15_000))),
+        NestState::Judged => ("waiting_for_the_gripper", Some(Span::ms(15_000))),
         NestState::Gripping => ("gripping", stroke),
         NestState::Unclamping => ("unclamping", stroke),
         NestState::Lifting => (LIFTING, Some(Span::ms(2500))),
@@ -155,14 +156,14 @@ fn of_nest(nest: &NestState) -> (&'static str, Option<Span>) {
 fn of_sort(sort: Sort) -> (&'static str, Option<Span>) {
     let stroke = Some(Span::ms(8000));
     match sort {
-        Sort::Returning => ("axis returning", stroke),
-        Sort::OverNest => ("over the nest", None),
-        Sort::Lowering => ("z lowering", stroke),
-        Sort::AtPart => ("fingers around the part", None),
+        Sort::Returning => ("axis_returning", stroke),
+        Sort::OverNest => ("over_the_nest", None),
+        Sort::Lowering => ("z_lowering", stroke),
+        Sort::AtPart => ("fingers_around_the_part", None),
         Sort::Loaded => ("loaded", stroke),
         Sort::Carrying(_) => ("carrying", stroke),
-        Sort::OverBin(..) => ("over the bin", Some(Span::ms(15_000))),
-        Sort::LettingGo(..) => ("letting go", stroke),
-        Sort::Opening => ("fingers opening", stroke),
+        Sort::OverBin(..) => ("over_the_bin", Some(Span::ms(15_000))),
+        Sort::LettingGo(..) => ("letting_go", stroke),
+        Sort::Opening => ("fingers_opening", stroke),
     }
 }

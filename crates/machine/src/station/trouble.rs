@@ -3,6 +3,7 @@
 mod parts;
 
 use super::catalogue::AlarmCode;
+use crate::dut::Reason;
 use crate::dut::promise::Broken;
 use crate::handling::Move;
 use crate::handling::trouble::Trouble;
@@ -67,6 +68,17 @@ impl Alarm {
         Message::of("refusal", refusal, args)
     }
 
+    /// Returns name and value of the argument that distinguishes this alarm from others of its code, if it has one.
+    pub fn distinction(&self) -> Option<(&'static str, &str)> {
+        let name = self.code.distinguished_by()?;
+        Some((name, self.args.get(name)?))
+    }
+
+    /// Returns true when both alarms have the same code and distinction, so that they share a line of the list.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.code == other.code && self.distinction() == other.distinction()
+    }
+
     fn with(mut self, name: &'static str, value: impl ToString) -> Self {
         self.args = self.args.with(name, value);
         self
@@ -80,10 +92,10 @@ impl Alarm {
         }
     }
 
-    /// Makes an alarm whose text contains the text and the arguments of `fault`.
-    fn of_a_fault(code: AlarmCode, fault: &Message) -> Self {
-        let args = fault.args().clone().with("fault", fault.code());
-        Self { code, args }
+    /// Adds the code of `inner` as argument `name`, for which texts show the text of `inner`; adds its arguments too.
+    fn with_inner(mut self, name: &'static str, inner: &Message) -> Self {
+        self.args = self.args.with_inner(name, inner);
+        self
     }
 
     /// Returns the alarm that an actuator did not show the end of its motion in time.
@@ -117,13 +129,18 @@ impl Alarm {
     }
 
     /// Returns the alarm that the guard refused a motion.
-    pub fn refused(movement: Move, refusal: &str) -> Self {
-        Self::of_a_move(AlarmCode::MotionRefused, movement).with("detail", refusal)
+    pub fn refused(movement: Move, refusal: &Message) -> Self {
+        Self::of_a_move(AlarmCode::MotionRefused, movement).with_inner("detail", refusal)
     }
 
     /// Returns the alarm that a line or module fails to answer correctly.
-    pub fn bus(text: &str) -> Self {
-        Self::from(AlarmCode::BusTrouble).with("detail", text)
+    pub fn bus(detail: &Message) -> Self {
+        Self::from(AlarmCode::BusTrouble).with_inner("detail", detail)
+    }
+
+    /// Returns the alarm that the port of the code reader is lost, for this reason.
+    pub fn serial_reader_lost(reason: impl ToString) -> Self {
+        Self::from(AlarmCode::SerialReaderLost).with("reason", reason)
     }
 
     /// Returns the alarm that a safety input has no fresh sample.
@@ -132,9 +149,9 @@ impl Alarm {
     }
 
     /// Returns the alarm that a reply or sample is missing because this computer was late; `missed` names it.
-    pub fn host_late(missed: impl ToString, late: Span) -> Self {
+    pub fn host_late(missed: &Message, late: Span) -> Self {
         Self::from(AlarmCode::HostLate)
-            .with("missed", missed)
+            .with_inner("missed", missed)
             .with("late_ms", format!("{:.0}", late.as_seconds() * 1e3))
     }
 
@@ -169,14 +186,15 @@ impl Alarm {
 
     /// Returns the alarm that a reference part disagrees with its certificate.
     pub fn reference_check_failed(fault: &Message) -> Self {
-        Self::of_a_fault(AlarmCode::ReferenceCheckFailed, fault)
+        Self::from(AlarmCode::ReferenceCheckFailed).with_inner("fault", fault)
     }
 
     /// Returns the alarm that the test of a reference part was interrupted and begins again.
-    pub fn reference_repeated(serial: &str, why: &str) -> Self {
+    pub fn reference_repeated(serial: &str, why: &Reason) -> Self {
         Self::from(AlarmCode::ReferenceRepeated)
+            .with_inner("reason", &why.message())
+            .with("said", why)
             .with("serial", serial)
-            .with("detail", why)
     }
 
     /// Returns the alarm that more parts have failed than the reject-rate limit allows.
@@ -221,18 +239,20 @@ impl Alarm {
 
     /// Returns the alarm that references or reference parts give no calibration.
     pub fn calibration(fault: &Message) -> Self {
-        Self::of_a_fault(AlarmCode::CalibrationFailed, fault)
+        Self::from(AlarmCode::CalibrationFailed).with_inner("fault", fault)
     }
 
-    /// Returns the alarm that the history file cannot be written, for this reason.
-    pub fn history_lost(file: &str, why: &str) -> Self {
+    /// Returns the alarm that the program cannot write the history file; `refusal` is the code of the reason, `why` its
+    /// English text.
+    pub fn history_lost(file: &str, refusal: &str, why: &str) -> Self {
         Self::from(AlarmCode::HistoryLost)
             .with("file", file)
-            .with("detail", why)
+            .with("refusal", refusal)
+            .with("said", why)
     }
 
     /// Returns the alarm that the stored calibration is unusable, so that no lot begins.
-    pub fn calibration_invalid(why: &str) -> Self {
-        Self::from(AlarmCode::CalibrationInvalid).with("detail", why)
+    pub fn calibration_invalid(why: &Message) -> Self {
+        Self::from(AlarmCode::CalibrationInvalid).with_inner("detail", why)
     }
 }

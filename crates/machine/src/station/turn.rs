@@ -5,6 +5,7 @@ use super::packml::Command;
 use super::trouble::Alarm;
 use crate::dut::Calibration;
 use crate::dut::promise::Broken;
+use crate::dut::prompt::Prompt;
 use crate::handling::output::{Commands, NestDone, PartEvents};
 use crate::handling::trouble::Trouble;
 use crate::rig::image::Image;
@@ -21,8 +22,12 @@ pub struct Inputs<'a> {
     pub recorded: u64,
     /// State of the history.
     pub history: HistoryState,
-    /// Trouble of a line or module, in one turn only.
-    pub bus: Option<Alarm>,
+    /// Alarms of lines and modules, in one turn only.
+    pub bus: Vec<Alarm>,
+    /// Readings of the code reader since the last turn, in order; `None` is a reading without a code.
+    pub readings: Vec<Option<String>>,
+    /// Alarm of a code reader whose port is lost.
+    pub reader: Option<Alarm>,
     /// Lateness of this computer in the last seconds, when it explains an input that was not read.
     pub host_late: Option<Span>,
     /// True when the operator ends the lot once the parts inside are finished (one Ctrl-C).
@@ -108,6 +113,8 @@ pub struct Record {
     pub broken: Vec<Broken>,
     /// Result of the reference check that ended in this turn.
     pub checked: Option<Checked>,
+    /// Prompt that has opened in this turn.
+    pub prompted: Option<Prompt>,
     /// True when the lot itself begins, after calibration and reference parts.
     pub lot_began: bool,
     /// How the run ended, if it ended in this turn.

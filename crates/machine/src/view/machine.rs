@@ -1,12 +1,14 @@
 //! The machine as pages show it: PackML state with its buttons, actuators, places, signals, wear.
 
 use super::MotionView;
+use crate::dut::prompt::Prompt;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use texts::Message;
+use utoipa::ToSchema;
 
 /// The PackML state of the rig and everything that belongs to it on the page.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
 pub struct Machine {
     /// State by its PackML name, for example `Execute`.
     pub state: String,
@@ -35,10 +37,14 @@ pub struct Machine {
     /// Resistance of the two force contacts of the coil in series, ohm, mean over the last parts of the lot; null
     /// before the first.
     pub probe_contact_ohm: Option<f64>,
+    /// Serial numbers scanned for parts that have not come, the oldest first; null in a lot whose parts are not scanned.
+    pub scans: Option<Vec<String>>,
+    /// Prompt that waits for its answer; null without one.
+    pub prompt: Option<Prompt>,
 }
 
 /// One order that a button sends.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Button {
     /// Word of the order.
     pub order: String,
@@ -55,7 +61,7 @@ pub struct Button {
 }
 
 /// Possible positions of an actuator, from its sensors.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
 pub struct ActuatorView {
     /// Name as in `config/scene.toml`.
     pub name: String,
@@ -68,7 +74,7 @@ pub struct ActuatorView {
 }
 
 /// A part in a place.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Token {
     /// `lot` or `golden` (reference part); `unnumbered` before the nest.
     pub kind: String,
@@ -78,10 +84,12 @@ pub struct Token {
     pub bin: String,
     /// Reason for the interruption of the test; empty without one.
     pub interrupted: String,
+    /// Serial number of a part of the lot; empty without one.
+    pub serial: String,
 }
 
 /// Reaction time to the emergency-stop input, milliseconds.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, ToSchema)]
 pub struct Reaction {
     /// Worst case derived from `config/rig.toml`.
     pub bound_ms: f64,

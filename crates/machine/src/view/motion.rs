@@ -1,9 +1,10 @@
 //! The guard's decision on a motion: shown before a jog or after a refusal.
 
 use serde::Serialize;
+use utoipa::ToSchema;
 
 /// One motion of tooling.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
 pub struct MotionView {
     /// Name in the order `jog`, or name of a motion of the sequence.
     pub motion: String,
@@ -16,7 +17,7 @@ pub struct MotionView {
 }
 
 /// Stroke of one actuator.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
 pub struct StrokeView {
     /// Name as in `config/scene.toml`.
     pub actuator: String,
@@ -27,7 +28,7 @@ pub struct StrokeView {
 }
 
 /// Reason why the guard refuses the motion.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, ToSchema)]
 pub struct RefusedView {
     /// Body that would move; empty when the motion itself is invalid.
     pub mover: String,
@@ -42,6 +43,8 @@ pub struct RefusedView {
     /// Position up to which the stroke is clear, mm from the rest end; an actuator beyond may return to it. Null when
     /// the stroke is blocked at its start.
     pub last_clear_mm: Option<f64>,
-    /// The whole refusal, with the remedy.
+    /// English text of the refusal, with the remedy.
     pub text: String,
+    /// Chinese text of the refusal.
+    pub text_zh: String,
 }

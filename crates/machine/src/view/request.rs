@@ -4,8 +4,8 @@ use super::order::{By, Order};
 use std::fmt;
 use texts::Message;
 
-/// Outcome of an order.
-pub type Answer = Result<(), Message>;
+/// Outcome of an order: done, perhaps with a remark, or refused with the reason.
+pub type Answer = Result<Option<Message>, Message>;
 
 /// An order on its way to the station.
 pub struct OrderRequest {
@@ -13,8 +13,8 @@ pub struct OrderRequest {
     pub order: Order,
     /// The person who gives the order.
     pub by: By,
-    /// Reason for a refusal decided before the station; the request then serves the audit trail only.
-    pub denied: Option<String>,
+    /// Refusal by the program before the order reaches the station; the request then serves the audit trail only.
+    pub denied: Option<Message>,
     way_back: Box<dyn FnOnce(Answer) + Send>,
 }
 
@@ -30,7 +30,7 @@ impl OrderRequest {
     }
 
     /// Makes a request that is already refused and serves the audit trail only; it sends no answer.
-    pub fn denied(order: Order, by: By, why: String) -> Self {
+    pub fn denied(order: Order, by: By, why: Message) -> Self {
         Self {
             denied: Some(why),
             ..Self::new(order, by, drop)

@@ -27,7 +27,7 @@ use judge::Case;
 use life::{End, Runner};
 use machine::dut::Calibration;
 use report::{Counts, Outcome, report};
-use rigsim::{Files, Options, SharedRig};
+use rigsim::{Options, SharedRig};
 use scenario::{CEASES_US, Life, RIGS, Scenario};
 use std::path::Path;
 use std::sync::OnceLock;
@@ -185,7 +185,7 @@ impl<'a> Storm<'a> {
     ) -> anyhow::Result<SharedRig> {
         let storms = self.folder.path().join("world.toml");
         Ok(rigsim::build(&Options {
-            files: Files::Directory(self.order.config.clone()),
+            files: self.order.config.as_path().into(),
             world: Some(self.order.world.clone().unwrap_or(storms)),
             seed,
             recipe: self.order.recipe.name.clone(),

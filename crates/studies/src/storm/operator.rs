@@ -4,8 +4,9 @@
 use crate::dice::Dice;
 use bus::Pace;
 use machine::station::orders::JOGS;
-use machine::station::packml::State;
-use machine::view::{By, ORDERS, Order, OrderRequest, View};
+use machine::station::packml::{Command, Mode, State};
+use machine::view::{By, Order, OrderRequest, View};
+use serde_json::json;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use tokio::sync::{mpsc, oneshot, watch};
@@ -13,6 +14,9 @@ use units::{RigTime, Span};
 
 /// Longest time until the operator ends the program; after as long again it aborts the program.
 const LIFE_TIMEOUT: Span = Span::ms(25_000);
+
+/// Words of the orders to the rig that are not commands.
+const OTHER_WORDS: &[&str] = &["mode", "jog", "step", "lamp_test", "acknowledge", "shelve"];
 
 /// One order and its answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -80,34 +84,25 @@ impl Operator {
         }
         let word = *self.dice.one(usual_orders(state));
         let in_production = mode == "production";
-        Some(Order {
-            order: match word {
-                "" => return None,
-                "start" if !in_production => "mode".into(),
-                word => word.into(),
-            },
-            mode: Some("production".into()),
-            ..Order::default()
-        })
+        match word {
+            "" => None,
+            "start" if !in_production => Some(order("mode", "production", "")),
+            word => Some(order(word, "production", "")),
+        }
     }
 
     /// Draws any order, or any motion by hand for the order `jog`.
     fn random_order(&mut self, word: Option<&str>) -> Order {
-        let random_order = *self.dice.one(&ORDERS);
-        let mode = *self.dice.one(&["production", "maintenance", "manual"]);
-        Order {
-            order: word.unwrap_or(random_order).into(),
-            mode: Some(mode.into()),
-            motion: Some(self.dice.one(&JOGS).0.into()),
-            reason: Some("storm".into()),
-            ..Order::default()
-        }
+        let random_order = *self.dice.one(&[Command::NAMES, OTHER_WORDS].concat());
+        let mode = *self.dice.one(Mode::NAMES);
+        let motion = self.dice.one(&JOGS).code();
+        order(word.unwrap_or(random_order), mode, motion)
     }
 
     /// Sends an order and waits for its answer; `None` when the program has ended.
     async fn send_order(&self, state: String, order: Order) -> Option<()> {
         let (answer, answered) = oneshot::channel();
-        let word = order.order.clone();
+        let word = order.word();
         let by = By {
             who: "storm".to_owned(),
             role: "engineer".to_owned(),
@@ -124,6 +119,18 @@ impl Operator {
         };
         self.answers.send(answers).ok()
     }
+}
+
+/// Returns the order with this word; only `mode` takes the mode, only `jog` the motion. `shelve` names an unknown
+/// alarm, so that the station refuses it.
+fn order(word: &str, mode: &str, motion: &str) -> Order {
+    let json = match word {
+        "mode" => json!({"order": word, "mode": mode}),
+        "jog" => json!({"order": word, "motion": motion}),
+        "shelve" => json!({"order": word, "alarm": "storm", "reason": "storm"}),
+        word => json!({"order": word}),
+    };
+    serde_json::from_value(json).unwrap_or_else(|error| panic!("{word}: {error}"))
 }
 
 /// Returns orders that make sense in a state; an empty name means no order.

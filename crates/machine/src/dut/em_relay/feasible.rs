@@ -9,6 +9,7 @@ mod supply;
 use super::coil::relative_per_kelvin;
 use super::parameter::Expected;
 use super::recipe::RelayRecipe;
+use super::scale::Scale;
 use super::settings::ReferenceSet;
 use super::{Parameter, Strategy};
 use crate::dut::Kind;
@@ -231,9 +232,10 @@ pub fn nominal_v_per_s(wiring: &Wiring, output: AnalogOutput) -> f64 {
 /// Returns the expanded uncertainty of a parameter from the makers' accuracies: the terms that every strategy has.
 fn expected_u(parameter: Parameter, recipe: &RelayRecipe, accuracy: &AccuracySettings) -> f64 {
     let per_kelvin = relative_per_kelvin(Celsius(recipe.part.reference_temperature_c));
+    let scale = Scale::new(recipe.part.nominal_v, 1.0);
     let threshold = |volts: f64| {
         let kelvin = volts * per_kelvin * accuracy.part_minus_track_k;
-        kelvin.hypot(accuracy.operation_v(recipe.part.nominal_v))
+        kelvin.hypot(scale.operation_v(accuracy))
     };
     let u = match parameter.facts().expected {
         Expected::Coil => {

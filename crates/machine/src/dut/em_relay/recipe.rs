@@ -199,7 +199,7 @@ pub struct TestPlan {
     /// Coil suppression during the timed release.
     #[serde(rename = "clamp")]
     pub suppression: Suppression,
-    /// Strategies of the thresholds, sampling of coil and contacts.
+    /// How the station searches each threshold, and how it samples coil and contacts.
     #[serde(default)]
     pub strategy: Strategies,
 }

@@ -245,7 +245,8 @@ impl ReferenceRun {
         let shift = |it: &Shift| it.fine_v[direction as usize];
         let mean = self.shifts.iter().map(shift).sum::<f64>() / n;
         let nominal_v = parts.first().map_or(f64::NAN, |part| part.nominal_v);
-        let band = Scale::new(nominal_v, 1.0).of_coil(BAND);
+        let scale = Scale::new(nominal_v, 1.0);
+        let band = scale.of_coil(BAND);
         if let Some(odd) = self
             .shifts
             .iter()
@@ -260,7 +261,7 @@ impl ReferenceRun {
             let value = part.threshold(direction);
             let kelvin =
                 value.value * accuracy.part_minus_track_k * relative_per_kelvin(Celsius(23.0));
-            value.u.powi(2) + kelvin.powi(2) + accuracy.operation_v(part.nominal_v).powi(2)
+            value.u.powi(2) + kelvin.powi(2) + scale.operation_v(accuracy).powi(2)
         };
         let promised = parts.iter().map(of_part).sum::<f64>() / parts.len().max(1) as f64;
         Ok(Factor::new(mean, (promised / n).sqrt()))

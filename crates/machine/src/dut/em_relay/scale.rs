@@ -4,6 +4,7 @@
 //! their scatter) scale with the nominal voltage. Voltages of the supply (the window of the board, the distance of a
 //! ramp in a given time) scale with the factor of the range.
 
+use crate::dut::accuracy::AccuracySettings;
 use units::Volt;
 
 /// Nominal coil voltage for which the constants are stated, V.
@@ -30,6 +31,12 @@ impl Scale {
         of_12_v * self.coil
     }
 
+    /// Returns the scatter of a threshold of this coil from operation to operation, volts (1 sd): proportional to the
+    /// nominal voltage, because an armature responds to current.
+    pub fn operation_v(self, accuracy: &AccuracySettings) -> f64 {
+        self.of_coil(Volt(accuracy.operation_scatter_mv / 1e3)).0
+    }
+
     /// Scales a voltage of the supply, stated for the range of factor 1, to this range.
     pub fn of_range(self, at_factor_1: Volt) -> Volt {
         at_factor_1 * self.range
@@ -49,6 +56,14 @@ impl Scale {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dut::em_relay::tests::context;
+
+    #[test]
+    fn operation_scatter_is_proportional_to_nominal_voltage() {
+        let accuracy = context().accuracy;
+        let volts = [24.0, 12.0, 6.0].map(|it| Scale::new(it, 1.0).operation_v(&accuracy));
+        assert_eq!(volts, [0.004, 0.002, 0.001]);
+    }
 
     #[test]
     fn a_coil_and_its_range_scale_apart() {

@@ -52,7 +52,7 @@ fn a_part_gets_its_number_in_the_nest() {
         (Feed::Retracting, &[Move::PusherRetract][..])
     );
     assert_eq!(
-        mock.ledger.part(Place::NEST).map(|part| part.kind.clone()),
+        mock.ledger.part(Place::NEST).map(|part| part.role.clone()),
         Some(PartRole::Lot(1))
     );
     assert_eq!(step(feed, &mut mock, true), Feed::Retracting);
@@ -166,7 +166,7 @@ fn reference_parts_come_first_in_magazine_order() {
     mock.carried_out(Move::PusherExtend);
     step(feed, &mut mock, true);
     assert_eq!(
-        mock.ledger.part(Place::NEST).map(|part| part.kind.clone()),
+        mock.ledger.part(Place::NEST).map(|part| part.role.clone()),
         Some(PartRole::Reference("G-12-1".into()))
     );
     assert_eq!(mock.reference_serials.len(), 4);

@@ -46,7 +46,7 @@ fn parts_are_numbered_in_order_of_entering_the_nest() {
         ledger.enter_pocket();
         ledger.enter_nest(NestId::FIRST, reference.map(String::from));
         let part = ledger.part(Place::NEST).cloned().unwrap();
-        assert_eq!((part.ordinal, part.kind), (ordinal, kind));
+        assert_eq!((part.ordinal, part.role), (ordinal, kind));
         assert_eq!((part.bin, part.test, part.probed_at), (None, None, None));
         ledger.lift(NestId::FIRST);
         ledger.drop_over(Bin::RETEST, RigTime(0), 0);
@@ -128,7 +128,7 @@ fn a_part_is_always_in_exactly_one_place() {
     ledger.return_to_gripper();
     assert_eq!(places(&ledger), [Place::Gripper]);
     ledger.drop_over(Bin::PASS, RigTime(0), 0);
-    assert_eq!(ledger.land().map(|part| part.kind), Some(PartRole::Lot(1)));
+    assert_eq!(ledger.land().map(|part| part.role), Some(PartRole::Lot(1)));
     assert!(ledger.balances() && ledger.inside() == 0);
 }
 

@@ -4,7 +4,7 @@ use super::MockRig;
 use super::mock_rig::{LENGTH_MM, TIMEOUT};
 use crate::dut::em_relay::bins;
 use crate::guard::{Actuator, PartPlaces, Position};
-use crate::handling::mechanism::SENSOR_AGE;
+use crate::handling::mechanism::{HandEnd, SENSOR_AGE};
 use crate::handling::moves::Move;
 use crate::handling::trouble::Trouble;
 use crate::rig::axis::AxisStation;
@@ -132,7 +132,7 @@ fn seen(mock: &mut MockRig) -> Vec<Trouble> {
 fn second_try(mock: &mut MockRig, movement: Move, back: Move, first: &[Trouble]) -> Vec<Trouble> {
     assert_eq!(first[0], Trouble::Retried(movement, TIMEOUT));
     mock.mechanism.driven(back, mock.now, &mock.image);
-    mock.stands(back);
+    mock.show_end(back);
     mock.after(50);
     let found = mock.mechanism.update(mock.now, &mock.image);
     assert_eq!(found.motions, [movement], "forth again");
@@ -143,6 +143,50 @@ fn second_try(mock: &mut MockRig, movement: Move, back: Move, first: &[Trouble])
     mock.mechanism.driven(movement, mock.now, &mock.image);
     mock.after(TIMEOUT.0 / 1000 + 1);
     seen(mock)
+}
+
+#[test]
+fn fingers_closed_on_nothing_by_hand_are_no_trouble() {
+    let closing = Move::GripperClose;
+    let mut mock = MockRig::at_rest();
+    mock.mechanism.driven(closing, mock.now, &mock.image);
+    mock.mechanism.driven_by_hand(closing);
+    mock.set(DigitalIn::GripperOpen, false);
+    mock.after(TIMEOUT.0 / 1000 - 1);
+    assert!(seen(&mut mock).is_empty());
+    assert_eq!(hand_end(&mut mock), None, "it moves");
+    mock.after(2);
+    assert!(seen(&mut mock).is_empty());
+    assert_eq!(hand_end(&mut mock), Some(HandEnd::ClosedOnNothing));
+    assert_eq!(hand_end(&mut mock), None, "it ends once");
+    mock.after(500);
+    assert!(seen(&mut mock).is_empty(), "nothing is held");
+
+    mock.mechanism
+        .driven(Move::GripperOpen, mock.now, &mock.image);
+    mock.mechanism.driven_by_hand(Move::GripperOpen);
+    mock.carried_out(Move::GripperOpen);
+    assert_eq!(hand_end(&mut mock), Some(HandEnd::Arrived));
+}
+
+fn hand_end(mock: &mut MockRig) -> Option<HandEnd> {
+    mock.mechanism.take_hand_end(mock.now, &mock.image)
+}
+
+#[test]
+fn a_motion_by_hand_may_be_cut() {
+    let mut mock = MockRig::at_rest();
+    let motion = Move::PusherExtend;
+    mock.mechanism.driven(motion, mock.now, &mock.image);
+    mock.mechanism.driven_by_hand(motion);
+    mock.mechanism.forget();
+    assert_eq!(hand_end(&mut mock), Some(HandEnd::Cut));
+    // Fingers that stay open are late even when a person ordered the motion.
+    let motion = Move::GripperClose;
+    mock.mechanism.driven(motion, mock.now, &mock.image);
+    mock.mechanism.driven_by_hand(motion);
+    mock.after(TIMEOUT.0 / 1000 + 1);
+    assert_eq!(seen(&mut mock), [Trouble::Retried(motion, TIMEOUT)]);
 }
 
 #[test]

@@ -7,6 +7,7 @@ use crate::handling::ledger::Ledger;
 use crate::handling::mechanism::Mechanism;
 use crate::handling::moves::{Move, Strokes};
 use crate::handling::output::{Commands, PartEvents};
+use crate::handling::serial::Serials;
 use crate::handling::trouble::Trouble;
 use crate::handling::turn::Turn;
 use crate::rig::image::Image;
@@ -62,6 +63,7 @@ pub struct MockRig {
     pub ledger: Ledger,
     pub output: Output,
     pub reference_serials: VecDeque<String>,
+    pub serials: Serials,
     pub recorded: u64,
     pub points: Points,
     on: BTreeSet<DigitalInput>,
@@ -84,6 +86,7 @@ impl MockRig {
             ledger: Ledger::default(),
             output: Output::default(),
             reference_serials: VecDeque::new(),
+            serials: Serials::default(),
             recorded: 0,
         }
     }
@@ -206,8 +209,8 @@ impl MockRig {
         self.answer(command, module, reply);
     }
 
-    /// Sets the sensors of a motion's end.
-    pub fn stands(&mut self, movement: Move) {
+    /// Makes the sensors show the end of a motion.
+    pub fn show_end(&mut self, movement: Move) {
         for (point, state) in opposite(movement).iter().chain(movement.arrival()) {
             self.set(*point, *state);
         }
@@ -216,7 +219,7 @@ impl MockRig {
     /// Drives a motion and shows its arrival 100 ms later.
     pub fn carried_out(&mut self, movement: Move) {
         self.mechanism.driven(movement, self.now, &self.image);
-        self.stands(movement);
+        self.show_end(movement);
         self.after(100);
         let found = self.mechanism.update(self.now, &self.image);
         assert!(found.trouble.is_empty(), "{found:?}");
@@ -234,6 +237,7 @@ impl MockRig {
             parts: &mut self.output.parts,
             trouble: &mut self.output.trouble,
             reference_serials: &mut self.reference_serials,
+            serials: &mut self.serials,
             recorded: self.recorded,
             resting: false,
         }

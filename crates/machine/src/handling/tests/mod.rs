@@ -10,6 +10,7 @@ mod mechanism;
 mod mock_rig;
 mod nest;
 mod recovery;
+mod serial;
 mod sort;
 
 pub(crate) use crate::dut::em_relay::tests::{context, device, device_of, reference_parts};

@@ -11,6 +11,7 @@ use crate::handling::sort::Sort;
 use crate::instrument::act::{Job, JobDone};
 use crate::rig::axis::AxisStation;
 use crate::rig::point::DigitalIn;
+use texts::Message;
 use units::{RigTime, Second};
 
 /// A nest with its surroundings.
@@ -28,7 +29,7 @@ impl Nest {
         mock.ledger.enter_pocket();
         mock.ledger.enter_nest(NestId::FIRST, reference);
         mock.set(DigitalIn::NestPresent, true);
-        mock.stands(Move::PusherExtend);
+        mock.show_end(Move::PusherExtend);
         mock.scan();
         Self {
             mock,
@@ -83,7 +84,7 @@ impl Nest {
         self.mock.after(40);
         let failed = JobDone {
             at: self.mock.now,
-            trouble: Some("measure 05: silent".into()),
+            trouble: Some(silent()),
         };
         // The first failure ends the stage, the second ends the switching off after it.
         let state = self.step(state, Some(failed.clone()));
@@ -106,6 +107,10 @@ fn pins() -> NestJob {
             true,
         )]),
     }
+}
+
+fn silent() -> Message {
+    Message::detail("unread", "measure 05: silent")
 }
 
 #[test]
@@ -132,7 +137,7 @@ fn a_failed_job_sends_the_part_to_retest() {
     let state = nest.judged();
     assert!(matches!(state, NestState::Judged));
     let judged = &nest.mock.output.parts.judged[0];
-    let why = Verdict::Void(vec![Reason::rig_trouble("measure 05: silent")]);
+    let why = Verdict::Void(vec![Reason::rig_trouble(silent())]);
     assert_eq!(
         (&judged.verdict, judged.part.bin),
         (&why, Some(Bin::RETEST))
@@ -155,7 +160,7 @@ fn a_void_reference_part_is_tested_three_times() {
     assert!(matches!(state, NestState::Judged));
     let part = &nest.mock.output.parts.judged[0].part;
     assert_eq!(part.bin, Some(Bin::RETEST));
-    assert_eq!(format!("{:?}", part.kind), "Reference(\"G-12-1\")");
+    assert_eq!(format!("{:?}", part.role), "Reference(\"G-12-1\")");
 }
 
 #[test]

@@ -28,7 +28,7 @@ fn nothing_home() -> MockRig {
         Move::EscapementRelease,
         Move::ClampClose,
     ] {
-        mock.stands(movement);
+        mock.show_end(movement);
     }
     mock.set(DigitalIn::GripperOpen, false);
     mock.scan();
@@ -111,7 +111,7 @@ fn nothing_moves_before_the_part_sensors_are_read() {
 #[test]
 fn a_refused_motion_waits_for_the_others() {
     let mut mock = nothing_home();
-    mock.stands(Move::SortUp);
+    mock.show_end(Move::SortUp);
     mock.scan();
     let mut recovery = Recovery::default();
     while mock.output.rig.motions.is_empty() {
@@ -195,7 +195,7 @@ fn a_pushed_part_never_counts_as_the_lost_one() {
     mock.set(DigitalIn::NestPresent, true);
     mock.scan();
     carried_out(&mut mock);
-    let kind = mock.ledger.part(Place::NEST).map(|part| part.kind.clone());
+    let kind = mock.ledger.part(Place::NEST).map(|part| part.role.clone());
     assert_eq!(kind, Some(PartRole::Lot(2)), "the first one fell");
     assert_eq!((mock.ledger.lost, mock.ledger.found), (1, 0));
 }

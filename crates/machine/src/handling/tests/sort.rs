@@ -33,7 +33,7 @@ fn loaded(bin: Bin) -> MockRig {
     if let Some(part) = mock.ledger.part_mut(Place::Gripper) {
         part.bin = Some(bin);
     }
-    mock.stands(Move::GripperClose);
+    mock.show_end(Move::GripperClose);
     mock.scan();
     mock
 }

@@ -5,6 +5,7 @@ use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Counter, DigitalIn, Digi
 use crate::handling::tests::MockRig;
 use crate::instrument::act::{Act, Job, JobDone, Read, Runner, RunnerState, Spent};
 use crate::rig::point::Point;
+use texts::Message;
 use units::{RigTime, Span, Volt};
 
 fn done(at: RigTime) -> JobDone {
@@ -156,7 +157,10 @@ fn an_unread_value_is_trouble() {
         runner.step(mock.now, None, &mock.image);
         let answered = runner.step(mock.now, Some(&done(mock.now)), &mock.image);
         let why = format!("{name} was answered without a value");
-        assert_eq!(answered, RunnerState::Trouble(why));
+        assert_eq!(
+            answered,
+            RunnerState::Trouble(Message::detail("unread", why))
+        );
     }
 }
 
@@ -310,15 +314,13 @@ fn a_job_in_trouble_ends_the_acts() {
     let acts = vec![coil, drop];
     let mut runner = Runner::new(acts, mock.now);
     runner.step(mock.now, None, &mock.image);
+    let silent = Message::detail("unread", "measure 01 #01: silent");
     let failed = JobDone {
         at: mock.now,
-        trouble: Some("measure 01 #01: silent".into()),
+        trouble: Some(silent.clone()),
     };
     let answered = runner.step(mock.now, Some(&failed), &mock.image);
-    assert_eq!(
-        answered,
-        RunnerState::Trouble("measure 01 #01: silent".into())
-    );
+    assert_eq!(answered, RunnerState::Trouble(silent));
     let coil = mock.points.analog(AnalogIn::CoilVoltageFine);
     assert_eq!(runner.readings.analog(coil).count(), 0);
 }

@@ -129,7 +129,7 @@ fn lost_writes_and_edges_are_repeated() {
         &Motion::to(Actuator::SortAxis, 75.0),
         &at_rest(),
     );
-    let module = wiring.module_named("mech_do_b").unwrap();
+    let module = super::module(&wiring, "mech_do_b");
     outputs.failed(module);
     let again: Vec<String> = outputs
         .writes()

@@ -1,6 +1,6 @@
 //! The commands that read points, and the image of their answers.
 
-use super::{motion, text, wiring};
+use super::{module, motion, text, wiring};
 use crate::rig::image::{Image, Unexpected};
 use crate::rig::point::{AnalogInput, DigitalIn, GatedCounter, Point};
 use crate::rig::sample::Quality;
@@ -62,15 +62,8 @@ fn every_point_is_read_at_its_own_terminal() {
     }
     let beam = |name| wiring.digital_input(name).unwrap();
     assert_eq!(text(&wiring.read_events(beam("beam_pass"))), "#129");
-    assert_eq!(text(&wiring.clear_events(beam("beam_retest"))), "$12CE");
-    assert_eq!(
-        text(&wiring.poll(wiring.module_named("contact_ai").unwrap())),
-        "#090"
-    );
-    assert_eq!(
-        text(&wiring.poll(wiring.module_named("coil_ai").unwrap())),
-        "#01"
-    );
+    assert_eq!(text(&wiring.poll(module(&wiring, "contact_ai"))), "#090");
+    assert_eq!(text(&wiring.poll(module(&wiring, "coil_ai"))), "#01");
     assert_eq!(text(&wiring.poll(wiring.emergency_stop_module())), "@11");
 }
 
@@ -160,17 +153,13 @@ fn a_reading_carries_value_terminal_and_bytes() {
     let mut image = Image::new(Arc::clone(&wiring));
     let read = reads(&wiring, Point::Analog(analog(&wiring, "coil_voltage_fine")));
     answer(&mut image, measure(&wiring), read, ">4000", NOW).unwrap();
-    let sample = image
-        .fresh_analog(analog(&wiring, "coil_voltage_fine"), NOW)
-        .unwrap();
+    let fine = analog(&wiring, "coil_voltage_fine");
+    let sample = image.analog(fine).unwrap();
     assert_eq!((sample.terminal_volts, sample.value), (5.0, 5.0 / 1.6));
     assert_eq!(&*sample.origin.raw, ">4000");
     assert_eq!(wiring.module(sample.origin.module).name, "coil_ai");
     assert_eq!(sample.origin.channel.get(), 5);
-    assert_eq!(
-        image.fresh_analog(analog(&wiring, "coil_voltage_fine"), NOW + Span(1)),
-        None
-    );
+    assert_eq!(sample.origin.at, NOW);
     assert_eq!(image.analog(analog(&wiring, "coil_voltage")), None);
 }
 
@@ -178,7 +167,7 @@ fn a_reading_carries_value_terminal_and_bytes() {
 fn a_scan_reaches_each_point() {
     let wiring = wiring();
     let mut image = Image::new(Arc::clone(&wiring));
-    let all = wiring.poll(wiring.module_named("coil_ai").unwrap());
+    let all = wiring.poll(module(&wiring, "coil_ai"));
     answer(
         &mut image,
         measure(&wiring),

@@ -1,6 +1,6 @@
 //! Alarms in the list: states of ISA-18.2, first-out, repeats, shelf.
 
-use crate::handling::Move;
+use crate::handling::{Move, Place};
 use crate::rig::bin::Bin;
 use crate::station::annunciator::{Annunciator, Condition};
 use crate::station::catalogue::{AlarmCode, Reaction};
@@ -88,15 +88,16 @@ fn the_first_alarm_is_first_out_and_repeats_count() {
     let mut list = Annunciator::default();
     list.raise(&jam(), RigTime(1));
     list.raise(&door(), RigTime(2));
-    assert!(!list.raise(&jam(), RigTime(3)), "it stands already");
+    assert!(!list.raise(&jam(), RigTime(3)), "it is active already");
     let listed: Vec<_> = list
         .listed()
         .iter()
         .map(|one| (one.first_out, one.count))
         .collect();
-    assert_eq!(listed, [(true, 2), (false, 1)]);
+    assert_eq!(listed, [(true, 1), (false, 1)]);
     list.cleared();
     assert!(list.raise(&jam(), RigTime(4)), "it came again");
+    assert_eq!(list.listed()[0].count, 2);
     assert!(!list.listed()[0].first_out, "the door was open before");
 }
 
@@ -110,6 +111,18 @@ fn a_shelved_alarm_returns_after_its_time() {
     assert!(list.listed()[0].shelved_until.is_some());
     list.unshelve(until);
     assert!(list.listed()[0].shelved_until.is_none());
+}
+
+#[test]
+fn shelving_hides_every_alarm_of_the_code() {
+    let mut list = Annunciator::default();
+    for bin in [Bin::PASS, Bin::RETEST] {
+        list.raise(&Alarm::bin_full(bin), RigTime(0));
+    }
+    let until = RigTime(60_000_000);
+    assert!(list.shelve(&AlarmCode::BinFull.name(), until));
+    let shelved = list.listed().iter().map(|one| one.shelved_until);
+    assert_eq!(shelved.collect::<Vec<_>>(), [Some(until); 2]);
 }
 
 #[test]
@@ -135,7 +148,35 @@ fn every_miscounted_part_raises_its_own_alarm() {
     let mut list = Annunciator::default();
     assert!(list.raise(&Alarm::beam(Bin::RETEST, 2), RigTime(1)));
     assert!(list.raise(&Alarm::beam(Bin::PASS, 0), RigTime(2)));
-    let listed = list.listed();
-    assert_eq!((listed.len(), listed[0].count), (1, 2));
-    assert!(listed[0].alarm.args.get("bin") == Some("pass"));
+    assert!(list.raise(&Alarm::beam(Bin::PASS, 2), RigTime(3)));
+    let counts: Vec<u32> = list.listed().iter().map(|one| one.count).collect();
+    assert_eq!(counts, [1, 2]);
+}
+
+#[test]
+fn two_lost_parts_are_two_lines() {
+    let mut list = Annunciator::default();
+    for place in [Place::NEST, Place::Gripper] {
+        assert!(list.raise(&Alarm::part_lost(place), RigTime(1)));
+    }
+    let places: Vec<_> = list
+        .listed()
+        .iter()
+        .map(|one| one.alarm.args.get("place"))
+        .collect();
+    assert_eq!(places, [Some("nest"), Some("gripper")]);
+    assert!(list.acknowledge(Some("part_lost")));
+    assert!(list.listed().is_empty(), "one order acknowledges both");
+}
+
+#[test]
+fn each_full_bin_goes_by_itself() {
+    let mut list = Annunciator::default();
+    let both = [Bin::PASS, Bin::RETEST].map(Alarm::bin_full);
+    for full in &both {
+        assert!(list.raise(full, RigTime(1)));
+    }
+    list.sensed(&both[..1]);
+    let active: Vec<bool> = list.listed().iter().map(|one| one.is_active()).collect();
+    assert_eq!(active, [true, false]);
 }

@@ -90,7 +90,7 @@ fn kinds(machine: &mut Machine) -> Vec<String> {
                 .parts
                 .judged
                 .iter()
-                .map(|one| match &one.part.kind {
+                .map(|one| match &one.part.role {
                     PartRole::Reference(_) => "golden".to_owned(),
                     PartRole::Lot(seq) => seq.to_string(),
                 }),
@@ -158,7 +158,7 @@ fn an_interrupted_reference_check_begins_again() {
         .station
         .ledger()
         .part(Place::NEST)
-        .is_none_or(|part| matches!(part.kind, PartRole::Lot(_)))
+        .is_none_or(|part| matches!(part.role, PartRole::Lot(_)))
     {
         machine.turn();
     }

@@ -3,9 +3,11 @@
 use super::{MockRig, context, device, device_of};
 use crate::dut::em_relay::bins;
 use crate::dut::em_relay::points::{self, AnalogIn};
+use crate::dut::prompt::Prompt;
 use crate::handling::inside::Inside;
 use crate::handling::moves::Move;
 use crate::handling::output::{NestDone, NestJob};
+use crate::handling::serial::Serials;
 use crate::handling::tests::mechanism_of;
 use crate::handling::wear::Uses;
 use crate::instrument::act::{Job, JobDone};
@@ -95,7 +97,9 @@ pub fn quiet(image: &Image) -> Inputs<'_> {
         job: None,
         recorded: 0,
         history: HistoryState::Written,
-        bus: None,
+        bus: Vec::new(),
+        readings: Vec::new(),
+        reader: None,
         host_late: None,
         stop: false,
         abort: false,
@@ -123,6 +127,8 @@ fn plan(count: Option<u64>) -> Plan {
         lot: LotSettings::default(),
         worn: Uses::default(),
         left: Inside::default(),
+        serials: Serials::default(),
+        prompts: Vec::new(),
     }
 }
 
@@ -167,6 +173,19 @@ impl Machine {
         let mut machine = Self::new(count, magazine);
         let plan = Plan {
             attended: true,
+            ..plan(count)
+        };
+        machine.station = of_plan(plan, &machine.mock);
+        machine
+    }
+
+    /// Returns an attended machine of a lot with these prompts.
+    pub fn with_prompts(magazine: Vec<Specimen>, prompts: Vec<Prompt>) -> Self {
+        let count = Some(magazine.len() as u64);
+        let mut machine = Self::new(count, magazine);
+        let plan = Plan {
+            attended: true,
+            prompts,
             ..plan(count)
         };
         machine.station = of_plan(plan, &machine.mock);
@@ -266,7 +285,7 @@ impl Machine {
             image: &image,
             job: job.clone(),
             recorded,
-            bus: bus.clone(),
+            bus: bus.iter().cloned().collect(),
             host_late: self.host_late,
             stop,
             abort: self.abort,
@@ -307,7 +326,7 @@ impl Machine {
             Move::PusherRetract,
             Move::EscapementHold,
         ] {
-            self.mock.stands(movement);
+            self.mock.show_end(movement);
         }
         self.mock.set(DigitalIn::AxisInPosition, false);
     }
@@ -341,7 +360,7 @@ impl Machine {
 
     fn arrive(&mut self, movement: Move) {
         let held = self.station.ledger().fall().is_some();
-        self.mock.stands(movement);
+        self.mock.show_end(movement);
         match movement {
             Move::EscapementRelease if !self.magazine.is_empty() => {
                 self.mock.set(DigitalIn::PocketPresent, true);

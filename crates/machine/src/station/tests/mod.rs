@@ -7,6 +7,7 @@ mod machine;
 mod orders;
 mod packml;
 mod panel;
+mod prompts;
 mod run;
 mod safety;
 mod trouble;

@@ -98,7 +98,7 @@ fn equal_inputs_give_equal_output() {
             image: &turn.image,
             job: turn.job.clone(),
             recorded: turn.recorded,
-            bus: turn.bus.clone(),
+            bus: turn.bus.iter().cloned().collect(),
             stop: turn.stop,
             ..quiet(&turn.image)
         };

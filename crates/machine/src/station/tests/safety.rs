@@ -7,7 +7,7 @@ use crate::rig::point::{DigitalIn, DigitalOut};
 use crate::station::Activity;
 use crate::station::trouble::Alarm;
 use crate::station::turn::{Ending, TurnOutput};
-use texts::Lang;
+use texts::{Lang, Message};
 use units::Span;
 
 fn under_test() -> Machine {
@@ -69,7 +69,10 @@ fn after_the_end_the_station_commands_nothing() {
 #[test]
 fn line_trouble_ends_the_run() {
     let mut machine = under_test();
-    machine.bus = Some(Alarm::bus("line motion is silent"));
+    machine.bus = Some(Alarm::bus(&Message::detail(
+        "unread",
+        "line motion is silent",
+    )));
     let output = machine.turn();
     assert_safe(&output, "bus_trouble");
     assert_eq!(output.record.parts.judged.len(), 1);
@@ -81,7 +84,10 @@ fn a_part_falling_at_the_end_is_reported() {
     while machine.station.ledger().fall().is_none() {
         machine.turn();
     }
-    machine.bus = Some(Alarm::bus("line motion is silent"));
+    machine.bus = Some(Alarm::bus(&Message::detail(
+        "unread",
+        "line motion is silent",
+    )));
     let output = machine.turn();
     let codes: Vec<String> = output
         .record
@@ -105,9 +111,12 @@ fn a_refused_motion_makes_everything_safe() {
     let mut output = TurnOutput::default();
     let movement = crate::handling::moves::Move::PusherExtend;
     let now = machine.mock.now;
-    machine
-        .station
-        .refused(movement, "probes are up", now, &mut output);
+    machine.station.refused(
+        movement,
+        &Message::detail("not_driven", "probes are up"),
+        now,
+        &mut output,
+    );
     assert_safe(&output, "motion_refused");
     assert!(
         output.record.alarms[0]
@@ -129,7 +138,7 @@ fn safety_inputs_that_are_no_longer_read_are_trouble() {
     let output = machine.turn_without_scan();
     assert_safe(&output, "sensor_stale");
     let stale = output.record.alarms[0].text(Lang::En);
-    assert!(stale.contains("emergency_stop_ok"), "{stale}");
+    assert!(stale.contains("Emergency-stop chain"), "{stale}");
 }
 
 #[test]
@@ -144,7 +153,7 @@ fn a_late_computer_explains_an_unread_input() {
     assert_safe(&output, "host_late");
     let late = output.record.alarms[0].text(Lang::En);
     assert!(
-        late.contains("560 ms") && late.contains("emergency_stop_ok"),
+        late.contains("560 ms") && late.contains("Emergency-stop chain"),
         "{late}"
     );
 }

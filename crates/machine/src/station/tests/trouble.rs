@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+use crate::dut::Reason;
 use crate::dut::promise::{Broken, Promise};
 use crate::handling::Place;
 use crate::handling::moves::Move;
@@ -42,7 +43,7 @@ fn every_alarm() -> Vec<Alarm> {
             Alarm::left_end(movement),
             Alarm::both_ends(movement),
             Alarm::retried(movement, after),
-            Alarm::refused(movement, "jaw_left"),
+            Alarm::refused(movement, &odd("not_driven")),
         ]
     };
     let places = [Place::Pocket, Place::NEST, Place::Gripper];
@@ -62,18 +63,26 @@ fn every_alarm() -> Vec<Alarm> {
             Alarm::fall_unseen(bin),
         ]
     };
+    let foreign = Message::new("transaction", "foreign_reply")
+        .with("said", "odd")
+        .with("line", "motion");
+    let tried = Message::new("detail", "tried")
+        .with_inner("transaction", &foreign)
+        .with("used", 1)
+        .with("tries", 3);
     let few = Message::new("fault", "too_few").with("measured", 2);
     let others = [
-        Alarm::bus("silent"),
-        Alarm::history_lost("relayrig.db", "recording: locked"),
+        Alarm::bus(&tried),
+        Alarm::history_lost("relayrig.db", "history_locked", "recording: locked"),
         Alarm::stale(DigitalIn::AirOk),
-        Alarm::host_late(DigitalIn::AirOk, Span::ms(312)),
+        Alarm::serial_reader_lost("gone"),
+        Alarm::host_late(&tried, Span::ms(312)),
         Alarm::button_stuck(DigitalIn::ButtonStop),
         Alarm::part_sticks(),
         Alarm::step_too_long("probing", after),
         Alarm::watchdog_tripped("mech_do_a"),
-        Alarm::calibration(&Message::new("fault", "line").with("detail", "odd")),
-        Alarm::calibration_invalid("odd"),
+        Alarm::calibration(&Message::new("fault", "line").with_inner("detail", &odd("unread"))),
+        Alarm::calibration_invalid(&odd("calibration_out").with("at", "now")),
         Trouble::SupplyRange(RangeMismatch {
             selected: "x3".into(),
             found: "x6".into(),
@@ -81,7 +90,7 @@ fn every_alarm() -> Vec<Alarm> {
         .into(),
         Alarm::reference_check_due("G-12-1"),
         Alarm::reference_check_failed(&few),
-        Alarm::reference_repeated("G-12-1", "odd"),
+        Alarm::reference_repeated("G-12-1", &Reason::rig_trouble(odd("unread"))),
         Alarm::reject_rate_limit(3, 40, 5.0),
         Alarm::worn(Wearing::Probes, 8, 8),
         Alarm::worn(Wearing::Jaws, 8, 8),
@@ -106,6 +115,10 @@ fn every_alarm() -> Vec<Alarm> {
     bare.chain(known.iter().cloned()).collect()
 }
 
+fn odd(code: &'static str) -> Message {
+    Message::detail(code, "odd")
+}
+
 fn broken(promise: Promise) -> Broken {
     Broken {
         promise,
@@ -125,11 +138,25 @@ fn every_alarm_has_both_texts_with_its_arguments() {
         assert!(en.is_some_and(|it| it.is_ascii()), "{alarm:?}");
         assert!(zh.is_some(), "{alarm:?}");
         let case = alarm.args.get("case");
-        let mut wanted = texts::arguments(Lang::En, &message.id(), case).unwrap();
-        if let Some(fault) = alarm.args.get("fault") {
-            let of_fault = texts::arguments(Lang::En, &format!("fault-{fault}"), None);
-            wanted.append(&mut of_fault.unwrap());
+        let both = |id: &str, case| {
+            let each = Lang::ALL.map(|lang| texts::arguments(lang, id, case).unwrap_or_default());
+            each.into_iter().flatten()
+        };
+        let mut wanted: BTreeSet<&str> = both(&message.id(), case).collect();
+        for (name, family) in [
+            ("fault", "fault"),
+            ("detail", "detail"),
+            ("missed", "detail"),
+            ("transaction", "transaction"),
+        ] {
+            let inner = alarm.args.get(name);
+            wanted.extend(
+                inner
+                    .into_iter()
+                    .flat_map(|it| both(&format!("{family}-{it}"), None)),
+            );
         }
+        wanted.extend(["detail", "param"]);
         let given: BTreeSet<&str> = alarm.args.names().filter(|it| *it != "case").collect();
         let unused: Vec<_> = given
             .difference(&wanted)
@@ -167,11 +194,8 @@ fn a_missed_stroke_is_reported_with_its_sensors() {
         let code = format!("{}_not_reached", movement.actuator_key());
         assert_eq!(alarm.code.name(), code);
         for (point, _) in movement.arrival() {
-            assert!(
-                Lang::ALL
-                    .iter()
-                    .all(|lang| alarm.text(*lang).contains(point.name()))
-            );
+            let says = |lang: Lang| alarm.text(lang).contains(lang.name("signal", point.name()));
+            assert!(Lang::ALL.into_iter().all(says), "{}", alarm.text(Lang::Zh));
         }
     }
 }

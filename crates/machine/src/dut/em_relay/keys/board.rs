@@ -11,7 +11,7 @@ pub const REFERENCE: &[Key] = table! {
     key("contact_tolerance_pct", from_to(0.0, 10.0, "%"), "gauge", "its tolerance");
     key("voltage_v", above_zero(10.0, "V"), "gauge", "voltage at reference_voltage");
     key("voltage_tolerance_pct", from_to(0.0, 10.0, "%"), "gauge", "its tolerance");
-    key("gate_pulse_ms", above_zero(1000.0, "ms"), "gauge", "gate pulse that ARM gives with the contact reference");
+    key("gate_pulse_ms", above_zero(1000.0, "ms"), "gauge", "pulse at the counter gates that ARM gives with the contact reference");
     key("counter_clock_hz", from_to(1000.0, 100_000.0, "Hz"), "gauge", "clock of the gated counters");
     key("counter_clock_tolerance_ppm", from_to(0.0, 10_000.0, "ppm"), "gauge", "its tolerance");
 };

@@ -39,15 +39,15 @@ const LIMITS: &[Key] = table! {
 };
 
 const COIL: &[Key] = table! {
-    optional("settles_ms", whole(1, 1000, "ms"), "station", "from the drive to the first conversion that counts; 32 where nothing is said");
-    optional("scans", whole(1, 100, ""), "station", "scans that are averaged; 1 where nothing is said");
+    optional("settles_ms", whole(1, 1000, "ms"), "station", "from the drive to the first conversion that counts; default 32");
+    optional("scans", whole(1, 100, ""), "station", "scans that are averaged; default 1");
 };
 
 const CONTACT: &[Key] = table! {
-    optional("polarities", Form::Choice(&Polarities::NAMES), "station", "directions of the source on one closure; plus_minus where nothing is said");
-    optional("closures", whole(1, 20, ""), "station", "timed closures of either contact, at the most; 1 where nothing is said");
+    optional("polarities", Form::Choice(&Polarities::NAMES), "station", "directions of the source on one closure; default plus_minus");
+    optional("closures", whole(1, 20, ""), "station", "timed closures of either contact, at the most; default 1");
     optional("stops_early", Form::Flag, "station", "no further closure once both contacts are 3 standard deviations clear of their limits");
-    optional("closure_scatter_pct", whole(0, 100, "%"), "station", "least scatter of a film from closure to closure (1 sd); 10 where nothing is said");
+    optional("closure_scatter_pct", whole(0, 100, "%"), "station", "least scatter of a film from closure to closure (1 sd); default 10");
 };
 
 const STRATEGY: &[Key] = table! {

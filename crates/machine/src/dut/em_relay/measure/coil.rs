@@ -53,7 +53,7 @@ pub(super) fn acts(context: &Context, board: BoardState, repeated: bool) -> (Vec
     let mut acts = Vec::new();
     if repeated {
         let down = OFF.max(coarse_takes).max(board.still_ramping + fine_takes);
-        acts.extend([coarse, fine, Act::Board(IDLE.to_vec()), Act::Wait(down)]);
+        acts.extend([coarse, fine, set(&IDLE), Act::Wait(down)]);
     }
     acts.extend((supply.total() != prebias).then(|| supply.step_to(prebias)));
     acts.extend([
@@ -95,7 +95,10 @@ pub(super) fn acts_off(
     mut board: BoardState,
     stopped: bool,
 ) -> (Vec<Act>, BoardState) {
-    let mut acts = vec![Act::Board(IDLE.to_vec())];
+    // The cycle writes only values that change. After an early end, these outputs go off before they take `IDLE`, and
+    // the level below goes to zero: these writes show a module that ignores them because its host watchdog has tripped.
+    let mut acts = vec![set(&IDLE.map(|(output, on)| (output, on && !stopped)))];
+    acts.extend(stopped.then(|| set(&IDLE)));
     let freed = match context.relay.test.suppression {
         Suppression::Zener => FREED,
         Suppression::Diode => FREED_BY_DIODE,
@@ -103,7 +106,6 @@ pub(super) fn acts_off(
     acts.extend(select_diode(context, false));
     if board.armature != Armature::Rested {
         acts.extend((!board.armature.is_released()).then_some(Act::Mark));
-        // An unchanged value is not written; this change of level reveals a module that ignores writes.
         acts.extend(stopped.then(|| board.supply.step_to(Volt(0.0))));
         acts.extend(rest(context, &mut board.supply));
     }

@@ -96,7 +96,7 @@ impl Context {
 
     /// Returns the scatter of a threshold of this part from operation to operation, volts (1 sd).
     pub fn operation_v(&self) -> f64 {
-        self.accuracy.operation_v(self.relay.part.nominal_v)
+        self.scale().operation_v(&self.accuracy)
     }
 
     /// Returns the relative standard uncertainty of a threshold from the change of the probe contact since the

@@ -15,6 +15,7 @@ use crate::dut::em_relay::readings::Readings;
 use crate::rig::supply::SWITCHING_TIMEOUT;
 use units::Span;
 
+/// Names of the pins in reasons; `coil A` and `coil B` have texts in each language, `pin-coil_A` and `pin-coil_B`.
 const PINS: [&str; 5] = ["coil A", "coil B", "COM", "NO", "NC"];
 const COM: usize = 2;
 

@@ -66,6 +66,7 @@ pub use stage::Stage;
 use stage::order;
 use state::TestState;
 use std::collections::VecDeque;
+use texts::Message;
 pub use timing::{BOUNCE_WINDOW, LONGEST_OPERATION};
 use units::{RigTime, Span};
 
@@ -131,7 +132,7 @@ impl Test {
     }
 
     /// Gives up the stage under way when its acts did not leave the board as planned.
-    fn abandon(&mut self, why: String) {
+    fn abandon(&mut self, why: Message) {
         let seen = std::mem::take(&mut self.runner.readings.trace);
         self.state.record.trace.append(seen);
         self.state.record.trouble(why);

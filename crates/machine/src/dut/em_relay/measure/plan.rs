@@ -11,7 +11,8 @@ use units::Volt;
 /// Scatter of repeated fine ramps around the first, volts (1 sd).
 const REPEAT_SD: Volt = Volt(0.008);
 
-/// Data of earlier stages for later ones.
+/// What earlier stages found and later ones need, but the test record does not keep: expected thresholds, the search
+/// under way, voltage drops.
 #[derive(Debug, Clone, Default)]
 pub struct Plan {
     operate: Option<Expected>,

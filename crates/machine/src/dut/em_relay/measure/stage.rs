@@ -24,9 +24,11 @@ pub enum Stage {
     OperateCoarse,
     /// Fine ramp from just below the coarse estimate; a later attempt searches a wider interval.
     OperateFine(u8),
-    /// Step to nominal voltage, timed by both gates; then the resistance of the NO contact on that closure.
+    /// Step to nominal voltage: counter gate 0 times the operation, gate 1 the bounce; then the station measures the
+    /// resistance of the closed NO contact.
     TimedOperate,
-    /// Drive off, timed by both gates; then the resistance of the NC contact on that closure.
+    /// Drive off: counter gate 0 times the release, gate 1 the bounce; then the station measures the resistance of the
+    /// closed NC contact.
     TimedRelease,
     /// Coarse falling ramp from a sealed armature.
     ReleaseCoarse,

@@ -72,7 +72,7 @@ pub enum ReferenceFault {
     GatesNotRead,
     /// The count of the reference pulse is out of range.
     Pulse {
-        /// Index of the counter.
+        /// Gate of the counter: 0 (latched time) or 1 (open while the contact is open).
         gate: usize,
         /// Mean count of one pulse, us.
         each_us: f64,

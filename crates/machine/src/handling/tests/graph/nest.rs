@@ -11,6 +11,7 @@ use crate::handling::tests::{MockRig, device};
 use crate::instrument::act::JobDone;
 use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
+use texts::Message;
 
 const STATES: [&str; 9] = [
     "Empty",
@@ -59,7 +60,7 @@ fn failed(mock: &MockRig, device: &Device) -> Procedure {
 fn silent(mock: &MockRig) -> JobDone {
     JobDone {
         at: mock.now,
-        trouble: Some("measure 05: silent".into()),
+        trouble: Some(Message::detail("unread", "measure 05: silent")),
     }
 }
 

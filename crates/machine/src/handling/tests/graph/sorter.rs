@@ -80,7 +80,7 @@ fn the_sorter_is_the_drawing() {
     let table = mock.wiring.axis.clone();
     for number in 0..9 {
         let (_, station) = states(&mock)[number];
-        mock.stands(Move::AxisTo(station));
+        mock.show_end(Move::AxisTo(station));
         mock.carried_out(Move::AxisTo(station));
         for (z, gripper) in SEEN.iter().flat_map(|one| SEEN.map(|other| (*one, other))) {
             for [axis, pusher, dark, part] in truths() {

@@ -18,6 +18,7 @@ use crate::handling::tests::MockRig;
 use crate::instrument::act::{Job, JobDone, RunnerState};
 use crate::rig::point::Point;
 use crate::rig::sample::Sample;
+use texts::Message;
 use units::{Span, Volt};
 
 /// Each stage of a good part in order: its acts, and the state of the armature after them.
@@ -37,6 +38,10 @@ fn stages_of_a_good_part() -> Vec<(Stage, Vec<Act>, Armature)> {
         (stage, acts, left)
     };
     stages.map(enter).collect()
+}
+
+fn refused() -> Message {
+    Message::detail("unread", "module answers ?AA")
 }
 
 #[test]
@@ -109,7 +114,7 @@ fn each_stage_returns_the_state_of_the_board() {
 fn an_aborted_stage_leaves_the_board_unknown() {
     let mut test = Test::begin(context(), MockRig::at_rest().now);
     test.state.board.armature = Armature::Released;
-    test.abandon("module answers ?AA".into());
+    test.abandon(refused());
     assert_eq!(test.state.board.armature, Armature::Unknown);
 }
 
@@ -263,7 +268,7 @@ fn fails_at(job: &Job) -> Test {
         match test.step(mock.now, done.take().as_ref(), &mock.image) {
             Progress::Running(RunnerState::Job(requested)) => {
                 mock.after(4);
-                let trouble = (requested == *job).then(|| "module answers ?AA".to_string());
+                let trouble = (requested == *job).then(refused);
                 done = Some(JobDone {
                     at: mock.now,
                     trouble,
@@ -287,17 +292,17 @@ fn a_rig_in_trouble_has_proven_no_part_bad() {
     record.stop(Finding::NoDoesNotMake);
     test.state.record = record.clone();
     assert_eq!(test.verdict().name(), "fail");
-    record.trouble("module answers ?AA".into());
-    record.trouble("and again".into());
+    record.trouble(refused());
+    record.trouble(Message::detail("unread", "and again"));
     test.state.record = record;
     assert_eq!(
         test.verdict(),
-        Verdict::Void(vec![Reason::rig_trouble("module answers ?AA")])
+        Verdict::Void(vec![Reason::rig_trouble(refused())])
     );
 }
 
 #[test]
-fn an_early_end_rewrites_the_level() {
+fn an_early_end_rewrites_board_and_level() {
     let context = context();
     let writes = |ends: fn(&mut TestRecord)| {
         let mut state = TestState::new(&context);
@@ -306,21 +311,30 @@ fn an_early_end_rewrites_the_level() {
         ends(&mut state.record);
         let acts = state.enter(Stage::Off, &context);
         let level = |act: &&Act| matches!(act, Act::Supply(to) if to.iter().any(|(it, _)| *it == AnalogOut::SupplyLevel));
-        acts.iter().filter(level).count()
+        let kelvin = |act: &Act| match act {
+            Act::Board(to) => to
+                .iter()
+                .find(|(it, _)| *it == DigitalOut::KelvinTest)
+                .copied(),
+            _ => None,
+        };
+        let kelvin: Vec<bool> = acts.iter().filter_map(kelvin).map(|(_, on)| on).collect();
+        (kelvin, acts.iter().filter(level).count())
     };
-    assert_eq!(writes(|_| {}), 1, "which is none where it stands already");
     assert_eq!(
-        writes(|it| it.stop(Finding::BoardNotRead)),
-        2,
-        "down and up"
+        writes(|_| {}),
+        (vec![true], 1),
+        "both unchanged, so not sent"
     );
+    let ended = writes(|it| it.stop(Finding::BoardNotRead));
+    assert_eq!(ended, (vec![false, true], 2), "each one changed twice");
 }
 
 #[test]
 fn refused_replies_and_restarted_modules_void_the_part() {
     // No Kelvin bit is set, so the test goes from the pins straight to off.
     let test = fails_at(&board());
-    let why = Verdict::Void(vec![Reason::rig_trouble("module answers ?AA")]);
+    let why = Verdict::Void(vec![Reason::rig_trouble(refused())]);
     assert_eq!(test.verdict(), why);
     assert_eq!(test.verdict().bin(), Bin::RETEST);
     let restarted = fails_at(&Job::Restarts);

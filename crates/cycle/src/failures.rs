@@ -5,13 +5,13 @@ use machine::rig::wiring::{LineId, ModuleId, Wiring};
 
 /// Consecutive failures: of scans by line and address, of writes by module.
 #[derive(Debug)]
-pub(super) struct Timeouts {
+pub(super) struct Failures {
     tries: u8,
     scans: Vec<(LineId, Option<Address>, u8)>,
     writes: Vec<u8>,
 }
 
-impl Timeouts {
+impl Failures {
     pub(super) fn new(wiring: &Wiring) -> Self {
         Self {
             tries: wiring.bus.tries,
@@ -70,20 +70,20 @@ mod tests {
 
     #[test]
     fn a_count_of_failures_saturates() {
-        let mut timeouts = Timeouts {
+        let mut failures = Failures {
             tries: 3,
             scans: Vec::new(),
             writes: vec![0],
         };
         let command = Common::ReadResetStatus.to(Address(0x11));
-        let mut failed = || timeouts.scan_failed(LineId(0), &command);
+        let mut failed = || failures.scan_failed(LineId(0), &command);
         assert_eq!([failed(), failed(), failed()], [None, None, Some(3)]);
         assert!((0..300).all(|_| failed() >= Some(3)));
         assert_eq!(failed(), Some(u8::MAX));
-        assert!(timeouts.may_rewrite(ModuleId(0)));
+        assert!(failures.may_rewrite(ModuleId(0)));
         assert!(
             (0..300)
-                .filter(|_| timeouts.may_rewrite(ModuleId(0)))
+                .filter(|_| failures.may_rewrite(ModuleId(0)))
                 .count()
                 == 1
         );

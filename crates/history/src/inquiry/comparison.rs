@@ -1,0 +1,102 @@
+//! Lots side by side: figures of one parameter, tests of equality, and shares in common classes.
+
+use super::figures::agreed;
+use super::{InquiryError, Result, checks};
+use crate::{Archive, Filter};
+use quality::equality::{Equality, means, spreads};
+use quality::ordered::Histogram;
+use quality::{Limits, Ordered, Summary};
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// Approximate number of classes.
+const CLASSES: usize = 24;
+
+/// Number of lots that can be compared.
+pub const LOTS: std::ops::RangeInclusive<usize> = 2..=8;
+
+/// One lot of a comparison.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+pub struct ComparedLot {
+    /// Name of the lot.
+    pub lot: String,
+    /// Limits that its runs share; none when they differ.
+    #[serde(flatten)]
+    pub limits: Limits,
+    /// Mean, spread and capability.
+    #[serde(flatten)]
+    pub summary: Summary,
+    /// Share of the values in each class of the comparison, 0 to 1.
+    pub shares: Vec<f64>,
+}
+
+/// Lots side by side.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+pub struct Comparison {
+    /// Parameter key.
+    pub param: String,
+    /// The lots in the order of the request.
+    pub lots: Vec<ComparedLot>,
+    /// Test whether the means are equal; `None` where a lot has no spread or fewer than two values.
+    pub means: Option<Equality>,
+    /// Test whether the spreads are equal; `None` where a lot has fewer than two values, or no spread varies.
+    pub spreads: Option<Equality>,
+    /// Lower edge of the first class; `None` when all values are equal.
+    pub from: Option<f64>,
+    /// Width of every class; `None` when all values are equal.
+    pub width: Option<f64>,
+}
+
+/// Compares the values of `param` in the lots.
+pub fn compare(archive: &Archive, param: &str, lots: &[String]) -> Result<Comparison> {
+    if !LOTS.contains(&lots.len()) {
+        let reason = format!("found {}, expected 2 to 8 lots", lots.len());
+        return Err(InquiryError::member("lots", reason));
+    }
+    checks::parameters(archive, Some(param))?;
+    let of_lot = |lot: &String| {
+        let filter = Filter {
+            lot: Some(lot.clone()),
+            ..Filter::default()
+        };
+        if !archive.has_runs(&filter)? {
+            return Err(InquiryError::missing(format!("no lot {lot:?}")));
+        }
+        Ok(archive.values(param, &filter)?)
+    };
+    let found = lots.iter().map(of_lot).collect::<Result<Vec<_>>>()?;
+    let groups: Vec<&[f64]> = found.iter().map(|it| it.values.as_slice()).collect();
+    let all = Ordered::of(&groups.concat()).histogram(CLASSES);
+    let compared = lots.iter().zip(&found).map(|(lot, found)| {
+        let limits = agreed(found.limits);
+        ComparedLot {
+            lot: lot.clone(),
+            limits,
+            summary: Summary::of(param, &found.values, limits),
+            shares: shares(all.as_ref(), &found.values),
+        }
+    });
+    Ok(Comparison {
+        param: param.to_owned(),
+        lots: compared.collect(),
+        means: means(&groups),
+        spreads: spreads(&groups),
+        from: all.as_ref().map(|it| it.from),
+        width: all.as_ref().map(|it| it.width),
+    })
+}
+
+/// Returns the share of the values in each class.
+fn shares(classes: Option<&Histogram>, values: &[f64]) -> Vec<f64> {
+    let Some(classes) = classes else {
+        return Vec::new();
+    };
+    assert!(classes.width > 0.0, "classes of width {}", classes.width);
+    let mut shares = vec![0.0; classes.counts.len()];
+    for value in values {
+        let class = ((value - classes.from) / classes.width).floor().max(0.0) as usize;
+        let class = class.min(shares.len() - 1);
+        shares[class] += 1.0 / values.len() as f64;
+    }
+    shares
+}
