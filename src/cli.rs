@@ -13,6 +13,7 @@ pub mod history;
 pub mod host;
 pub mod init;
 mod installed;
+pub mod instrument;
 pub mod lot;
 mod output;
 pub mod rig;
@@ -30,9 +31,11 @@ pub mod user;
 pub mod wear;
 
 use ::config::Folder;
+use anyhow::Context;
 use app::exit::Exit;
 use clap::{Parser, Subcommand};
 use machine::view::By;
+use std::io::BufRead;
 use std::path::PathBuf;
 
 /// Controller of a JZC-22F relay performance tester with automatic feed and discharge.
@@ -59,9 +62,10 @@ pub struct Cli {
     /// /var/lib/relayrig/relayrig.db with --config /etc/relayrig by default]
     #[arg(long, global = true, value_name = "FILE")]
     pub db: Option<PathBuf>,
-    /// Level of the log on stderr: error, warn, info, debug, or a filter per module
-    #[arg(long, global = true, default_value = "info", value_name = "FILTER")]
-    pub log: String,
+    /// Log on stderr: off, error, warn, info, debug, trace, or a filter per module (warn,app=debug); the word json, alone
+    /// or beside a filter, makes it JSON lines [default: RUST_LOG, else info]
+    #[arg(long, global = true, value_name = "FILTER")]
+    pub log: Option<String>,
     /// What to do
     #[command(subcommand)]
     pub command: Command,
@@ -99,6 +103,8 @@ pub enum Command {
     Doctor(doctor::DoctorArgs),
     /// Find modules, send one command, watch a line
     Bus(bus::BusArgs),
+    /// SCPI instruments: find them, send one command, watch a link, try a profile
+    Instrument(instrument::InstrumentArgs),
     /// Collision answers for a scene, no rig
     Check(check::CheckArgs),
     /// Lots, parts, filters, statistics
@@ -134,7 +140,7 @@ impl Command {
             #[cfg(feature = "sim")]
             Self::Demo(_) => Some(Folder::built_in()),
             #[cfg(feature = "sim")]
-            Self::Sim(args) if args.faults && !installed::has_config() => Some(Folder::built_in()),
+            Self::Sim(args) if args.faults && !installed::has_world() => Some(Folder::built_in()),
             _ => None,
         }
     }
@@ -143,7 +149,7 @@ impl Command {
 impl Cli {
     /// Runs the command. An error is bad input; the caller prints it once.
     pub fn execute(self) -> anyhow::Result<Exit> {
-        let config = self.config.clone().map(Folder::Directory);
+        let config = self.config.map(Folder::Directory);
         let config = config.or_else(|| self.command.own_config());
         let own_history = self.command.own_history().map(PathBuf::from);
         let files = installed::files(config, self.db.or(own_history));
@@ -158,19 +164,15 @@ impl Cli {
             Command::Sim(args) => sim::run(config, &args),
             #[cfg(feature = "sim")]
             Command::Story(args) => story::run(&files, &args),
-            Command::Study(args) => study::run(
-                &self
-                    .config
-                    .unwrap_or_else(|| installed::LOCAL_CONFIG.into()),
-                &args,
-            ),
+            Command::Study(args) => study::run(config.root(), &args),
             Command::Init(args) => init::run(&args),
-            Command::Config(args) => config::run(config, &args),
-            Command::Host(args) => unless_pipe_closed(host::run(&files, &args)),
+            Command::Config(args) => config::run(config, db, &args),
+            Command::Host(args) => host::run(&files, &args),
             Command::Doctor(args) => doctor::run(&files, &args),
             Command::Bus(args) => bus::run(&args),
+            Command::Instrument(args) => instrument::run(config, &args),
             Command::Check(args) => check::run(args),
-            Command::History(args) => history::run(config, db, args),
+            Command::History(args) => history::run(&files, args),
             Command::Alarm(args) => alarm::run(db, &args),
             Command::Lot(args) => lot::run(db, &args),
             Command::Wear(args) => wear::run(db, &args),
@@ -194,15 +196,25 @@ fn person(name: &str) -> anyhow::Result<By> {
     })
 }
 
-/// Treats a closed pipe as a normal end.
-fn unless_pipe_closed(done: anyhow::Result<Exit>) -> anyhow::Result<Exit> {
+/// Reads a password from the first line of stdin.
+fn first_line_of_stdin() -> anyhow::Result<String> {
+    let mut line = String::new();
+    std::io::stdin()
+        .lock()
+        .read_line(&mut line)
+        .context("reading the password from stdin")?;
+    Ok(line.trim_end_matches(['\r', '\n']).to_owned())
+}
+
+/// Returns `done`, or `closed` when its error is a closed pipe, which is a normal end.
+fn unless_pipe_closed<T>(done: anyhow::Result<T>, closed: T) -> anyhow::Result<T> {
     let left = |cause: &(dyn std::error::Error + 'static)| {
         cause
             .downcast_ref::<std::io::Error>()
             .is_some_and(|it| it.kind() == std::io::ErrorKind::BrokenPipe)
     };
     match done {
-        Err(error) if error.chain().any(left) => Ok(Exit::Done),
+        Err(error) if error.chain().any(left) => Ok(closed),
         done => done,
     }
 }

@@ -9,10 +9,12 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    logging::start(&cli.log);
-    let exit = cli.execute().unwrap_or_else(|error| {
-        eprintln!("relayrig: {error:#}");
-        Exit::BadInput
-    });
+    let started = logging::start(cli.log.as_deref());
+    let exit = started
+        .and_then(|()| cli.execute())
+        .unwrap_or_else(|error| {
+            eprintln!("relayrig: {error:#}");
+            Exit::BadInput
+        });
     ExitCode::from(exit.code())
 }

@@ -74,10 +74,8 @@ pub fn run(db: &Path, args: &AlarmArgs) -> anyhow::Result<Exit> {
             return Ok(Exit::Done);
         }
         Action::Acknowledge { code, by } => {
-            let order = Order {
-                order: "acknowledge".into(),
+            let order = Order::Acknowledge {
                 alarm: code.clone(),
-                ..Order::default()
             };
             (order, by)
         }
@@ -91,12 +89,10 @@ pub fn run(db: &Path, args: &AlarmArgs) -> anyhow::Result<Exit> {
                 !reason.trim().is_empty(),
                 "--reason: found nothing, expected the reason"
             );
-            let order = Order {
-                order: "shelve".into(),
-                alarm: Some(code.clone()),
+            let order = Order::Shelve {
+                alarm: code.clone(),
                 minutes: Some(shelf_minutes(Some(*minutes))),
-                reason: Some(reason.clone()),
-                ..Order::default()
+                reason: reason.clone(),
             };
             (order, by)
         }
@@ -106,11 +102,11 @@ pub fn run(db: &Path, args: &AlarmArgs) -> anyhow::Result<Exit> {
 }
 
 fn list(left: &[UnacknowledgedAlarm], as_json: bool) -> anyhow::Result<()> {
-    let shelved = |it: &UnacknowledgedAlarm| it.shelved_until_us.map(|us| Moment(us).to_string());
+    let shelved = |it: &UnacknowledgedAlarm| it.shelved_until_us.map(Moment);
     let object = |it: &UnacknowledgedAlarm| json!({"code": it.code, "count": it.count, "text": it.text, "shelved_until": shelved(it)});
     let row = |it: &UnacknowledgedAlarm| {
         let shelved =
-            shelved(it).map_or_else(String::new, |until| format!(", shelved until {until}"));
+            shelved(it).map_or_else(String::new, |it| format!(", shelved until {}", it.local()));
         format!("{} ({} times{shelved}): {}", it.code, it.count, it.text)
     };
     Ok(Output::stdout().lines(as_json, left, object, row)?)

@@ -8,7 +8,6 @@ mod send;
 use anyhow::Context;
 use app::exit::Exit;
 use bus::{LineSettings, open_serial};
-use std::io::Write;
 use std::path::PathBuf;
 use tokio_serial::SerialStream;
 
@@ -70,13 +69,5 @@ pub fn run(args: &BusArgs) -> anyhow::Result<Exit> {
             BusCommand::Monitor(args) => monitor::run(args).await,
         }
     });
-    super::unless_pipe_closed(done)
-}
-
-/// Writes `text`, which consists of whole lines, to stdout and flushes.
-fn print(text: &str) -> anyhow::Result<()> {
-    let mut out = std::io::stdout().lock();
-    out.write_all(text.as_bytes())
-        .and_then(|()| out.flush())
-        .context("writing to stdout")
+    super::unless_pipe_closed(done, Exit::Done)
 }

@@ -2,7 +2,7 @@
 //! its configuration and has a history of its own.
 
 use super::rig::{self, PaceArg, RigArgs};
-use super::serve::{self, ServeArgs};
+use super::serve::{self, PageArgs, ServeArgs};
 use app::exit::Exit;
 use app::order::{Files, LotOrder};
 use config::Folder;
@@ -19,9 +19,9 @@ use config::Folder;
 The configuration is inside the program; a directory `config` is used only with --config config. The history
 relayrig-demo.db and the logins relayrig-demo-access.db appear in the current directory; --db names another place.")]
 pub struct DemoArgs {
-    /// Address of the page
-    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:8080")]
-    pub listen: std::net::SocketAddr,
+    /// Where the page listens.
+    #[command(flatten)]
+    pub page: PageArgs,
     /// Fault of the simulated rig, see `relayrig sim --faults`
     #[arg(long, value_name = "NAME[=VALUE]")]
     pub fault: Vec<String>,
@@ -73,6 +73,6 @@ pub fn run(files: &Files, args: &DemoArgs) -> anyhow::Result<Exit> {
             "relayrig: demo with the configuration inside this program; `relayrig init DIR` writes it for you to edit"
         );
     }
-    let listen = args.listen;
-    serve::run(files, &ServeArgs { listen, rig }, Some(first))
+    let page = args.page.clone();
+    serve::run(files, &ServeArgs { page, rig }, Some(first))
 }

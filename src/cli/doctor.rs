@@ -1,13 +1,13 @@
 //! `relayrig doctor`: what is wrong with an installation, and what to do.
 
-use super::installed;
-use super::output::Output;
+use super::output::{Output, typed};
 use super::rig::port;
+use super::{installed, unless_pipe_closed};
 use app::doctor::{Finding, Health, Installation, examine};
 use app::exit::Exit;
 use app::order::Files;
 use app::source::LinePort;
-use serde_json::{Value, json};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// Looks at an installation.
@@ -45,40 +45,23 @@ pub fn run(files: &Files, args: &DoctorArgs) -> anyhow::Result<Exit> {
         lines: (!args.sim).then_some(lines.as_slice()),
         backups: backups.as_deref(),
     });
-    let mut out = Output::stdout();
-    out.lines(args.json, &found, object, text)?;
     let count = |health| found.iter().filter(|it| it.health == health).count();
     let [ok, unknown, warnings, faults] =
         [Health::Ok, Health::Unknown, Health::Warning, Health::Fault].map(count);
-    out.line(&match args.json {
+    let summary = match args.json {
         true => json!({"type": "summary", "ok": ok, "unknown": unknown, "warning": warnings, "fault": faults})
             .to_string(),
         false => format!("faults {faults}, warnings {warnings}, not checked {unknown}, ok {ok}"),
-    })?;
+    };
+    unless_pipe_closed(print(&found, &summary, args.json), ())?;
     Ok(match faults {
         0 => Exit::Done,
         _ => Exit::AnswerIsNo,
     })
 }
 
-fn object(finding: &Finding) -> Value {
-    let mut object = json!(finding);
-    object["type"] = json!("check");
-    object
-}
-
-fn text(finding: &Finding) -> String {
-    let word = match finding.health {
-        Health::Ok => "ok",
-        Health::Unknown => "unknown",
-        Health::Warning => "WARNING",
-        Health::Fault => "FAULT",
-    };
-    let (label, subject) = (finding.check.label(), &finding.subject);
-    let (found, expected) = (&finding.found, &finding.expected);
-    let line = format!("{word:<8} {label} {subject}: found {found}, expected {expected}");
-    match &finding.remedy {
-        Some(remedy) => format!("{line}\n         do: {remedy}"),
-        None => line,
-    }
+fn print(found: &[Finding], summary: &str, as_json: bool) -> anyhow::Result<()> {
+    let mut out = Output::stdout();
+    out.lines(as_json, found, |it| typed("check", it), Finding::to_string)?;
+    Ok(out.line(summary)?)
 }

@@ -2,7 +2,9 @@
 //!
 //! Data goes to stdout, remarks to stderr. A closed pipe (`| head`) is no error.
 
+mod alarms;
 mod backup;
+mod compare;
 mod export;
 mod filter;
 mod generate;
@@ -10,11 +12,13 @@ mod import;
 mod lots;
 mod orders;
 pub(in crate::cli) mod paper;
+mod pareto;
 mod prune;
 mod quality;
 mod query;
 mod rejudge;
 mod report;
+mod restore;
 mod show;
 mod spc;
 mod stats;
@@ -23,8 +27,8 @@ pub use quality::{QualityArgs, run_quality};
 
 use super::output::Output;
 use app::exit::Exit;
+use app::order::Files;
 use clap::{Args, Subcommand};
-use config::Folder;
 use history::Archive;
 use history::inquiry::InquiryError;
 use std::path::Path;
@@ -43,7 +47,9 @@ enum Command {
     List(lots::ListArgs),
     /// One lot, or one part with everything down to the raw replies
     #[command(
-        after_help = "Examples:\n  relayrig history show A\n  relayrig history show A 17 --json"
+        visible_alias = "part",
+        after_help = "Examples:\n  relayrig history show A\n  relayrig history show A 17 --json\n  \
+        relayrig history part --serial L-1122-000017"
     )]
     Show(show::ShowArgs),
     /// Parts that match a filter
@@ -58,6 +64,16 @@ enum Command {
         after_help = "Example: relayrig history stats --param operate_voltage_v --lot A --json"
     )]
     Stats(stats::StatsArgs),
+    /// One parameter of several lots: means, spreads, tests whether they are equal
+    #[command(
+        after_help = "Examples:\n  relayrig history compare A B --param operate_voltage_v\n  \
+        relayrig history compare A B C --param operate_voltage_v --page --out compared.html"
+    )]
+    Compare(compare::CompareArgs),
+    /// Reasons of rejects, or alarms, the most frequent first
+    #[command(after_help = "Examples:\n  relayrig history pareto --lot A\n  \
+        relayrig history pareto --alarms --since -7d")]
+    Pareto(pareto::ParetoArgs),
     /// Control charts of a parameter, or of the share of every bin
     #[command(
         after_help = "Examples:\n  relayrig history spc --param operate_voltage_v --lot A\n  \
@@ -73,8 +89,13 @@ enum Command {
     Report(report::ReportArgs),
     /// Orders with person, place and answer
     #[command(after_help = "Examples:\n  relayrig history orders --lot A\n  \
-        relayrig history orders --who li --since 2026-03-01T00:00:00Z --refused")]
+        relayrig history orders --who li --since today --refused\n  \
+        relayrig history orders --order people")]
     Orders(orders::OrdersArgs),
+    /// Every occurrence of an alarm, with lot, acknowledgement and text
+    #[command(after_help = "Examples:\n  relayrig history alarms --lot A\n  \
+        relayrig history alarms --code part_lost --since 2026-03-01T00:00:00Z --json")]
+    Alarms(alarms::AlarmsArgs),
     /// Parts as CSV (UTF-8 with byte order mark) or as a spreadsheet with charts
     #[command(
         after_help = "Examples:\n  relayrig history export --lot A lot-a.csv\n  \
@@ -98,6 +119,12 @@ enum Command {
         relayrig history backup --into /mnt/backup --keep 30"
     )]
     Backup(backup::BackupArgs),
+    /// Check a backup, then put history, people and configuration in place
+    #[command(
+        after_help = "Examples:\n  relayrig history restore /mnt/backup --check\n  \
+        relayrig history restore /mnt/backup/relayrig-20260302T023000Z --replace"
+    )]
+    Restore(restore::RestoreArgs),
     /// Fill the history with random parts, for trying queries and reports
     #[command(after_help = "Example: relayrig --db big.db history generate --parts 1000000")]
     Generate(generate::GenerateArgs),
@@ -106,9 +133,10 @@ enum Command {
     Check,
 }
 
-/// Runs the command on the history file `db`. An error is bad input: exit status 2.
-pub fn run(config: &Folder, db: &Path, args: HistoryArgs) -> anyhow::Result<Exit> {
-    super::unless_pipe_closed(dispatch(config, db, *args.command).map_err(by_option))
+/// Runs the command on the history. An error is bad input: exit status 2.
+pub fn run(files: &Files, args: HistoryArgs) -> anyhow::Result<Exit> {
+    let done = dispatch(files, *args.command).map_err(by_option);
+    super::unless_pipe_closed(done, Exit::Done)
 }
 
 /// Names the command line option in an error that names a member of the filter.
@@ -119,22 +147,27 @@ fn by_option(error: anyhow::Error) -> anyhow::Error {
     }
 }
 
-fn dispatch(config: &Folder, db: &Path, command: Command) -> anyhow::Result<Exit> {
+fn dispatch(files: &Files, command: Command) -> anyhow::Result<Exit> {
+    let (config, db) = (&files.config, files.db.as_path());
     match command {
         Command::Import(args) => return import::run(db, &args),
         Command::Generate(args) => return generate::run(config, db, &args),
         Command::Check => return check(db),
+        Command::Restore(args) => return restore::run(config, db, &args),
         Command::Prune(args) => return prune::run(db, &args),
         Command::List(args) => lots::run(&Archive::open(db)?, &args)?,
         Command::Show(args) => show::run(&Archive::open(db)?, &args)?,
         Command::Query(args) => query::run(&Archive::open(db)?, &args)?,
+        Command::Alarms(args) => alarms::run(&Archive::open(db)?, &args)?,
         Command::Orders(args) => orders::run(&Archive::open(db)?, &args)?,
         Command::Stats(args) => stats::run(&Archive::open(db)?, &args)?,
+        Command::Compare(args) => compare::run(&Archive::open(db)?, &args)?,
+        Command::Pareto(args) => pareto::run(&Archive::open(db)?, &args)?,
         Command::Spc(args) => spc::run(&Archive::open(db)?, &args)?,
         Command::Report(args) => report::run(&Archive::open(db)?, &args)?,
         Command::Rejudge(args) => rejudge::run(config, &Archive::open(db)?, &args)?,
         Command::Export(args) => export::run(db, &args)?,
-        Command::Backup(args) => backup::run(config, db, &args)?,
+        Command::Backup(args) => backup::run(files, &args)?,
     }
     Ok(Exit::Done)
 }

@@ -2,19 +2,20 @@
 //!
 //! Exit status: 0 it does, 1 it does not, 2 bad input, 4 stopped by Ctrl-C.
 
-use super::output::Output;
+use super::output::{Output, typed};
 use super::table::lateness_line;
+use super::unless_pipe_closed;
 use anyhow::Context;
+use app::doctor::Finding;
 use app::exit::Exit;
 use app::host_check::phase::PhaseResult;
 use app::host_check::verdict::Verdict;
 use app::host_check::{self, Report, histogram, plot};
 use app::order::Files;
 use config::Plant;
-use serde_json::json;
 use std::fs::File;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use units::Span;
 
 /// Tests this computer.
@@ -61,66 +62,48 @@ pub fn run(files: &Files, Args::Check(args): &Args) -> anyhow::Result<Exit> {
     let plot = plot.transpose()?;
     let mut out = Output::stdout();
     let span = Span::ms(args.seconds * 1000);
-    let mut ended = |it: &PhaseResult| print_phase(&mut out, it, args.json);
-    let Some(report) = host_check::run(&wiring, folder(&files.db), span, &mut ended)? else {
+    let mut ended = |it: &PhaseResult| unless_pipe_closed(print_phase(&mut out, it, args.json), ());
+    let Some(report) = host_check::run(&wiring, files.data_folder(), span, &mut ended)? else {
         return Ok(Exit::Stopped);
     };
     if let Some(mut file) = plot {
         let svg = plot::svg(&report.phases, report.verdict.tolerated_ms);
         file.write_all(svg.as_bytes()).context("--plot")?;
     }
-    print(&mut out, &report, args.json)?;
+    unless_pipe_closed(print(&mut out, &report, args.json), ())?;
     Ok(match report.verdict.is_kept {
         true => Exit::Done,
         false => Exit::AnswerIsNo,
     })
 }
 
-/// Returns the folder of the history, where the rig writes as well.
-fn folder(db: &Path) -> &Path {
-    let folder = db.parent().filter(|it| !it.as_os_str().is_empty());
-    folder.unwrap_or(Path::new("."))
-}
-
 fn print_phase(out: &mut Output, it: &PhaseResult, as_json: bool) -> anyhow::Result<()> {
     if as_json {
-        let mut object = json!(it);
-        object["type"] = "phase".into();
-        return Ok(out.line(&object.to_string())?);
+        return Ok(out.line(&typed("phase", it).to_string())?);
     }
     out.line(&lateness_line(it.phase.name(), &it.lateness))?;
     for row in histogram::bars(&it.lateness) {
         out.line(&row)?;
     }
-    let stolen = (it.cpu_time.stolen_ms, it.cpu_time.stolen_percent());
-    let text = format!(
-        "stolen by the hypervisor: {:.0} ms ({:.1} %)\n",
-        stolen.0, stolen.1
-    );
+    let (ms, percent) = (it.cpu_time.stolen_ms, it.cpu_time.stolen_percent());
+    let text = format!("stolen by the hypervisor: {ms:.0} ms ({percent:.1} %)\n");
     Ok(out.line(&text)?)
 }
 
 fn print(out: &mut Output, report: &Report, as_json: bool) -> anyhow::Result<()> {
     if !as_json {
         out.line(&verdict_text(&report.verdict))?;
-        return Ok(out.lines(
-            false,
-            &report.advice,
-            |it| json!(it),
-            |it| format!("- {it}"),
-        )?);
     }
-    let object = |kind: &str, mut object: serde_json::Value| {
-        object["type"] = kind.into();
-        object
-    };
     out.lines(
-        true,
+        as_json,
         &report.advice,
-        |it| object("advice", json!(it)),
-        |_| String::new(),
+        |it| typed("advice", it),
+        Finding::to_string,
     )?;
-    Ok(out.line(&object("verdict", json!(report.verdict)).to_string())?)
+    if as_json {
+        out.line(&typed("verdict", &report.verdict).to_string())?;
+    }
+    Ok(())
 }
 
 fn verdict_text(it: &Verdict) -> String {

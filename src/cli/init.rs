@@ -35,5 +35,6 @@ pub fn run(args: &InitArgs) -> anyhow::Result<Exit> {
 "
     );
     let written = std::io::stdout().write_all(next.as_bytes());
-    super::unless_pipe_closed(written.map(|()| Exit::Done).context("writing to stdout"))
+    super::unless_pipe_closed(written.context("writing to stdout"), ())?;
+    Ok(Exit::Done)
 }

@@ -12,7 +12,7 @@ pub const HISTORY: &str = "/var/lib/relayrig/relayrig.db";
 pub const BACKUPS: &str = "/var/backups/relayrig";
 
 /// Name of the configuration in the working folder.
-pub const LOCAL_CONFIG: &str = "config";
+const LOCAL_CONFIG: &str = "config";
 /// Name of the history in the working folder.
 const LOCAL_HISTORY: &str = "relayrig.db";
 
@@ -22,9 +22,11 @@ pub fn is_default() -> bool {
     !local.iter().any(|it| Path::new(it).exists()) && Path::new(CONFIG).join("rig.toml").exists()
 }
 
-/// Returns true when the configuration that a command uses by default exists.
-pub fn has_config() -> bool {
-    is_default() || Path::new(LOCAL_CONFIG).exists()
+/// Returns true when the configuration that a command uses by default has a simulated world.
+#[cfg(feature = "sim")]
+pub fn has_world() -> bool {
+    let config = if is_default() { CONFIG } else { LOCAL_CONFIG };
+    Path::new(config).join("sim.toml").exists()
 }
 
 /// Returns the files of a command: those given, else the defaults.

@@ -5,7 +5,7 @@
 use super::person;
 use anyhow::{Context, anyhow};
 use app::exit::Exit;
-use app::lot_decision;
+use app::lot_decision::{self, AboutLot};
 use history::{Archive, Decision, Filter};
 use machine::view::Order;
 use serde_json::json;
@@ -86,13 +86,25 @@ pub fn run(db: &Path, args: &LotArgs) -> anyhow::Result<Exit> {
 
 fn decide(db: &Path, it: &Decided, decision: Decision) -> anyhow::Result<()> {
     let by = person(&it.by)?;
-    let order = Order {
-        order: decision.order().into(),
-        lot: Some(it.lot.clone()),
-        reason: Some(it.reason.clone()),
-        ..Order::default()
+    let (lot, reason) = (it.lot.clone(), it.reason.clone());
+    let order = match decision {
+        Decision::Hold => Order::HoldLot { lot, reason },
+        Decision::Reopen => Order::ReopenLot { lot, reason },
+        Decision::Release => Order::ReleaseLot {
+            lot,
+            reason: Some(reason),
+        },
+        Decision::Close => Order::CloseLot {
+            lot,
+            reason: Some(reason),
+        },
     };
-    lot_decision::write(db, &order, &by, decision).map_err(|why| anyhow!("{}", why.say(Lang::En)))
+    let about = AboutLot {
+        decision,
+        lot: &it.lot,
+        reason: &it.reason,
+    };
+    lot_decision::write(db, &order, &by, about).map_err(|why| anyhow!("{}", why.say(Lang::En)))
 }
 
 fn known(archive: &Archive, lot: &str) -> anyhow::Result<history::LotStatus> {
@@ -123,7 +135,7 @@ fn show(archive: &Archive, lot: &str, as_json: bool) -> anyhow::Result<()> {
         out,
         "lot {lot} {} since {}{why}",
         standing.state.name(),
-        standing.since
+        standing.since.local()
     )?;
     for run in &runs {
         let calibration = run.calibration_hash.as_deref().map_or("none", short);
@@ -144,7 +156,13 @@ fn show(archive: &Archive, lot: &str, as_json: bool) -> anyhow::Result<()> {
         )?;
     }
     for it in &reopenings {
-        writeln!(out, "reopened at {} by {}: {}", it.at, it.who, it.why)?;
+        writeln!(
+            out,
+            "reopened at {} by {}: {}",
+            it.at.local(),
+            it.who,
+            it.why
+        )?;
     }
     let percent = |n: u64| 100.0 * n as f64 / counts.parts.max(1) as f64;
     writeln!(
@@ -160,7 +178,9 @@ fn show(archive: &Archive, lot: &str, as_json: bool) -> anyhow::Result<()> {
         writeln!(
             out,
             "reference check of run {} at {}: {outcome}, {}",
-            it.run, it.at, it.text
+            it.run,
+            it.at.local(),
+            it.text
         )?;
     }
     Ok(())

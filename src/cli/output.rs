@@ -1,10 +1,12 @@
 //! Answers on stdout or in a file: lists as text table, CSV or JSON from the same columns.
 
+use anyhow::Context;
+use bus::Histogram;
 use clap::{Args, ValueEnum};
 use history::csv;
 use history::report::significant;
 use serde::Serialize;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::fs::File;
@@ -63,6 +65,36 @@ fn padded(cells: impl Iterator<Item = (isize, String)>) -> String {
         (false, width) => format!("{cell:>width$}"),
     };
     cells.map(pad).collect::<Vec<_>>().join(" ")
+}
+
+/// Returns rows as text: a table row each, or what `object` returns; `none` for a table without rows.
+pub(super) fn listing<T>(
+    rows: &[T],
+    columns: &[Fixed<T>],
+    none: &str,
+    object: Option<fn(&T) -> String>,
+) -> String {
+    let head = match (rows.is_empty(), object) {
+        (_, Some(_)) => None,
+        (true, None) => Some(none.to_owned()),
+        (false, None) => Some(headings(columns)),
+    };
+    let row = |it| object.map_or_else(|| cells(it, columns), |object| object(it));
+    let rows = rows.iter().map(row);
+    head.into_iter().chain(rows).map(|row| row + "\n").collect()
+}
+
+/// Returns the latency that this share of the replies did not exceed, milliseconds; `None` without any.
+pub(super) fn latency_ms(latencies: &Histogram, share: f64) -> Option<f64> {
+    Some(latencies.percentile(share)?.as_seconds() * 1e3)
+}
+
+/// Writes `text`, which consists of whole lines, to stdout and flushes.
+pub(super) fn print(text: &str) -> anyhow::Result<()> {
+    let mut out = io::stdout().lock();
+    out.write_all(text.as_bytes())
+        .and_then(|()| out.flush())
+        .context("writing to stdout")
 }
 
 /// Opens a file to read, or stdin for `-`.
@@ -195,6 +227,13 @@ impl Table {
         }
         out.flush()
     }
+}
+
+/// Returns a value as a JSON object with the member `type`.
+pub(super) fn typed(kind: &str, value: &impl Serialize) -> Value {
+    let mut object = json!(value);
+    object["type"] = kind.into();
+    object
 }
 
 /// Returns every bin with its count, as text.

@@ -1,16 +1,18 @@
 //! `relayrig run`: a lot on a rig, or on the simulated rig in real or virtual time.
 
 use super::output::{Fixed, Output, cells, headings};
+use super::person;
 use super::rig::RigArgs;
 use super::table::lateness_line;
 use super::terminal::{Rows, Terminal};
 use anyhow::Context;
+use app::answers::Answers;
 use app::exit::Exit;
 use app::gauge_study::{self, Figure};
 use app::lot::Purpose;
 use app::order::{Files, LotOrder};
 use app::real_time::BareLoop;
-use app::run_lot;
+use app::run_answered;
 use quality::gauge_rr::GaugeRr;
 use serde_json::json;
 use std::path::PathBuf;
@@ -21,6 +23,7 @@ use std::path::PathBuf;
   relayrig run --sim --lot A --recipe jzc-22f-012 --count 20
   relayrig run --sim --pace real --lot A --recipe jzc-22f-012 --count 5 --json
   relayrig run --lot A --recipe jzc-22f-012 --count 12 --retest 'Li Na'
+  relayrig run --lot A --recipe jzc-22f-012 --count 12 --answer reference_parts=loaded --by li
   relayrig run --sim --study grr --lot G --recipe jzc-22f-012
   relayrig run --lot A --recipe jzc-22f-012 --line measure=/dev/ttyUSB0 --line motion=/dev/ttyUSB1")]
 pub struct RunArgs {
@@ -45,12 +48,23 @@ pub struct RunArgs {
     /// Test parts of the lot a second time with the consent of NAME; the first results stay
     #[arg(long, value_name = "NAME")]
     pub retest: Option<String>,
+    /// Answer to a prompt of recipe or lot.toml; one for each prompt
+    #[arg(long, value_name = "PROMPT=CHOICE", requires = "by", value_parser = answer)]
+    pub answer: Vec<(String, String)>,
+    /// Person who answers
+    #[arg(long, value_name = "NAME", requires = "answer")]
+    pub by: Option<String>,
     /// Beside the lot, a bare real-time loop, to compare how late this computer wakes both
     #[arg(long)]
     pub bare_loop: bool,
     /// Instead of one lot, ten parts (or --count) three times on three rigs, for the share of the gauge
     #[arg(long, value_enum, value_name = "NAME", requires = "sim")]
     pub study: Option<StudyArg>,
+}
+
+fn answer(text: &str) -> Result<(String, String), &'static str> {
+    let (prompt, choice) = text.split_once('=').ok_or("expected PROMPT=CHOICE")?;
+    Ok((prompt.to_owned(), choice.to_owned()))
 }
 
 /// A study that feeds parts again.
@@ -85,7 +99,22 @@ pub fn run(files: &Files, args: &RunArgs) -> anyhow::Result<Exit> {
     };
     let mut terminal = Terminal::new(rows);
     let bare_loop = args.bare_loop.then(BareLoop::start).transpose()?;
-    let exit = run_lot(files, &source, &order, Purpose::Lot, &mut terminal)?;
+    let answers = Answers {
+        by: args
+            .by
+            .as_deref()
+            .map(person)
+            .transpose()?
+            .unwrap_or_default(),
+        given: args.answer.clone(),
+    };
+    let exit = run_answered(
+        files,
+        &source,
+        &order,
+        Purpose::Lot,
+        (&answers, &mut terminal),
+    )?;
     terminal.ended(&exit);
     if let Some(bare_loop) = bare_loop {
         let lateness = bare_loop.end().view();

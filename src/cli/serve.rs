@@ -6,7 +6,9 @@ use anyhow::bail;
 use app::exit::Exit;
 use app::order::{Files, LotOrder};
 use app::service::Service;
+use page::{Door, DoorError, Tls};
 use std::net::SocketAddr;
+use std::path::PathBuf;
 
 /// Serves the page and runs the lots that it orders.
 #[derive(Debug, clap::Args)]
@@ -15,16 +17,39 @@ use std::net::SocketAddr;
     after_help = "Examples:
   relayrig serve --line measure=/dev/ttyUSB0 --line motion=/dev/ttyUSB1
   relayrig serve --listen 127.0.0.1:9000 --sim --speed 5
+  relayrig serve --listen 0.0.0.0:8443 --tls-cert cert.pem --tls-key key.pem
 
 Exit status: 0 ended between lots, 2 bad input, 3 the rig has trouble, 4 a lot was stopped."
 )]
 pub struct ServeArgs {
-    /// Address of the page
-    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:8080")]
-    pub listen: SocketAddr,
+    /// Where the page listens.
+    #[command(flatten)]
+    pub page: PageArgs,
     /// The rig.
     #[command(flatten)]
     pub rig: RigArgs,
+}
+
+/// Where the page listens.
+#[derive(Debug, Clone, clap::Args)]
+pub struct PageArgs {
+    /// Address of the page; one that other computers reach takes a certificate
+    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:8080")]
+    listen: SocketAddr,
+    /// Certificate of the page, PEM, its issuers after it: the page is at https
+    #[arg(long, value_name = "FILE", requires = "tls_key")]
+    tls_cert: Option<PathBuf>,
+    /// Private key of the certificate, PEM without password
+    #[arg(long, value_name = "FILE", requires = "tls_cert")]
+    tls_key: Option<PathBuf>,
+}
+
+impl PageArgs {
+    fn door(&self) -> Result<Door, DoorError> {
+        let files = self.tls_cert.as_ref().zip(self.tls_key.as_ref());
+        let tls = files.map(|(cert, key)| Tls::load(cert, key)).transpose()?;
+        Door::open(self.listen, tls)
+    }
 }
 
 /// Runs the command, with `first` as its first lot.
@@ -37,23 +62,22 @@ pub fn run(files: &Files, args: &ServeArgs, first: Option<LotOrder>) -> anyhow::
             "--pace virtual: found without --speed, expected both: an idle rig in virtual time runs ahead of the clock"
         );
     }
-    let mut service = Service::open(files, rig.source(None)?, args.listen, first)?;
-    if let Some(first) = service.take_first_login() {
+    let service = Service::open(files, rig.source(None)?, args.page.door()?, first)?;
+    if let Some(code) = service.setup_code() {
         eprintln!(
-            "relayrig: log in as {} with {} (shown once; the register is {})",
-            first.name,
-            first.password,
-            first.people.display()
+            "relayrig: no engineer yet: press log in at the page and give the set-up code {code}, or run \
+             `relayrig --db {} user add NAME --role engineer`",
+            files.db.display()
         );
     }
     eprintln!(
-        "relayrig: {}page at http://{}/, history in {}, Ctrl-C stops",
+        "relayrig: {}page at {}, history in {}, Ctrl-C stops",
         if rig.sim {
             "simulated rig running, "
         } else {
             ""
         },
-        service.address(),
+        service.url(),
         files.db.display()
     );
     service.run(&mut Terminal::new(Rows::Table))

@@ -10,8 +10,9 @@ use rigsim::Options;
 use rigsim::fault::FaultInfo;
 use rigsim::pty::{self, Rates};
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// The simulated rig.
@@ -22,6 +23,7 @@ use std::time::Duration;
   relayrig sim --bench modules.toml
   relayrig sim --bench modules.toml --heed-baud
   relayrig sim --bench modules.toml --fault flip=0.05 --fault late=0.01/350
+  relayrig sim --instruments bench.toml --fault reply_late=smu:0.01/1500
   relayrig sim --fault port_lost=motion@20..23
   relayrig sim --faults
 
@@ -45,9 +47,12 @@ pub struct SimArgs {
     /// A symlink per line in this directory
     #[arg(long, value_name = "DIR")]
     pub link: Option<PathBuf>,
-    /// No rig: the modules of this file on one pseudo-terminal
+    /// No rig: the modules of this file on one pseudo-terminal (docs/bench.md has every key)
     #[arg(long, value_name = "FILE", conflicts_with_all = ["world", "truth"])]
     pub bench: Option<PathBuf>,
+    /// No rig: the SCPI instruments of this file on sockets and pseudo-terminals (docs/instruments.md has every key)
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["world", "truth", "bench", "link", "heed_baud", "journal"])]
+    pub instruments: Option<PathBuf>,
     /// A module hears only a client at its own rate, as on a wire. Without it a pseudo-terminal has no rate
     #[arg(long)]
     pub heed_baud: bool,
@@ -62,6 +67,11 @@ pub struct SimArgs {
 /// Runs the command until it is interrupted.
 pub fn run(config: &Folder, args: &SimArgs) -> anyhow::Result<Exit> {
     let files = simulated::files(config);
+    if let Some(file) = &args.instruments
+        && !args.faults
+    {
+        return serve_instruments(file, args);
+    }
     if args.bench.is_none() {
         config.check_exists()?;
     }
@@ -75,9 +85,8 @@ pub fn run(config: &Folder, args: &SimArgs) -> anyhow::Result<Exit> {
         };
         let rows: String = faults.into_iter().map(row).collect();
         let written = std::io::stdout().write_all(rows.as_bytes());
-        return super::unless_pipe_closed(
-            written.map(|()| Exit::Done).context("writing the faults"),
-        );
+        super::unless_pipe_closed(written.context("writing the faults"), ())?;
+        return Ok(Exit::Done);
     }
     let rig = match &args.bench {
         Some(file) => rigsim::build_bench(file, &args.fault)?,
@@ -119,6 +128,21 @@ pub fn run(config: &Folder, args: &SimArgs) -> anyhow::Result<Exit> {
         file.write_rest(&rig)?;
     }
     Ok(Exit::Done)
+}
+
+/// Serves the instruments of a file until the command is interrupted.
+fn serve_instruments(file: &Path, args: &SimArgs) -> anyhow::Result<Exit> {
+    let bench = rigsim::scpi::file::build(file, args.seed, &args.fault)?;
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()?;
+    runtime.block_on(async {
+        let links = rigsim::scpi::serve::real_time(&bench).await?;
+        let links: BTreeMap<String, String> = links.into_iter().collect();
+        println!("{}", json!({ "instruments": links }));
+        Interrupts::listen()?.next().await;
+        Ok(Exit::Done)
+    })
 }
 
 /// Prints every change of an output until the program ends.

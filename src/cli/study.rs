@@ -209,10 +209,6 @@ fn written(path: &Path, text: &str) -> anyhow::Result<()> {
 
 /// Prints `text` on stdout; a closed pipe is no error.
 fn print(text: &str) -> anyhow::Result<()> {
-    match std::io::stdout().lock().write_all(text.as_bytes()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(error).context("writing the figures")
-        }
-        _ => Ok(()),
-    }
+    let written = std::io::stdout().lock().write_all(text.as_bytes());
+    super::unless_pipe_closed(written.context("writing the figures"), ())
 }

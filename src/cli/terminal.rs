@@ -87,7 +87,7 @@ impl Subscriber for Terminal {
         };
         match event {
             LotEvent::Begun => self.begun(lot),
-            LotEvent::Cycle(Event::Judged(it)) if matches!(it.part.kind, PartRole::Lot(_)) => {
+            LotEvent::Cycle(Event::Judged(it)) if matches!(it.part.role, PartRole::Lot(_)) => {
                 self.judged(it, lot);
             }
             LotEvent::Cycle(Event::Alarm(alarm, _)) => self
@@ -99,7 +99,7 @@ impl Subscriber for Terminal {
                 }
             }),
             LotEvent::PartDone(part, landed) if rows == Rows::Json => {
-                if matches!(part.judged.part.kind, PartRole::Lot(_)) {
+                if matches!(part.judged.part.role, PartRole::Lot(_)) {
                     let bin = landed.as_ref().map_or("", |it| it.bin.name());
                     let json = part_json(&lot.context, &part.judged, part.cycle_s, bin);
                     self.print(&format!("{json}\n"));

@@ -1,9 +1,11 @@
 //! `relayrig user`: names, roles and passwords of the people who may log in at the screen.
+//!
+//! The audit of orders records every change with the name of the person who made it, as for a change at the page.
 
-use anyhow::Context;
+use super::output::{Column, FormatArgs, Output, text};
+use super::{first_line_of_stdin, person};
 use app::exit::Exit;
-use page::access::{Register, Role, access_path};
-use std::io::{BufRead, Write};
+use page::access::{AccessError, Entry, PersonChange, Register, Role, access_path, audited};
 use std::path::Path;
 
 /// People who may log in at the screen.
@@ -11,19 +13,25 @@ use std::path::Path;
 #[command(after_help = "Examples:
   relayrig user list
   relayrig user add li --role operator
+  relayrig user role li maintainer
   relayrig user password li --stdin < new-password.txt
+  relayrig user unlock li
   relayrig user remove li
 
-Without --stdin the program makes a random password and prints it once. The register lies beside the history (--db).")]
+Without --stdin the program makes a random password and prints it once. The register lies beside the history (--db);
+`history orders --order people` lists its changes, `history orders --order login` wrong passwords.")]
 pub struct UserArgs {
+    /// Person who makes the change [default: the account of the system]
+    #[arg(long, global = true, value_name = "NAME")]
+    by: Option<String>,
     #[command(subcommand)]
     action: Action,
 }
 
 #[derive(Debug, clap::Subcommand)]
 enum Action {
-    /// List names and roles
-    List,
+    /// List names and roles, and who waits because of wrong passwords
+    List(FormatArgs),
     /// Add a person
     Add {
         /// Letters, digits, `.`, `-`, `_`
@@ -35,6 +43,13 @@ enum Action {
         #[arg(long)]
         stdin: bool,
     },
+    /// Give a person another role
+    Role {
+        /// Name of the person
+        name: String,
+        /// operator, maintainer or engineer
+        role: Role,
+    },
     /// Give a new password and end the person's sessions
     Password {
         /// Name of the person
@@ -43,6 +58,11 @@ enum Action {
         #[arg(long)]
         stdin: bool,
     },
+    /// Forget the wrong passwords of a person, who may then log in at once
+    Unlock {
+        /// Name of the person
+        name: String,
+    },
     /// Remove a person
     Remove {
         /// Name of the person
@@ -50,46 +70,56 @@ enum Action {
     },
 }
 
+const COLUMNS: [Column<Entry>; 4] = [
+    ("role", |it| it.person.role.to_string()),
+    ("name", |it| it.person.name.clone()),
+    ("since", |it| it.since.to_string()),
+    ("locked_until", |it| text(it.locked_until)),
+];
+
 /// Runs the command.
 pub fn run(db: &Path, args: UserArgs) -> anyhow::Result<Exit> {
     let mut register = Register::open(&access_path(db))?;
-    match args.action {
-        Action::List => {
-            for person in register.people()? {
-                writeln!(std::io::stdout(), "{:<12}{}", person.role, person.name)?;
-            }
+    let now_us = jiff::Timestamp::now().as_microsecond();
+    let change = match args.action {
+        Action::List(format) => {
+            let people = register.entries(now_us)?;
+            Output::stdout().list(format.format(), &people, &COLUMNS)?;
+            return Ok(Exit::Done);
         }
-        Action::Add { name, role, stdin } => {
-            let password = password(stdin)?;
-            let now_us = jiff::Timestamp::now().as_microsecond();
-            register.add(&name, role, &password, now_us)?;
-            print_login(&name, &password, stdin);
-        }
-        Action::Password { name, stdin } => {
-            let password = password(stdin)?;
-            register.set_password(&name, &password)?;
-            print_login(&name, &password, stdin);
-        }
-        Action::Remove { name } => register.remove(&name)?,
+        Action::Add { name, role, stdin } => PersonChange::Add {
+            name,
+            role,
+            password: password(stdin)?,
+        },
+        Action::Role { name, role } => PersonChange::Role { name, role },
+        Action::Password { name, stdin } => PersonChange::Password {
+            name,
+            password: password(stdin)?,
+        },
+        Action::Unlock { name } => PersonChange::Unlock { name },
+        Action::Remove { name } => PersonChange::Remove { name },
+    };
+    let by = person(&args.by.unwrap_or_else(account))?;
+    let work = || change.apply(&mut register, now_us);
+    let drawn = audited(db, by, |_| change.what(), AccessError::message, work)??;
+    if let (Some(drawn), PersonChange::Add { name, .. } | PersonChange::Password { name, .. }) =
+        (drawn, change)
+    {
+        println!("{name} logs in with {drawn}");
     }
     Ok(Exit::Done)
 }
 
-fn password(from_stdin: bool) -> anyhow::Result<String> {
-    if !from_stdin {
-        return Ok(Register::random_password()?);
-    }
-    let mut line = String::new();
-    std::io::stdin()
-        .lock()
-        .read_line(&mut line)
-        .context("reading the password from stdin")?;
-    Ok(line.trim_end_matches(['\r', '\n']).to_owned())
+/// Returns the name of the account that calls the program, or that called sudo for it.
+fn account() -> String {
+    let through_sudo = std::env::var("SUDO_USER").ok().filter(|it| !it.is_empty());
+    through_sudo.unwrap_or_else(app::doctor::own_account)
 }
 
-/// Prints name and random password; prints nothing when the password was chosen, because the person knows it.
-fn print_login(name: &str, password: &str, chosen: bool) {
-    if !chosen {
-        println!("{name} logs in with {password}");
+fn password(from_stdin: bool) -> anyhow::Result<Option<String>> {
+    if !from_stdin {
+        return Ok(None);
     }
+    first_line_of_stdin().map(Some)
 }

@@ -67,7 +67,7 @@ pub fn run(db: &Path, args: &WearArgs) -> anyhow::Result<Exit> {
 fn list(store: &Store, sim: bool, as_json: bool) -> anyhow::Result<()> {
     let row = |it: &Wear| {
         let replaced = match (&it.replaced, &it.replaced_by) {
-            (Some(at), Some(by)) => format!("replaced {at} by {by}"),
+            (Some(at), Some(by)) => format!("replaced {} by {by}", at.local()),
             (_, _) => "never replaced".to_owned(),
         };
         format!("{:<16}{:>10}  {replaced}", it.name, it.count)

@@ -1,16 +1,19 @@
 //! Checks that a lot may be run, before anything is opened or moved.
 
+use super::answers::Answers;
 use super::calibration;
 use super::exit::Cause;
 use super::lot::Purpose;
 use super::order::LotOrder;
 use super::source::RigSource;
-use config::{ConfigError, Plant, load_recipe};
+use config::{Approval, ConfigError, Plant, load_recipe};
 use history::{
     AlarmRecord, Archive, HistoryError, LOT_NAME, LotRecord, LotState, LotStatus, Row,
-    RunEndRecord, Store, is_lot_name,
+    RunEndRecord, SIGNATURES, Store, is_lot_name, signatures,
 };
 use machine::dut::Recipe;
+use machine::dut::prompt::Prompt;
+use machine::handling::serial::SourceName;
 use machine::station::trouble::Alarm;
 use machine::station::turn::Ending;
 use std::path::Path;
@@ -32,6 +35,17 @@ pub enum AdmissionError {
     /// The recipe is missing or invalid, or this plant cannot measure it.
     #[error(transparent)]
     Recipe(#[from] ConfigError),
+    /// The plant wants a second engineer to approve the recipe, and too few have signed it.
+    #[error(
+        "--recipe: found {recipe} with {found} of {SIGNATURES} engineers who saved or approved it, expected an approved \
+         recipe (page Recipes, or relayrig config approve)"
+    )]
+    NotApproved {
+        /// Name of the recipe.
+        recipe: String,
+        /// Number of engineers who saved or approved it.
+        found: usize,
+    },
     /// The order is a retest of a lot that never ran.
     #[error("--retest: found no run of lot \"{lot}\", expected a lot to test again")]
     NothingToRetest {
@@ -75,6 +89,29 @@ pub enum AdmissionError {
         /// State of the lot, and the recipe with which the lot began.
         standing: Box<LotStatus>,
     },
+    /// A person scans the parts of the lot, but the run has no screen.
+    #[error(
+        "--lot: lot.toml has `source = \"wedge\"`; expected a lot at the page (relayrig serve), where a person scans each part"
+    )]
+    NeedsScreen,
+    /// A run without a screen has no answer to a prompt, or none of its choices.
+    #[error(
+        "--answer: found {found} for prompt \"{prompt}\", expected {prompt}=CHOICE, one of {choices} (or a lot at the page)"
+    )]
+    Unanswered {
+        /// Name of the prompt.
+        prompt: String,
+        /// Answer as given.
+        found: String,
+        /// Names of its choices.
+        choices: String,
+    },
+    /// An answer belongs to no prompt of the lot.
+    #[error("--answer: found \"{found}\", expected a prompt of recipe or lot.toml")]
+    NoSuchPrompt {
+        /// Name as given.
+        found: String,
+    },
     /// The history cannot be read.
     #[error(transparent)]
     History(#[from] HistoryError),
@@ -91,11 +128,16 @@ impl AdmissionError {
                 .with("lot", lot)
                 .with("why", standing.why.as_deref().unwrap_or_default()),
             Self::Complete { lot, .. } => refusal("lot_completed").with("lot", lot),
+            Self::NotApproved { recipe, .. } => refusal("not_approved").with("recipe", recipe),
             Self::OtherRecipe { lot, standing, .. } => refusal("other_recipe")
                 .with("lot", lot)
                 .with("recipe", &standing.recipe),
             Self::NothingToRetest { lot } => refusal("nothing_to_retest").with("lot", lot),
-            Self::Recipe(_) | Self::History(_) => refusal("lot_not_begun").with("detail", self),
+            Self::Recipe(_) => refusal("recipe_faulty").with("said", self),
+            Self::NeedsScreen | Self::Unanswered { .. } | Self::NoSuchPrompt { .. } => {
+                refusal("needs_screen")
+            }
+            Self::History(_) => refusal("program_trouble").with("said", self),
         }
     }
 }
@@ -103,7 +145,7 @@ impl AdmissionError {
 /// Checks that a lot may run; returns its recipe.
 ///
 /// # Errors
-/// Fails when the lot is held, when it is complete and the order is no retest, when it began with another recipe, when
+/// Fails when the plant wants an approval that the recipe lacks, when the lot is held, when it is complete and the order is no retest, when it began with another recipe, when
 /// a retest has no earlier run, or when this plant cannot measure the recipe.
 pub fn admit(
     db: &Path,
@@ -121,9 +163,55 @@ pub fn admit(
     let recipe = load_recipe(&plant.folder, &order.recipe)?;
     plant.admit(&recipe)?;
     if purpose == Purpose::Lot {
+        check_approval(db, plant, &recipe)?;
         check_lot_state(db, &recipe, order)?;
     }
     Ok(Arc::new(recipe))
+}
+
+fn check_approval(db: &Path, plant: &Plant, recipe: &Recipe) -> Result<(), AdmissionError> {
+    match config::approval(&plant.folder)? {
+        Approval::None => return Ok(()),
+        Approval::SecondPerson => {}
+    }
+    let found = signatures(db, &recipe.name, &recipe.hash)?.len();
+    if found < SIGNATURES {
+        let recipe = recipe.name.clone();
+        return Err(AdmissionError::NotApproved { recipe, found });
+    }
+    Ok(())
+}
+
+/// Checks that a run without a screen can carry out a lot.
+///
+/// # Errors
+/// Fails when a person must scan the parts, when a prompt has no answer, and for an answer that fits no prompt.
+pub fn check_unattended(
+    plant: &Plant,
+    recipe: &Recipe,
+    answers: &Answers,
+) -> Result<(), AdmissionError> {
+    let source = plant.lot.serial.as_ref().map(|it| it.source);
+    if source == Some(SourceName::Wedge) {
+        return Err(AdmissionError::NeedsScreen);
+    }
+    let prompts = || plant.prompts(recipe);
+    let unknown = |(name, _): &&(String, String)| !prompts().any(|it| it.name == *name);
+    if let Some((found, _)) = answers.given.iter().find(unknown) {
+        let found = found.clone();
+        return Err(AdmissionError::NoSuchPrompt { found });
+    }
+    let answer = |it: &Prompt| answers.choice(it).map(str::to_owned);
+    let fits = |it: &&Prompt| answer(it).is_some_and(|choice| it.choice(&choice).is_some());
+    let Some(prompt) = prompts().find(|it| !fits(it)) else {
+        return Ok(());
+    };
+    let choices = prompt.choices.iter().map(|it| it.name.as_str());
+    Err(AdmissionError::Unanswered {
+        prompt: prompt.name.clone(),
+        found: answer(prompt).map_or("no answer".to_owned(), |it| format!("\"{it}\"")),
+        choices: choices.collect::<Vec<_>>().join(", "),
+    })
 }
 
 /// Returns the state of a lot; `None` for a lot without runs and for a missing history.
@@ -169,7 +257,7 @@ pub fn calibration_refusal(
     db: &Path,
     recipe: &Recipe,
     source: &RigSource,
-) -> anyhow::Result<Option<String>> {
+) -> anyhow::Result<Option<Message>> {
     if source.is_simulated() {
         return Ok(None);
     }
@@ -179,11 +267,16 @@ pub fn calibration_refusal(
     }
 }
 
-/// Records a run without parts, with an alarm that says why the rig refused the lot.
+/// Records a run without parts, with an alarm that says why the rig refused the lot; returns the cause of its end.
 ///
 /// # Errors
 /// Fails when the history cannot be written.
-pub fn refuse(db: &Path, recipe: &Recipe, order: &LotOrder, cause: &Cause) -> anyhow::Result<()> {
+pub fn refuse(
+    db: &Path,
+    recipe: &Recipe,
+    order: &LotOrder,
+    why: &Message,
+) -> anyhow::Result<Cause> {
     let mut store = Store::open(db)?;
     let now_us = jiff::Timestamp::now().as_microsecond();
     store.begin_lot(&LotRecord {
@@ -195,7 +288,8 @@ pub fn refuse(db: &Path, recipe: &Recipe, order: &LotOrder, cause: &Cause) -> an
         retest: order.retest.clone(),
         ..LotRecord::default()
     })?;
-    let alarm = Alarm::calibration_invalid(&cause.text);
+    let alarm = Alarm::calibration_invalid(why);
+    let cause = Cause::from(&alarm);
     let alarm = Row::Alarm(AlarmRecord {
         lot: Some(order.lot.clone()),
         code: alarm.code.name(),
@@ -210,5 +304,6 @@ pub fn refuse(db: &Path, recipe: &Recipe, order: &LotOrder, cause: &Cause) -> an
         cause: Some((cause.code.clone(), cause.text.clone())),
     });
     store.record(&[alarm, ended])?;
-    Ok(store.close_lot(&order.lot, now_us)?)
+    store.close_lot(&order.lot, now_us)?;
+    Ok(cause)
 }

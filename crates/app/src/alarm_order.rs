@@ -13,7 +13,11 @@ use serde_json::json;
 /// Fails when no unacknowledged alarm has this code, or when the history cannot be written.
 pub fn write(store: &mut Store, simulated: bool, order: &Order, by: &By) -> anyhow::Result<()> {
     let left = store.unacknowledged_alarms(simulated)?;
-    let code = order.alarm.as_ref();
+    let code = match order {
+        Order::Acknowledge { alarm } => alarm.as_ref(),
+        Order::Shelve { alarm, .. } => Some(alarm),
+        _other => None,
+    };
     if let Some(code) = code.filter(|code| left.iter().all(|it| it.code != **code)) {
         let known: Vec<&str> = left.iter().map(|it| it.code.as_str()).collect();
         bail!(
@@ -23,7 +27,7 @@ pub fn write(store: &mut Store, simulated: bool, order: &Order, by: &By) -> anyh
     }
     let at_us = jiff::Timestamp::now().as_microsecond();
     let mut what = json!(order);
-    what["alarm"] = json!(order.alarm);
+    what["alarm"] = json!(code);
     let audit = OrderRecord {
         at_us,
         who: by.who.clone(),
@@ -38,20 +42,27 @@ pub fn write(store: &mut Store, simulated: bool, order: &Order, by: &By) -> anyh
 
 /// Returns the row of the change that an order makes to alarms; `None` when the order changes none.
 pub fn change(simulated: bool, order: &Order, by: &By, at_us: i64) -> Option<Row> {
-    let minutes = i64::from(shelf_minutes(order.minutes));
     let by = by.who.clone();
-    let change = match order.order.as_str() {
-        "acknowledge" => AlarmChange::Acknowledged { by },
-        "shelve" => AlarmChange::Shelved {
-            until_us: at_us + minutes * 60_000_000,
-            by,
-            reason: order.reason.clone().unwrap_or_default(),
-        },
+    let (code, change) = match order {
+        Order::Acknowledge { alarm } => (alarm.clone(), AlarmChange::Acknowledged { by }),
+        Order::Shelve {
+            alarm,
+            minutes,
+            reason,
+        } => {
+            let minutes = i64::from(shelf_minutes(*minutes));
+            let shelved = AlarmChange::Shelved {
+                until_us: at_us + minutes * 60_000_000,
+                by,
+                reason: reason.clone(),
+            };
+            (Some(alarm.clone()), shelved)
+        }
         _other => return None,
     };
     Some(Row::AlarmChange(AlarmChangeRecord {
         simulated,
-        code: order.alarm.clone(),
+        code,
         at_us,
         change,
     }))

@@ -1,24 +1,26 @@
-//! Backups of a whole rig: history, people and configuration in a dated folder each, of which the newest stay.
+//! Backs up a whole rig: a dated folder holds history, people and configuration; only the newest folders stay.
 //!
-//! The history does not note these copies: they go again, so none of them permits to prune a run. Nor does it change its
-//! schema, because an earlier program may be at work on it.
+//! A later backup deletes this one, so the history does not record it as a copy and `prune` deletes no run because of
+//! it. A backup migrates neither history nor people, because an earlier program may be using the files.
 
 use crate::order::Files;
 use anyhow::Context;
 use config::Folder;
 use history::Archive;
-use jiff::Timestamp;
 use jiff::civil::DateTime;
 use jiff::tz::TimeZone;
+use jiff::{SignedDuration, Timestamp};
 use page::access::{Register, access_path};
 use std::fs;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-/// Name of a backup, in UTC; a folder of another name is never deleted.
+/// Name of a backup, in UTC.
 const NAME: &str = "relayrig-%Y%m%dT%H%M%SZ";
-/// End of the name of a backup that is being made.
-const PARTIAL: &str = ".partial";
+/// Name of a backup that is being made.
+const PARTIAL: &str = "relayrig-%Y%m%dT%H%M%SZ.partial";
+/// Age from which a partial backup counts as left by a killed program: no backup takes this long.
+const LEFT: SignedDuration = SignedDuration::from_hours(24);
 
 /// A backup that was made.
 #[derive(Debug)]
@@ -37,18 +39,17 @@ pub struct Backup {
 /// Fails when a file cannot be read or written, when a backup of this second exists, or when the copied history differs
 /// from the history. No older backup is deleted then.
 pub fn back_up(files: &Files, into: &Path, keep: NonZeroUsize) -> anyhow::Result<Backup> {
-    let folder = into.join(Timestamp::now().strftime(NAME).to_string());
+    let now = Timestamp::now();
+    let folder = into.join(now.strftime(NAME).to_string());
     anyhow::ensure!(!folder.exists(), "{} exists already", folder.display());
-    let mut partial = folder.clone().into_os_string();
-    partial.push(PARTIAL);
-    let partial = PathBuf::from(partial);
+    let partial = into.join(now.strftime(PARTIAL).to_string());
     let bytes = copy_rig(files, &partial).inspect_err(|_| {
         // The first error is returned; a failed clean-up matters less.
         let _ = fs::remove_dir_all(&partial);
     })?;
     fs::rename(&partial, &folder).with_context(|| folder.display().to_string())?;
     fs::File::open(into)?.sync_all()?;
-    let deleted = rotate(into, keep)?;
+    let deleted = rotate(into, keep, now)?;
     Ok(Backup {
         folder,
         bytes,
@@ -58,8 +59,12 @@ pub fn back_up(files: &Files, into: &Path, keep: NonZeroUsize) -> anyhow::Result
 
 /// Returns the backups inside `into` with their times, oldest first; none when there is no such folder.
 pub fn backups(into: &Path) -> Vec<(Timestamp, PathBuf)> {
+    dated(into, NAME)
+}
+
+fn dated(into: &Path, name: &str) -> Vec<(Timestamp, PathBuf)> {
     let time = |entry: fs::DirEntry| {
-        let made = DateTime::strptime(NAME, entry.file_name().to_str()?).ok()?;
+        let made = DateTime::strptime(name, entry.file_name().to_str()?).ok()?;
         let made = made.to_zoned(TimeZone::UTC).ok()?.timestamp();
         Some((made, entry.path()))
     };
@@ -69,9 +74,12 @@ pub fn backups(into: &Path) -> Vec<(Timestamp, PathBuf)> {
     found
 }
 
-fn rotate(into: &Path, keep: NonZeroUsize) -> anyhow::Result<Vec<PathBuf>> {
+/// Deletes all but the `keep` newest backups, and what killed programs left; returns the deleted folders.
+fn rotate(into: &Path, keep: NonZeroUsize, now: Timestamp) -> anyhow::Result<Vec<PathBuf>> {
     let mut old = backups(into);
     old.truncate(old.len().saturating_sub(keep.get()));
+    let partial = dated(into, PARTIAL).into_iter();
+    old.extend(partial.filter(|(begun, _)| now.duration_since(*begun) > LEFT));
     let delete = |(_, folder): (Timestamp, PathBuf)| {
         fs::remove_dir_all(&folder).with_context(|| folder.display().to_string())?;
         Ok(folder)
@@ -87,7 +95,7 @@ fn copy_rig(files: &Files, to: &Path) -> anyhow::Result<u64> {
     let bytes = Archive::open_unchanged(&files.db)?.backup(&db)?;
     let people = access_path(&files.db);
     if people.exists() {
-        Register::open(&people)?.copy_to(&access_path(&db))?;
+        Register::open_unchanged(&people)?.copy_to(&access_path(&db))?;
     }
     match &files.config {
         Folder::Directory(dir) => copy_folder(dir, &to.join("config"))?,
@@ -97,8 +105,12 @@ fn copy_rig(files: &Files, to: &Path) -> anyhow::Result<u64> {
     Ok(bytes)
 }
 
-fn copy_folder(from: &Path, to: &Path) -> anyhow::Result<()> {
-    let named = || from.display().to_string();
+/// Copies a folder with all that it holds; `to` may exist.
+///
+/// # Errors
+/// Fails when a file cannot be read or written.
+pub fn copy_folder(from: &Path, to: &Path) -> anyhow::Result<()> {
+    let named = || format!("copying {}", from.display());
     fs::create_dir_all(to).with_context(named)?;
     for entry in fs::read_dir(from).with_context(named)? {
         let (path, target) = entry
@@ -118,16 +130,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rotation_deletes_the_oldest_backups_alone() {
+    fn rotation_deletes_old_backups_and_killed_ones() {
         let folder = tempfile::tempdir().unwrap();
         let kept = ["relayrig-20260103T000000Z", "relayrig-20260102T000000Z"];
-        let foreign = ["photos", "relayrig-20200101T000000Z.partial", "relayrig-1"];
-        let old = "relayrig-20251231T235959Z";
-        for name in kept.iter().chain(&foreign).chain([&old]) {
+        let foreign = ["photos", "relayrig-20260103T000000Z.partial", "relayrig-1"];
+        let old = [
+            "relayrig-20251231T235959Z",
+            "relayrig-20260101T235959Z.partial",
+        ];
+        for name in kept.iter().chain(&foreign).chain(&old) {
             fs::create_dir(folder.path().join(name)).unwrap();
         }
-        let deleted = rotate(folder.path(), NonZeroUsize::new(2).unwrap()).unwrap();
-        assert_eq!(deleted, [folder.path().join(old)]);
+        let (keep, now) = (NonZeroUsize::new(2).unwrap(), "2026-01-03T00:00:00Z");
+        let deleted = rotate(folder.path(), keep, now.parse().unwrap()).unwrap();
+        assert_eq!(deleted, old.map(|it| folder.path().join(it)));
         for name in kept.iter().chain(&foreign) {
             assert!(folder.path().join(name).exists(), "{name}");
         }

@@ -1,6 +1,6 @@
 //! Reasons why a command ends, with their exit status, and the cause of exit status 3.
 //!
-//! The cause with which a run ends passes through these files:
+//! The cause of exit status 3 of a run is
 //!
 //! - chosen in `lot/mod.rs` and `service/mod.rs` (lost history, failed assertion), `lot/progress.rs` (the alarm, or an
 //!   order), `lib.rs` (the rig refuses the lot before it begins; `admission.rs` makes its row) and
@@ -96,14 +96,9 @@ impl Cause {
         Self::new(HISTORY_LOST, why)
     }
 
-    /// `calibration_invalid`: the rig runs no lot until it is calibrated again; `why` is the reason.
-    pub fn calibration_invalid(why: &str) -> Self {
-        Self::new("calibration_invalid", why)
-    }
-
     /// `not_calibrated`: the run of the reference parts ended without a calibration.
     pub fn not_calibrated() -> Self {
-        let text = "the reference parts ended without a calibration";
+        let text = "the test of the reference parts gave no calibration";
         Self::new("not_calibrated", text)
     }
 

@@ -9,9 +9,8 @@ use super::exit::Exit;
 use super::lot::{Purpose, Subscriber};
 use super::order::{Files, LotOrder};
 use super::source::RigSource;
-use anyhow::Context;
 use config::load_recipe;
-use history::{Archive, Filter, csv};
+use history::{Archive, Filter};
 use machine::dut::Characteristic;
 use quality::average_range::average_and_range;
 use quality::gauge_rr::{GaugeRr, GaugeRrError, Reading, anova};
@@ -127,46 +126,4 @@ fn of(lot: &str) -> Filter {
         lot: Some(lot.to_owned()),
         ..Filter::default()
     }
-}
-
-/// Reads the readings of a study from CSV with the columns part, operator, trial and value.
-///
-/// # Errors
-/// Fails when a column is missing or a value is not a finite number; the error names the line.
-pub fn read_csv(text: &str) -> anyhow::Result<Vec<Reading>> {
-    let records = csv::read(text)?;
-    let (header, rows) = records.split_first().context("line 1: expected a header")?;
-    let column = |name: &str| {
-        header
-            .fields
-            .iter()
-            .position(|field| field.trim().eq_ignore_ascii_case(name))
-            .with_context(|| {
-                format!("line 1: column {name} is missing; expected part, operator, trial, value")
-            })
-    };
-    let [part, operator, trial, value] = [
-        column("part")?,
-        column("operator")?,
-        column("trial")?,
-        column("value")?,
-    ];
-    rows.iter()
-        .map(|row| {
-            let cell = |column: usize| row.fields[column].trim();
-            let number = cell(value).parse().ok().filter(|it: &f64| it.is_finite());
-            Ok(Reading {
-                part: cell(part).to_owned(),
-                operator: cell(operator).to_owned(),
-                trial: cell(trial).to_owned(),
-                value: number.with_context(|| {
-                    format!(
-                        "line {}, column value: found {:?}, expected a finite number",
-                        row.line,
-                        cell(value)
-                    )
-                })?,
-            })
-        })
-        .collect()
 }

@@ -17,6 +17,7 @@
 
 pub mod admission;
 pub mod alarm_order;
+pub mod answers;
 pub mod backup_folder;
 pub mod calibration;
 pub mod collision;
@@ -29,6 +30,7 @@ pub mod gauge_study;
 pub mod generate;
 pub mod host_check;
 pub mod import;
+pub mod instrument;
 pub mod links;
 pub mod lot;
 pub mod lot_decision;
@@ -36,31 +38,36 @@ pub mod order;
 pub mod order_queue;
 pub mod progress;
 pub mod real_time;
+pub mod restore;
 pub mod service;
+mod signals;
 #[cfg(feature = "sim")]
 pub mod simulated;
 pub mod source;
 #[cfg(feature = "sim")]
 pub mod story;
+mod trace_files;
 pub mod traces;
 #[cfg(feature = "sim")]
 pub mod truth_file;
 
 use admission::admit;
+use answers::{Answering, Answers};
 use anyhow::Context;
 use config::Plant;
 use controls::Controls;
-use exit::{Cause, Exit};
+use exit::Exit;
 use lot::{LotContext, LotRunner, Purpose, Subscriber};
 use order::{Files, LotOrder};
 use order_queue::OrderQueue;
 use source::RigSource;
 use std::time::Duration;
+use tokio::sync::mpsc;
 
-/// Runs one unattended lot; Ctrl-C stops it. `outer` receives every event.
+/// Runs one unattended lot without prompts, as [`run_answered`] does.
 ///
 /// # Errors
-/// Fails on bad input: a configuration, lot or rig that is refused before anything moves.
+/// Fails as [`run_answered`] does.
 pub fn run_lot(
     files: &Files,
     source: &RigSource,
@@ -68,15 +75,32 @@ pub fn run_lot(
     purpose: Purpose,
     outer: &mut dyn Subscriber,
 ) -> anyhow::Result<Exit> {
+    let none = Answers::default();
+    run_answered(files, source, order, purpose, (&none, outer))
+}
+
+/// Runs one unattended lot; Ctrl-C stops it. `answers` go to the prompts of the lot; `outer` receives every event.
+///
+/// # Errors
+/// Fails on bad input: a configuration, lot, rig or answer that is refused before anything moves.
+pub fn run_answered(
+    files: &Files,
+    source: &RigSource,
+    order: &LotOrder,
+    purpose: Purpose,
+    (answers, outer): (&Answers, &mut dyn Subscriber),
+) -> anyhow::Result<Exit> {
     let plant = Plant::load(&files.config)?;
     history::check_rig(&files.db, source.is_simulated())?;
     let recipe = admit(&files.db, &plant, order, purpose)?;
+    if purpose == Purpose::Lot {
+        admission::check_unattended(&plant, &recipe, answers)?;
+    }
     if purpose == Purpose::Lot
         && let Some(why) = admission::calibration_refusal(&files.db, &recipe, source)?
     {
-        let cause = Cause::calibration_invalid(&why);
-        tracing::error!(code = cause.code, "{why}");
-        admission::refuse(&files.db, &recipe, order, &cause)?;
+        let cause = admission::refuse(&files.db, &recipe, order, &why)?;
+        tracing::error!(code = cause.code, "{}", cause.text);
         return Ok(Exit::Trouble(cause));
     }
     let controls = Controls::new(false);
@@ -87,7 +111,13 @@ pub fn run_lot(
     };
     block_on(source, async {
         controls.stop_on_signals();
-        runner.run(OrderQueue::without_orders(), outer).await
+        let (orders, taken) = mpsc::channel(1);
+        let mut outer = Answering {
+            answers,
+            orders,
+            outer,
+        };
+        runner.run(OrderQueue::from(taken), &mut outer).await
     })
 }
 

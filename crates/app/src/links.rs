@@ -1,13 +1,14 @@
 //! Opens the lines of a run: serial ports, pseudo-terminals of the simulated rig, or in-process streams.
 
-use super::lot::LotContext;
+use super::lot::{LotContext, Purpose};
 use super::source::{LinePort, RigSource};
 #[cfg(feature = "sim")]
 use super::{simulated, source::Simulated, truth_file::TruthFile};
 use anyhow::anyhow;
-use bus::{LineLog, LineSettings, OpenPort, Pace};
-use config::Plant;
+use bus::{LineLog, LineSettings, OpenPort, Pace, Reading};
+use config::{Plant, SerialReaderSettings};
 use cycle::LineEnds;
+use machine::handling::serial::SourceName;
 use machine::rig::wiring::LineId;
 #[cfg(feature = "sim")]
 use rigsim::{SharedRig, pty, wire};
@@ -19,6 +20,18 @@ use tokio::sync::mpsc;
 /// time.
 const LATE_REPLY_MS: u64 = 180;
 
+/// Name of the code reader's line for `--line` and on the simulated rig.
+const READER: &str = "serial_reader";
+/// Number of readings that may wait for the cycle.
+const READINGS: usize = 16;
+
+/// Returns the code reader that gives this run its serial numbers, if one does.
+fn reader<'a>(context: &LotContext<'a>) -> Option<&'a SerialReaderSettings> {
+    let source = context.plant.lot.serial.as_ref().map(|it| it.source);
+    let reads = context.purpose == Purpose::Lot && source == Some(SourceName::Reader);
+    context.plant.serial_reader.as_ref().filter(|_| reads)
+}
+
 /// Returns how many EEPROM writes all modules have made so far; `None` on a real rig, whose modules do not count them.
 pub type EepromCount = Box<dyn Fn() -> Option<u64> + Send>;
 
@@ -28,6 +41,8 @@ pub struct Lines {
     handle: Handle,
     /// Queue ends that the cycle holds, in the order of the wiring.
     pub ends: Vec<LineEnds>,
+    /// Readings of the code reader; `None` in a lot without one.
+    pub readings: Option<mpsc::Receiver<Reading>>,
     /// Trace and health of each line, with its name.
     pub logs: Vec<(String, LineLog)>,
     /// The simulated rig behind the lines; `None` on a real one.
@@ -42,6 +57,7 @@ impl Lines {
         Self {
             handle: handle.clone(),
             ends: Vec::new(),
+            readings: None,
             logs: Vec::new(),
             #[cfg(feature = "sim")]
             rig: None,
@@ -98,6 +114,14 @@ impl Lines {
         self.open(plant, line, bus::serial_port(path, baud), pace);
     }
 
+    /// Starts the task of the code reader; `open` opens its port, again after every failure.
+    fn open_reader(&mut self, settings: &SerialReaderSettings, open: OpenPort, pace: &Pace) {
+        let (given, readings) = mpsc::channel(READINGS);
+        let reading = bus::run_reader(open, settings.no_code.clone(), *pace, given);
+        self.handle.spawn(reading);
+        self.readings = Some(readings);
+    }
+
     /// Starts the task of a line; `open` opens its port, again after every failure.
     fn open(&mut self, plant: &Plant, line: LineId, open: OpenPort, pace: &Pace) {
         let settings = settings(plant, line);
@@ -141,30 +165,37 @@ fn settings(plant: &Plant, line: LineId) -> LineSettings {
 pub fn open(context: &LotContext, pace: &Pace, handle: &Handle) -> anyhow::Result<Lines> {
     let lines = Lines::none(handle);
     match context.source {
-        RigSource::Serial(given) => serial(lines, context.plant, given, pace),
+        RigSource::Serial(given) => serial(lines, context, given, pace),
         #[cfg(feature = "sim")]
         RigSource::Simulated(source) => {
             let rig = match &source.live {
                 Some(live) => live.rig.clone(),
                 None => simulated::build(context.plant, source, context.order)?,
             };
-            simulated_lines(lines, context.plant, (source, rig), pace)
+            simulated_lines(lines, context, (source, rig), pace)
         }
     }
 }
 
 fn serial(
     mut lines: Lines,
-    plant: &Plant,
+    context: &LotContext,
     given: &[LinePort],
     pace: &Pace,
 ) -> anyhow::Result<Lines> {
+    let plant = context.plant;
     check(plant, given)?;
+    let port = |name: &str, wired: &str| {
+        let other = given.iter().find(|it| it.line == name);
+        other.map_or(wired, |it| &it.port).to_owned()
+    };
     for line in plant.wiring.line_ids() {
         let wired = plant.wiring.line(line);
-        let other = given.iter().find(|it| it.line == wired.name);
-        let port = other.map_or(&wired.port, |it| &it.port);
-        lines.serial(plant, line, port, pace);
+        lines.serial(plant, line, &port(&wired.name, &wired.port), pace);
+    }
+    if let Some(reader) = reader(context) {
+        let port = port(READER, &reader.port);
+        lines.open_reader(reader, bus::serial_port(port, reader.baud), pace);
     }
     Ok(lines)
 }
@@ -175,7 +206,8 @@ fn serial(
 /// Fails on the first named line that the wiring lacks.
 pub fn check(plant: &Plant, given: &[LinePort]) -> anyhow::Result<()> {
     let wired = plant.wiring.lines.iter().map(|line| line.name.as_str());
-    let known: Vec<&str> = wired.collect();
+    let reader = plant.serial_reader.as_ref().map(|_| READER);
+    let known: Vec<&str> = wired.chain(reader).collect();
     match given.iter().find(|it| !known.contains(&it.line.as_str())) {
         Some(LinePort { line, .. }) => Err(anyhow!(
             "--line: found \"{line}\", expected one of {}",
@@ -188,10 +220,12 @@ pub fn check(plant: &Plant, given: &[LinePort]) -> anyhow::Result<()> {
 #[cfg(feature = "sim")]
 fn simulated_lines(
     mut lines: Lines,
-    plant: &Plant,
+    context: &LotContext,
     (source, rig): (&Simulated, SharedRig),
     pace: &Pace,
 ) -> anyhow::Result<Lines> {
+    let plant = context.plant;
+    let reader = reader(context);
     let named = |name: &str| {
         let line = plant.wiring.line_named(name);
         line.ok_or_else(|| anyhow!("line {name} is not wired"))
@@ -199,17 +233,26 @@ fn simulated_lines(
     if source.pace == super::source::SimulatedPace::Real {
         let ptys = pty::serve(&rig, pty::Rates::Ignored)?;
         for (name, path) in ptys.paths() {
-            lines.serial(plant, named(&name)?, &path.to_string_lossy(), pace);
+            let path = path.to_string_lossy();
+            match (name == READER, reader) {
+                (true, Some(reader)) => {
+                    let port = bus::serial_port(path.into_owned(), reader.baud);
+                    lines.open_reader(reader, port, pace);
+                }
+                (true, None) => {}
+                (false, _) => lines.serial(plant, named(&name)?, &path, pace),
+            }
         }
         lines._ptys = Some(ptys);
     } else {
         for (name, plug) in wire::plugs(&rig) {
-            lines.open(
-                plant,
-                named(&name)?,
-                bus::from_streams(move || plug.open()),
-                pace,
-            );
+            let mut open = bus::from_streams(move || plug.open());
+            match (name == READER, reader) {
+                (true, Some(reader)) => lines.open_reader(reader, open, pace),
+                // The line ends, because its port is opened and closed at once.
+                (true, None) => drop(open()),
+                (false, _) => lines.open(plant, named(&name)?, open, pace),
+            }
         }
     }
     lines.rig = Some(rig);

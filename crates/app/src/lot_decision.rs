@@ -8,21 +8,35 @@ use serde_json::json;
 use std::path::Path;
 use texts::Message;
 
+/// Decision about a lot that an order makes, with its reason.
+#[derive(Debug, Clone, Copy)]
+pub struct AboutLot<'a> {
+    /// Hold, release, close or reopen.
+    pub decision: Decision,
+    /// Name of the lot.
+    pub lot: &'a str,
+    /// Reason; empty when the order names none.
+    pub reason: &'a str,
+}
+
 /// Writes an order about a lot, and the state that the order gives the lot.
 ///
 /// # Errors
 /// Fails with the refusal for an unknown lot, a state of the lot that forbids the decision, a missing reason, or a
 /// history that cannot be written.
-pub fn write(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<(), Message> {
-    let reason = order.reason.as_deref().unwrap_or_default();
-    let lot = order.lot.as_deref().unwrap_or_default();
+pub fn write(db: &Path, order: &Order, by: &By, about: AboutLot<'_>) -> Result<(), Message> {
+    let AboutLot {
+        decision,
+        lot,
+        reason,
+    } = about;
     decision.check_reason(reason)?;
     let refused = |code| Message::new("refusal", code);
-    let trouble = |error: HistoryError| refused("program_trouble").with("detail", error);
+    let trouble = |error: HistoryError| refused("program_trouble").with("said", error);
     let standing = standing(db, lot).map_err(trouble)?;
     let state = standing.ok_or_else(|| refused("no_such_lot").with("lot", lot))?;
     decision.refusal(state.state).map_or(Ok(()), Err)?;
-    let rows = [audit(order, by), state_row(order, by, decision)];
+    let rows = [audit(order, by), about.state_row(by)];
     let store = Store::open(db);
     store
         .and_then(|mut store| store.record(&rows))
@@ -42,23 +56,40 @@ pub fn audit(order: &Order, by: &By) -> Row {
     })
 }
 
-/// Returns the row that puts the order's lot into its new state.
-pub fn state_row(order: &Order, by: &By, decision: Decision) -> Row {
-    let why = order.reason.clone().unwrap_or_default();
-    let lot = order.lot.clone().unwrap_or_default();
-    let at_us = jiff::Timestamp::now().as_microsecond();
-    match decision {
-        Decision::Reopen => Row::Reopened(ReopeningRecord {
+impl<'a> AboutLot<'a> {
+    /// Returns the decision that `order` makes; `None` for an order that is not about a lot.
+    pub fn of(order: &'a Order) -> Option<Self> {
+        let (decision, lot, reason) = match order {
+            Order::HoldLot { lot, reason } => (Decision::Hold, lot, Some(reason)),
+            Order::ReleaseLot { lot, reason } => (Decision::Release, lot, reason.as_ref()),
+            Order::CloseLot { lot, reason } => (Decision::Close, lot, reason.as_ref()),
+            Order::ReopenLot { lot, reason } => (Decision::Reopen, lot, Some(reason)),
+            _other => return None,
+        };
+        Some(Self {
+            decision,
             lot,
-            at_us,
-            who: by.who.clone(),
-            why,
-        }),
-        Decision::Hold | Decision::Release | Decision::Close => Row::LotState(LotStateRecord {
-            lot,
-            state: decision.becomes(),
-            why: (decision == Decision::Hold).then(|| format!("{why} ({})", by.who)),
-            at_us,
-        }),
+            reason: reason.map(String::as_str).unwrap_or_default(),
+        })
+    }
+
+    /// Returns the row that puts the lot into its new state.
+    pub fn state_row(self, by: &By) -> Row {
+        let (lot, why) = (self.lot.to_owned(), self.reason.to_owned());
+        let at_us = jiff::Timestamp::now().as_microsecond();
+        match self.decision {
+            Decision::Reopen => Row::Reopened(ReopeningRecord {
+                lot,
+                at_us,
+                who: by.who.clone(),
+                why,
+            }),
+            Decision::Hold | Decision::Release | Decision::Close => Row::LotState(LotStateRecord {
+                lot,
+                state: self.decision.becomes(),
+                why: (self.decision == Decision::Hold).then(|| format!("{why} ({})", by.who)),
+                at_us,
+            }),
+        }
     }
 }

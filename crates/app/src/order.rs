@@ -1,7 +1,7 @@
 //! What a person or a program orders: a lot, and its files.
 
 use config::Folder;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Order of a lot.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -24,4 +24,17 @@ pub struct Files {
     pub config: Folder,
     /// History file.
     pub db: PathBuf,
+}
+
+impl Files {
+    /// Returns the folder of the history, which also holds the file of people and the traces of alarms.
+    pub fn data_folder(&self) -> &Path {
+        folder_of(&self.db)
+    }
+}
+
+/// Returns the folder of a file, `.` for a bare name.
+pub(crate) fn folder_of(file: &Path) -> &Path {
+    let folder = file.parent().filter(|it| !it.as_os_str().is_empty());
+    folder.unwrap_or(Path::new("."))
 }

@@ -1,6 +1,7 @@
-//! The thread of the lines and the cycle, raised above all other work where the system allows it.
+//! Runs the lines and the cycle on a thread of their own, raised above all ordinary processes where the system allows
+//! it.
 //!
-//! At real pace nothing else runs on it: no history, no page, no log. In virtual time it is the caller's own thread,
+//! At real pace neither history nor page nor log run on this thread. In virtual time it is the caller's own thread,
 //! whose clock is that of the rig.
 
 use anyhow::Context;
@@ -22,7 +23,7 @@ use tokio::runtime::Handle;
 use tokio::sync::oneshot;
 use units::{RigTime, Span};
 
-/// Priority under SCHED_FIFO: above every usual process, below the threads of the kernel that serve interrupts' timers.
+/// Priority under SCHED_FIFO: above every ordinary process, below the kernel threads that handle interrupts (50).
 pub const PRIORITY: u8 = 49;
 /// Interval of the waits of a latency test, as cyclictest has it.
 pub const INTERVAL: Span = Span::ms(1);
@@ -54,11 +55,11 @@ impl RigThread {
             .build()
             .context("starting the runtime of the rig")?;
         let handle = runtime.handle().clone();
-        let (told, rights) = std::sync::mpsc::sync_channel(1);
+        let (granted, rights) = std::sync::mpsc::sync_channel(1);
         let (stop, stopped) = oneshot::channel();
         let serve = move || {
-            // `start` waits for it below, so the channel is open.
-            let _ = told.send(raise());
+            // `start` waits for the rights below, so the channel is open.
+            let _ = granted.send(raise());
             let _ = runtime.block_on(stopped);
         };
         let thread = std::thread::Builder::new().name("rig".into());
@@ -102,7 +103,7 @@ fn raise() -> HostView {
 #[derive(Debug, Error)]
 pub enum Refused {
     /// The thread may not have a real-time priority.
-    #[error("SCHED_FIFO: {0:?}")]
+    #[error("SCHED_FIFO: {0}")]
     Fifo(thread_priority::Error),
     /// Memory may be locked up to a limit only, beyond which the system would refuse memory that the program needs.
     #[error("locked memory: found a limit of {limit_kb} kB, expected none")]

@@ -1,9 +1,14 @@
 //! Writes the last traffic of every line to files when an alarm occurs; reports the health of the modules.
 
+use crate::signals::Signals;
+use crate::trace_files::{tidy, trace_path};
 use bus::{LineLog, Meaning, Recorded, arrow, escaped};
-use config::Plant;
+use config::{HistorySettings, Plant};
+use machine::rig::wiring::{LineId, Wiring};
 use machine::view::{LineTraffic, LineView, Message, ModuleView};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use texts::Lang;
 
 /// Largest number of traces per line and run; the first alarms explain the most.
 const MAX_TRACES: usize = 8;
@@ -13,6 +18,8 @@ struct LineSource {
     name: String,
     baud: u32,
     checksum: bool,
+    line: LineId,
+    wiring: Arc<Wiring>,
     log: LineLog,
 }
 
@@ -21,30 +28,40 @@ struct LineSource {
 pub struct Traces {
     /// Path of the history file without its extension.
     stem: PathBuf,
+    keep: HistorySettings,
     sources: Vec<LineSource>,
     dumped: usize,
 }
 
 impl Traces {
-    /// Collects the logs of the lines; trace files are written beside `db`.
+    /// Collects the logs of the lines, whose traces go into files beside `db`. Deletes old trace files.
     pub fn new(db: &Path, plant: &Plant, logs: &[(String, LineLog)]) -> Self {
+        let wiring = Arc::new(plant.wiring.clone());
         let sources = logs.iter().filter_map(|(name, log)| {
-            let line = plant.wiring.line(plant.wiring.line_named(name)?);
+            let id = wiring.line_named(name)?;
+            let line = wiring.line(id);
             Some(LineSource {
                 name: name.clone(),
                 baud: line.baud,
                 checksum: line.checksum,
+                line: id,
+                wiring: Arc::clone(&wiring),
                 log: log.clone(),
             })
         });
+        let stem = db.with_extension("");
+        let now_ms = jiff::Timestamp::now().as_millisecond();
+        tidy(&stem, &plant.history, now_ms);
         Self {
-            stem: db.with_extension(""),
+            stem,
+            keep: plant.history.clone(),
             sources: sources.collect(),
             dumped: 0,
         }
     }
 
-    /// Writes the trace of every line and returns the paths. Logs a failed write; the run continues.
+    /// Writes the trace of every line and returns the paths; deletes old traces, and these too when `[history]` keeps
+    /// none. Logs a failed write; the run continues.
     pub fn dump(&mut self, at_us: i64) -> Vec<PathBuf> {
         if self.dumped >= MAX_TRACES {
             return Vec::new();
@@ -52,9 +69,7 @@ impl Traces {
         self.dumped += 1;
         let mut written = Vec::new();
         for source in &self.sources {
-            let mut path = self.stem.clone().into_os_string();
-            path.push(format!(".alarm-{}-{}.trace", at_us / 1000, source.name));
-            let path = PathBuf::from(path);
+            let path = trace_path(&self.stem, at_us / 1000, &source.name);
             let trace = source.log.trace();
             let recorded = Recorded::of(&trace, &source.name, source.baud, source.checksum);
             match std::fs::write(&path, recorded.text()) {
@@ -62,6 +77,8 @@ impl Traces {
                 Err(error) => tracing::error!("trace {}: {error}", path.display()),
             }
         }
+        tidy(&self.stem, &self.keep, at_us / 1000);
+        written.retain(|path| path.exists());
         written
     }
 
@@ -81,12 +98,18 @@ fn messages(source: &LineSource, last: usize) -> LineTraffic {
     let trace = source.log.trace();
     let all: Vec<_> = trace.entries().collect();
     let mut meaning = Meaning::new(source.checksum);
+    let mut signals = Signals::new(&source.wiring, source.line);
     let from = all.len().saturating_sub(last);
-    let entries = all[from..].iter().map(|entry| Message {
-        at_us: entry.at.0,
-        way: arrow(entry.direction).to_string(),
-        text: escaped(entry.bytes()),
-        meaning: meaning.of(entry),
+    let entries = all[from..].iter().map(|entry| {
+        let [english, chinese] = meaning.of(entry, [Lang::En, Lang::Zh]);
+        Message {
+            at_us: entry.at.0,
+            way: arrow(entry.direction).to_string(),
+            text: escaped(entry.bytes()),
+            meaning: english,
+            meaning_zh: chinese,
+            signals: signals.of(entry),
+        }
     });
     LineTraffic {
         line: source.name.clone(),

@@ -2,6 +2,7 @@
 
 use machine::rig::fault::Requirement;
 use std::path::PathBuf;
+use texts::{Lang, Message};
 use thiserror::Error;
 
 /// First fault that loading finds. Its text is one line, written for the operator.
@@ -72,6 +73,16 @@ pub enum ConfigError {
         /// Names of the existing recipes.
         known: Vec<String>,
     },
+    /// No instrument profile has this name.
+    #[error("{}: found no instrument profile \"{name}\", expected one of {}", dir.display(), list(known))]
+    UnknownInstrument {
+        /// Folder of the profiles.
+        dir: PathBuf,
+        /// Name in the request.
+        name: String,
+        /// Names of the existing profiles.
+        known: Vec<String>,
+    },
     /// The recipe has no revision with this number.
     #[error("recipe \"{name}\": found revision {number}, expected 1 to {newest}")]
     UnknownRevision {
@@ -99,6 +110,21 @@ pub enum ConfigError {
         /// Path of the file.
         file: PathBuf,
     },
+    /// A new recipe has a name that cannot name its file.
+    #[error("{}", new_name("recipe_name", .found).say(Lang::En))]
+    RecipeName {
+        /// Name in the request.
+        found: String,
+    },
+    /// A new recipe has the name of another one; upper and lower case count as equal.
+    #[error("{}", new_name("recipe_taken", .name).say(Lang::En))]
+    RecipeTaken {
+        /// Name of the existing recipe.
+        name: String,
+    },
+    /// A change has no reason.
+    #[error("reason: found nothing, expected why the values change")]
+    NoReason,
     /// A new revision could not be written.
     #[error("{}: the new revision could not be written; the old one stays", file.display())]
     Unwritten {
@@ -110,6 +136,37 @@ pub enum ConfigError {
 }
 
 impl ConfigError {
+    /// Returns the refusal in both languages; the Chinese text names no file, line or key.
+    pub fn message(&self) -> Message {
+        let refusal = |code: &'static str| Message::new("refusal", code);
+        let said = |code| refusal(code).with("said", self);
+        match self {
+            Self::UnknownRecipe { name, .. } => said("no_such_recipe").with("recipe", name),
+            Self::UnknownInstrument { name, .. } => {
+                said("no_such_instrument").with("instrument", name)
+            }
+            Self::UnknownRevision {
+                name,
+                number,
+                newest,
+            } => said("no_such_revision")
+                .with("recipe", name)
+                .with("number", number)
+                .with("newest", newest),
+            Self::NotNewest { newest, .. } => refusal("not_newest").with("newest", newest),
+            Self::RecipeName { found } => new_name("recipe_name", found),
+            Self::RecipeTaken { name } => new_name("recipe_taken", name),
+            Self::NoReason => refusal("revision_without_reason"),
+            Self::Value { .. } => said("value_refused"),
+            Self::NothingChanged { .. } => said("nothing_changed"),
+            Self::Unwritten { .. } => said("not_written"),
+            Self::NoFolder { .. }
+            | Self::Unreadable { .. }
+            | Self::Syntax { .. }
+            | Self::Rule { .. } => said("recipe_faulty"),
+        }
+    }
+
     /// Returns the path of the faulty key, for example `limits.operate_voltage_v.high`; `None` for errors that
     /// name no key.
     pub fn key(&self) -> Option<String> {
@@ -123,17 +180,25 @@ impl ConfigError {
             | Self::Syntax { .. }
             | Self::Rule { .. }
             | Self::UnknownRecipe { .. }
+            | Self::UnknownInstrument { .. }
             | Self::UnknownRevision { .. }
             | Self::NotNewest { .. }
             | Self::NothingChanged { .. }
+            | Self::RecipeName { .. }
+            | Self::RecipeTaken { .. }
+            | Self::NoReason
             | Self::Unwritten { .. } => None,
         }
     }
 }
 
+fn new_name(code: &'static str, name: &str) -> Message {
+    Message::new("refusal", code).with("recipe", name)
+}
+
 fn list(names: &[String]) -> String {
     if names.is_empty() {
-        return "(there are no recipes)".to_owned();
+        return "(there is none)".to_owned();
     }
     names.join(", ")
 }

@@ -4,6 +4,7 @@ use super::card::load_card;
 use super::check::Faults;
 use super::error::ConfigError;
 use super::folder::Folder;
+use super::instruments::{instrument_names, parse_instrument, read_instrument};
 use super::keys;
 use super::lot::load_lot;
 use super::plant::{Plant, load_scene};
@@ -54,6 +55,9 @@ pub fn check_all(folder: &Folder) -> Result<Plant, ConfigFaults> {
     found.note(load_scene(folder));
     found.note(load_lot(folder));
     found.note(load_card(folder));
+    for name in instrument_names(folder) {
+        found.instrument(folder, &name);
+    }
     for name in recipe_names(folder) {
         found.recipe(folder, plant.as_ref(), &name);
     }
@@ -88,6 +92,15 @@ impl Found {
                 .into_iter()
                 .for_each(|fault| self.add(fault));
         }
+    }
+
+    fn instrument(&mut self, folder: &Folder, name: &str) {
+        let Some(file) = self.note(read_instrument(folder, name)) else {
+            return;
+        };
+        let faults = file.faults(keys::instrument::FILE);
+        faults.into_iter().for_each(|fault| self.add(fault));
+        self.note(parse_instrument(file, name));
     }
 
     fn recipe(&mut self, folder: &Folder, plant: Option<&Plant>, name: &str) {

@@ -55,12 +55,17 @@ impl Folder {
         })
     }
 
+    /// Returns the path of the folder as messages show it.
+    pub fn root(&self) -> &Path {
+        match self {
+            Self::Directory(dir) => dir,
+            Self::Memory(_) => Path::new("built-in"),
+        }
+    }
+
     /// Returns the path of a file as messages show it.
     pub fn path(&self, name: &str) -> PathBuf {
-        match self {
-            Self::Directory(dir) => dir.join(name),
-            Self::Memory(_) => Path::new("built-in").join(name),
-        }
+        self.root().join(name)
     }
 
     /// Checks that a directory exists.
@@ -105,6 +110,23 @@ impl Folder {
                 None => Err(Error::from(ErrorKind::NotFound)),
             },
         }
+    }
+
+    /// Returns media type and bytes of a picture directly in `pictures`; `None` without such a PNG, JPEG or SVG file, and
+    /// of files in memory.
+    pub fn picture(&self, name: &str) -> Option<(&'static str, Vec<u8>)> {
+        let Self::Directory(dir) = self else {
+            return None;
+        };
+        let media = match Path::new(name).extension()?.to_str()? {
+            "png" => "image/png",
+            "jpg" | "jpeg" => "image/jpeg",
+            "svg" => "image/svg+xml",
+            _other => return None,
+        };
+        let is_plain = Path::new(name).file_name()?.to_str()? == name;
+        let bytes = std::fs::read(dir.join("pictures").join(name)).ok()?;
+        is_plain.then_some((media, bytes))
     }
 
     /// Returns the names of the TOML files directly in `below`, without their ending, sorted; none when it cannot be
@@ -155,7 +177,7 @@ impl Folder {
         i64::try_from(since.as_micros()).ok()
     }
 
-    /// Runs `change` while no other change runs, in this program or another one.
+    /// Runs `change` while no other change runs, in this program or, for a directory, in another one.
     pub(super) fn alone<T>(&self, change: impl FnOnce() -> T) -> std::io::Result<T> {
         match self {
             Self::Directory(dir) => {

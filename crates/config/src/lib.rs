@@ -7,6 +7,7 @@
 //! | `golden.toml` (named in `rig.toml`) | reference parts | `ReferenceSet` |
 //! | `card.toml` | what the plant states for the process card | `CardSettings` |
 //! | `lot.toml`, which may be missing | gates of a lot: reference checks, reject-rate limit, first articles, wear limits | `LotSettings` |
+//! | `instruments/NAME.toml`, which may be missing | one model of SCPI instrument | `Profile` |
 //! | `recipes/NAME.toml` | one type of part with its limits | `Recipe` |
 //! | `recipes/revisions/NAME/N.toml` | earlier revisions of that recipe | [`Revision`] |
 //!
@@ -28,6 +29,7 @@ pub mod error;
 mod faults;
 mod folder;
 mod init;
+mod instruments;
 pub mod keys;
 mod lot;
 pub mod nearest;
@@ -39,6 +41,7 @@ pub mod recipes;
 mod revision;
 pub mod schema;
 mod sheet;
+pub mod strict;
 pub mod tree;
 
 #[cfg(test)]
@@ -49,7 +52,8 @@ pub use error::ConfigError;
 pub use faults::{ConfigFaults, check_all};
 pub use folder::{Folder, Memory};
 pub use init::{InitError, init};
+pub use instruments::{instrument_names, load_instrument};
 pub use overview::overview;
-pub use plant::Plant;
-pub use recipes::{load_recipe, recipe_names};
+pub use plant::{HistorySettings, Plant, SerialReaderSettings};
+pub use recipes::{Approval, approval, load_recipe, recipe_names};
 pub use revision::{Change, Revision, revise, revision};

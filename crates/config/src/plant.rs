@@ -4,12 +4,13 @@ use super::check::File;
 use super::error::ConfigError;
 use super::folder::Folder;
 use super::keys;
-use super::lot::load_lot;
+use super::lot::{check_pictures, check_reader, load_lot};
 use super::recipes::recipe_file;
 use super::tree::{Node, NotToml, not_toml};
 use machine::dut::accuracy::AccuracySettings;
 use machine::dut::device::Rig;
 use machine::dut::em_relay::settings::{CalibrationSettings, ReferenceSet, ReferenceSettings};
+use machine::dut::prompt::Prompt;
 use machine::dut::{self, Recipe};
 use machine::form::Key;
 use machine::guard::{Actuator, Guard, GuardSettings};
@@ -41,21 +42,49 @@ pub struct Plant {
     pub reference_parts: ReferenceSet,
     /// Gates of a lot: reference checks, reject-rate limit, first articles, wear limits.
     pub lot: LotSettings,
-    /// Time-out of a history that cannot be written.
+    /// Time-out of a history that cannot be written; how long traces of alarms stay.
     pub history: HistorySettings,
+    /// Code reader at the pocket, if the rig has one.
+    pub serial_reader: Option<SerialReaderSettings>,
 }
 
-/// Time-out of a history that cannot be written.
+/// Settings `[serial_reader]` of `rig.toml`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct SerialReaderSettings {
+    /// Path of the serial port.
+    pub port: String,
+    /// Bits per second.
+    pub baud: u32,
+    /// Longest time from the arrival of a part to its code, ms.
+    #[serde(default = "usual_timeout_ms")]
+    pub timeout_ms: f64,
+    /// Text of a reading without a code.
+    pub no_code: Option<String>,
+}
+
+fn usual_timeout_ms() -> f64 {
+    1000.0
+}
+
+/// Time-out of a history that cannot be written; how long the traces of alarms beside it stay.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(default)]
 pub struct HistorySettings {
     /// Time after which the program ends, s.
     pub give_up_s: f64,
+    /// Number of alarms whose traces stay.
+    pub traces: u32,
+    /// Time for which the traces of an alarm stay, days.
+    pub trace_days: u32,
 }
 
 impl Default for HistorySettings {
     fn default() -> Self {
-        Self { give_up_s: 600.0 }
+        Self {
+            give_up_s: 600.0,
+            traces: 200,
+            trace_days: 90,
+        }
     }
 }
 
@@ -64,6 +93,7 @@ impl Default for HistorySettings {
 struct GaugeSections {
     #[serde(default)]
     history: HistorySettings,
+    serial_reader: Option<SerialReaderSettings>,
     reference: Option<ReferenceSettings>,
     accuracy: AccuracySettings,
     calibration: CalibrationSettings,
@@ -86,6 +116,8 @@ impl Plant {
         };
         let scene = load_scene(folder)?;
         check_axis(&wiring, &scene, &rig)?;
+        let lot = load_lot(folder)?;
+        check_reader(folder, &lot, gauge.serial_reader.is_some())?;
         Ok(Self {
             folder: folder.clone(),
             wiring: Arc::new(wiring),
@@ -94,8 +126,9 @@ impl Plant {
             accuracy: gauge.accuracy,
             calibration: gauge.calibration,
             reference_parts,
-            lot: load_lot(folder)?,
+            lot,
             history: gauge.history,
+            serial_reader: gauge.serial_reader,
         })
     }
 
@@ -107,6 +140,11 @@ impl Plant {
             accuracy: &self.accuracy,
             reference_parts: &self.reference_parts,
         }
+    }
+
+    /// Returns the prompts of a lot: those of `lot.toml`, then those of its recipe.
+    pub fn prompts<'a>(&'a self, recipe: &'a Recipe) -> impl Iterator<Item = &'a Prompt> {
+        self.lot.prompts.iter().chain(&recipe.prompts)
     }
 
     /// Checks that this plant has the references and the modules that a recipe needs.
@@ -122,7 +160,17 @@ impl Plant {
 
     /// Returns every reason why this plant cannot carry out a recipe, each with file, line, key and cause.
     pub fn infeasible(&self, recipe: &Recipe) -> Vec<ConfigError> {
-        let faults = recipe.infeasible(&self.rig());
+        let mut faults = recipe.infeasible(&self.rig());
+        faults.extend(check_pictures(&self.folder, &recipe.prompts).err());
+        let doubled = |it: &&Prompt| self.lot.prompts.iter().any(|own| own.name == it.name);
+        if let Some(prompt) = recipe.prompts.iter().find(doubled) {
+            let expected = "a name that no prompt of lot.toml has";
+            faults.push(Fault::new(
+                "prompt",
+                format!("\"{}\"", prompt.name),
+                expected,
+            ));
+        }
         let path = self.folder.path(&recipe_file(&recipe.name));
         match File::parse(path, recipe.source_text.clone()) {
             Ok(file) => faults.iter().map(|fault| file.locate(fault)).collect(),

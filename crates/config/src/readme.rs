@@ -100,6 +100,7 @@ mod tests {
             ("golden", keys::golden::FILE),
             ("card", keys::card::FILE),
             ("lot", keys::lot::FILE),
+            ("instrument", keys::instrument::FILE),
         ];
         let recipes = Kind::ALL.map(|kind| (kind.name(), keys::recipe::of(kind)));
         let recipes = recipes.iter().map(|(kind, keys)| (*kind, keys.as_slice()));

@@ -9,6 +9,7 @@ use data_encoding::HEXLOWER;
 use machine::dut::{Kind, Recipe};
 use machine::form::one_of;
 use machine::rig::fault::Fault;
+use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
 /// Reads and checks the recipe `name` of a configuration.
@@ -41,6 +42,57 @@ pub(super) fn recipe_file(name: &str) -> String {
 /// Returns the names of all recipes, sorted; none when the folder cannot be read.
 pub fn recipe_names(folder: &Folder) -> Vec<String> {
     folder.stems("recipes")
+}
+
+/// Section `[recipes]` of `rig.toml`.
+#[derive(Deserialize)]
+struct RecipeRules {
+    #[serde(default)]
+    recipes: RecipeRule,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct RecipeRule {
+    approval: Approval,
+}
+
+/// Engineers who must answer for a recipe before a lot may use it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Approval {
+    /// None.
+    #[default]
+    None,
+    /// Two: one who saved the text or approved it, and another who approved it.
+    SecondPerson,
+}
+
+/// Reads `[recipes] approval` of `rig.toml`.
+///
+/// # Errors
+/// Fails when `rig.toml` cannot be read or has a faulty key.
+pub fn approval(folder: &Folder) -> Result<Approval, ConfigError> {
+    let rig = folder.file("rig.toml", "the wiring of the rig")?;
+    let rules: RecipeRules = rig.settings(keys::rig::FILE)?;
+    Ok(rules.recipes.approval)
+}
+
+/// Checks that `name` may name a new recipe.
+pub(super) fn check_new_name(folder: &Folder, name: &str) -> Result<(), ConfigError> {
+    let named = |it: char| it.is_alphanumeric() || "-_.".contains(it);
+    let good = (1..=60).contains(&name.chars().count())
+        && name.starts_with(char::is_alphanumeric)
+        && name.chars().all(named);
+    if !good {
+        let found = name.chars().take(80).collect();
+        return Err(ConfigError::RecipeName { found });
+    }
+    let same = |it: &String| it.to_lowercase() == name.to_lowercase();
+    match recipe_names(folder).into_iter().find(same) {
+        Some(name) => Err(ConfigError::RecipeTaken { name }),
+        None => Ok(()),
+    }
 }
 
 pub(super) fn parse_recipe(file: File, name: &str) -> Result<Recipe, ConfigError> {

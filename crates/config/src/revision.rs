@@ -1,6 +1,7 @@
 //! Revisions of a recipe: the newest is `recipes/NAME.toml`, earlier ones lie in `recipes/revisions/NAME/`, numbered
 //! from 1.
 //!
+//! - A new recipe begins as another one, with a name and values of its own; it is the first revision under its name.
 //! - A revision changes values of the newest text; comments and order of the file stay.
 //! - A revision passes the same checks as a recipe before a run; these include what the modules of the plant can
 //!   measure. A refused revision changes no file.
@@ -16,13 +17,16 @@ use super::edit::edited;
 use super::error::ConfigError;
 use super::folder::Folder;
 use super::plant::Plant;
-use super::recipes::{parse_recipe, read_recipe, recipe_file, sha256_hex};
+use super::recipes::{check_new_name, parse_recipe, read_recipe, recipe_file, sha256_hex};
 use super::sheet::{Field, fields};
+use machine::form::KeyChange;
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
+use utoipa::ToSchema;
 
 /// A revision as the page shows it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Revision {
     /// Name of the recipe.
     pub name: String,
@@ -36,19 +40,31 @@ pub struct Revision {
     pub saved_at_us: Option<i64>,
     /// False when revisions last only until the program ends.
     pub kept: bool,
+    /// Keys that differ from the revision before, in the order of the file; none in the first revision.
+    pub changes: Vec<KeyChange>,
     /// All keys with their values.
     pub fields: Vec<Field>,
 }
 
 /// Requested change of a recipe.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Change {
     /// Name of the recipe.
+    #[schema(example = "jzc-22f-012")]
     pub name: String,
-    /// Hash of the text that the change is based on.
+    /// Hash of the text that the change starts from: `hash` of `GET /api/recipes/show`.
     pub from: String,
+    /// Why the values change; not blank.
+    #[schema(example = "the customer tightened the limit")]
+    pub reason: String,
+    /// Name of a new recipe that the values make; `name` then stays as it is. Absent: the values make the next revision of
+    /// `name`.
+    #[serde(default)]
+    #[schema(example = "jzc-22f-012-special")]
+    pub save_as: Option<String>,
     /// New values, each by the path of its key; null removes the key.
+    #[schema(example = json!({"decision.slow_repeats": 4}))]
     pub values: BTreeMap<String, serde_json::Value>,
 }
 
@@ -76,21 +92,67 @@ pub fn revision(folder: &Folder, name: &str, number: Option<u32>) -> Result<Revi
             newest,
         });
     };
+    let earlier = number.checked_sub(1).filter(|it| kept.contains(it));
+    let before = earlier.map(|it| folder.file(&revision_file(name, it), "a recipe"));
+    let before = before.transpose()?.map(|file| fields(&file)).transpose()?;
+    let fields = fields(&file)?;
     Ok(Revision {
+        changes: before.map_or_else(Vec::new, |before| changes(&before, &fields)),
         name: name.to_owned(),
         number,
         newest,
         saved_at_us,
         kept: matches!(folder, Folder::Directory(_)),
-        fields: fields(&file)?,
+        fields,
         hash: parse_recipe(file, name)?.hash,
     })
 }
 
-/// Writes the next revision of a recipe of `plant`.
+/// Returns the keys whose values differ.
+fn changes(before: &[Field], after: &[Field]) -> Vec<KeyChange> {
+    let value = |fields: &[Field], path: &str| {
+        let found = fields.iter().find(|it| it.path == path);
+        found.map_or(Value::Null, |it| it.value.clone())
+    };
+    let gone = before
+        .iter()
+        .filter(|it| after.iter().all(|now| now.path != it.path));
+    let all = after.iter().chain(gone).map(|it| KeyChange {
+        old: value(before, &it.path),
+        new: value(after, &it.path),
+        unit: it.entry.unit().to_owned(),
+        key: it.path.clone(),
+    });
+    all.filter(|it| it.old != it.new).collect()
+}
+
+impl Change {
+    /// Returns the name of the recipe that the change writes.
+    fn target(&self) -> &str {
+        self.save_as.as_ref().unwrap_or(&self.name)
+    }
+
+    /// Returns the change as the audit of orders keeps it; `saved` is the new revision, `None` for a refused change.
+    pub fn audit(&self, saved: Option<&Revision>) -> Value {
+        let new = self.save_as.as_ref();
+        json!({
+            "order": if new.is_some() { "new_recipe" } else { "revise" },
+            "recipe": new.unwrap_or(&self.name),
+            "old_recipe": new.map(|_| &self.name),
+            "revision": saved.map(|it| it.number),
+            "hash": saved.map(|it| &it.hash),
+            "reason": self.reason,
+            "changes": saved.map(|it| &it.changes),
+            "from": self.from,
+            "values": self.values,
+        })
+    }
+}
+
+/// Writes the next revision of a recipe of `plant`, or a new recipe.
 ///
 /// # Errors
-/// Fails when a value is refused, when `change` is not based on the newest revision, or when a file cannot be written.
+/// Fails when a value or the name of the new recipe is refused, when `change` is not based on the newest revision, or when a file cannot be written.
 pub fn revise(plant: &Plant, change: &Change) -> Result<Revision, ConfigError> {
     let alone = plant.folder.alone(|| write_next(plant, change));
     alone.map_err(|source| unwritten(plant, change, source))?
@@ -104,6 +166,14 @@ fn write_next(plant: &Plant, change: &Change) -> Result<Revision, ConfigError> {
     let kept = earlier_revisions(folder, name);
     let number = number_of(folder, name, &kept, &old.text);
     let text = next_text(plant, change, &old, number)?;
+    if let Some(new) = &change.save_as {
+        (folder.replace(&recipe_file(new), &text)).map_err(unwritten)?;
+        let saved = revision(folder, new, None)?;
+        return Ok(Revision {
+            changes: changes(&fields(&old)?, &saved.fields),
+            ..saved
+        });
+    }
     if kept.last() != Some(&number) {
         let earlier = revision_file(name, number);
         folder.replace(&earlier, &old.text).map_err(unwritten)?;
@@ -114,7 +184,7 @@ fn write_next(plant: &Plant, change: &Change) -> Result<Revision, ConfigError> {
 }
 
 fn unwritten(plant: &Plant, change: &Change, source: std::io::Error) -> ConfigError {
-    let file = plant.folder.path(&recipe_file(&change.name));
+    let file = plant.folder.path(&recipe_file(change.target()));
     ConfigError::Unwritten { file, source }
 }
 
@@ -126,18 +196,27 @@ fn next_text(
     newest: u32,
 ) -> Result<String, ConfigError> {
     let name = &change.name;
+    if change.reason.trim().is_empty() {
+        return Err(ConfigError::NoReason);
+    }
     if sha256_hex(old.text.as_bytes()) != change.from {
         return Err(ConfigError::NotNewest {
             name: name.clone(),
             newest,
         });
     }
-    let text = edited(old, &change.values)?;
+    let mut values = change.values.clone();
+    if let Some(new) = &change.save_as {
+        check_new_name(&plant.folder, new)?;
+        values.insert("name".to_owned(), json!(new));
+    }
+    let text = edited(old, &values)?;
     if text == old.text {
         let file = old.path.clone();
         return Err(ConfigError::NothingChanged { file });
     }
-    let recipe = parse_recipe(File::parse(old.path.clone(), text.clone())?, name)?;
+    let path = plant.folder.path(&recipe_file(change.target()));
+    let recipe = parse_recipe(File::parse(path, text.clone())?, change.target())?;
     plant.admit(&recipe)?;
     Ok(text)
 }

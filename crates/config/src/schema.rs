@@ -6,7 +6,7 @@ use machine::form::{Form, Key, Range};
 use serde_json::{Map, Value, json};
 
 /// Files that have a schema, by name without extension.
-pub const FILES: [&str; 5] = ["rig", "golden", "recipe", "card", "lot"];
+pub const FILES: [&str; 6] = ["rig", "golden", "recipe", "card", "lot", "instrument"];
 
 /// Returns the schema of a file in [`FILES`]; `None` for any other name.
 pub fn of_file(name: &str) -> Option<Value> {
@@ -15,6 +15,7 @@ pub fn of_file(name: &str) -> Option<Value> {
         "golden" => keys::golden::FILE,
         "card" => keys::card::FILE,
         "lot" => keys::lot::FILE,
+        "instrument" => return Some(schema("instruments/NAME.toml", keys::instrument::FILE)),
         "recipe" => {
             return Some(of_kinds(
                 "recipes/NAME.toml",

@@ -8,9 +8,10 @@ use super::tree::{Node, Value};
 use machine::form::{Form, Key, Range};
 use serde::Serialize;
 use serde_json::json;
+use utoipa::ToSchema;
 
 /// One key of a recipe, with its value.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Field {
     /// Path of the key, for example `limits.operate_voltage_v.high`.
     pub path: String,
@@ -24,7 +25,7 @@ pub struct Field {
 }
 
 /// Values that a key accepts.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 #[serde(tag = "form", rename_all = "snake_case")]
 pub enum Entry {
     /// A text that is not empty.
@@ -50,8 +51,20 @@ pub enum Entry {
     Flag,
 }
 
+impl Entry {
+    /// Returns the unit of the value; empty without one.
+    pub(super) fn unit(&self) -> &'static str {
+        match self {
+            Self::Number(bounds) | Self::Whole(bounds) | Self::Numbers { bounds, .. } => {
+                bounds.unit
+            }
+            Self::Text | Self::Choice { .. } | Self::Flag => "",
+        }
+    }
+}
+
 /// Range of a number.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, ToSchema)]
 pub struct Bounds {
     /// Unit; empty for a pure number.
     pub unit: &'static str,
@@ -155,6 +168,7 @@ mod tests {
     fn leaves(path: &str, keys: &[Key]) -> Vec<String> {
         let of = |key: &Key| match &key.form {
             Form::Table(inner) => leaves(&format!("{path}{}.", key.name), inner),
+            Form::List(_) => Vec::new(),
             _ => vec![format!("{path}{}", key.name)],
         };
         keys.iter().flat_map(of).collect()

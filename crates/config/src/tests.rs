@@ -4,6 +4,7 @@
 
 mod fixture;
 mod folder;
+mod instruments;
 mod plant;
 mod revision;
 mod wrong_recipes;

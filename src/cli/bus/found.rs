@@ -1,6 +1,6 @@
 //! Modules that a scan has found, as a table or as JSON.
 
-use crate::cli::output::{Fixed, cells, headings};
+use crate::cli::output::{self, Fixed, latency_ms};
 use bus::{LineLog, ModuleHealth};
 use dcon::{Address, Config};
 use serde_json::json;
@@ -32,16 +32,8 @@ impl Found {
 
 /// Returns the modules as text: a table row each, or a JSON object each.
 pub(super) fn listing(found: &[Found], as_json: bool) -> String {
-    let rows = found.iter().map(|module| match as_json {
-        true => object(module),
-        false => cells(module, &COLUMNS),
-    });
-    let head = match (found.is_empty(), as_json) {
-        (true, false) => Some("no module answered".to_owned()),
-        (false, false) => Some(headings(&COLUMNS)),
-        (_, true) => None,
-    };
-    head.into_iter().chain(rows).map(|row| row + "\n").collect()
+    let object = as_json.then_some(object as fn(&Found) -> String);
+    output::listing(found, &COLUMNS, "no module answered", object)
 }
 
 const COLUMNS: [Fixed<Found>; 12] = [
@@ -66,7 +58,8 @@ fn object(module: &Found) -> String {
         "baud": module.baud, "checksum": module.checksum, "name": module.name,
         "firmware": module.firmware, "type": format!("{:02X}", config.type_code.0),
         "stored_baud": config.baud.rate(), "format": format!("{:02X}", config.format.0),
-        "p50_ms": ms(&counts, 0.5), "p99_ms": ms(&counts, 0.99), "transactions": counts.transactions,
+        "p50_ms": latency_ms(&counts.latency, 0.5), "p99_ms": latency_ms(&counts.latency, 0.99),
+        "transactions": counts.transactions,
         "time_outs": counts.time_outs, "checksum_errors": counts.checksum_errors,
         "other_errors": counts.other_errors, "resets": counts.resets, "remarks": remarks(module),
     });
@@ -78,13 +71,10 @@ fn on_off(on: bool) -> &'static str {
 }
 
 fn latency(module: &Found, share: f64) -> String {
-    format!("{:.2}", ms(&module.counts(), share).unwrap_or(0.0))
-}
-
-/// Returns the latency that this share of the replies did not exceed, milliseconds.
-fn ms(counts: &ModuleHealth, share: f64) -> Option<f64> {
-    let span = counts.latency.percentile(share)?;
-    Some(span.as_seconds() * 1e3)
+    format!(
+        "{:.2}",
+        latency_ms(&module.counts().latency, share).unwrap_or(0.0)
+    )
 }
 
 /// Returns remarks: each setting with which the module answered although it stores another one, and risky settings.

@@ -1,8 +1,9 @@
 //! `relayrig bus monitor`: shows the traffic of a line, from a port that it only listens to, from a running controller, or
 //! from the trace of an alarm.
 
-use super::{PortArgs, print};
+use super::PortArgs;
 use crate::cli::output::input;
+use crate::cli::output::print;
 use anyhow::{Context, bail};
 use app::controls::Interrupts;
 use app::exit::Exit;
@@ -10,6 +11,7 @@ use app::follower::{self, Update, UpdateContent};
 use bus::{Direction, Entry, Meaning, Pace, Recorded, arrow, escaped, unescaped};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use texts::Lang;
 use tokio::io::AsyncReadExt;
 
 /// Watch a line.
@@ -52,7 +54,7 @@ pub struct MonitorArgs {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(super) enum Level {
-    /// Every piece in hexadecimal
+    /// Every byte in hexadecimal, one row per message
     Bytes,
     /// Frames as text
     Frames,
@@ -172,7 +174,8 @@ impl RowWriter {
     /// Returns one row with its line end.
     fn row(&mut self, entry: &Entry) -> String {
         let seconds = entry.at.0 as f64 / 1e6;
-        let shown = detail(self.level, &escaped(entry.bytes()), &self.meaning.of(entry));
+        let [meaning] = self.meaning.of(entry, [Lang::En]);
+        let shown = detail(self.level, &escaped(entry.bytes()), &meaning);
         format!("{seconds:>14.6} {} {shown}\n", arrow(entry.direction))
     }
 }
@@ -193,13 +196,13 @@ mod tests {
             at_us: 4,
             way: "<".to_owned(),
             text: ">3E\\r".to_owned(),
-            meaning: "accepted".to_owned(),
+            meaning: "module 11, read the digital channels: done".to_owned(),
         }));
         let bytes = row(&message, Level::Bytes);
         assert_eq!(bytes, "      0.000004 motion < 3E 33 45 0D");
         let frames = row(&message, Level::Frames);
         assert_eq!(frames, "      0.000004 motion < >3E\\r");
-        assert!(row(&message, Level::Meaning).ends_with("accepted"));
+        assert!(row(&message, Level::Meaning).ends_with(": done"));
         let gap = row(&news(UpdateContent::Gap), Level::Meaning);
         assert!(gap.ends_with("motion - messages were lost here"));
     }

@@ -1,7 +1,8 @@
 //! `relayrig bus scan`: finds the modules of a line.
 
+use super::PortArgs;
 use super::found::{Found, listing};
-use super::{PortArgs, print};
+use crate::cli::output::print;
 use anyhow::{Context, anyhow, bail};
 use app::controls::Interrupts;
 use app::exit::Exit;
@@ -183,7 +184,9 @@ impl OpenLine {
         let ended = || anyhow!("the task of the line ended");
         self.requests.send(request).await.map_err(|_| ended())?;
         let answer = self.answers.recv().await.ok_or_else(ended)?;
-        if let Err(lost @ bus::LineError::PortLost { .. }) = &answer.outcome {
+        if let Err(lost) = &answer.outcome
+            && matches!(lost.failure, bus::Failure::PortLost(_))
+        {
             bail!(lost.clone());
         }
         Ok(answer)

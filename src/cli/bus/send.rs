@@ -1,11 +1,13 @@
 //! `relayrig bus send`: sends one command as typed and decodes the reply.
 
-use super::{PortArgs, print};
+use super::PortArgs;
+use crate::cli::output::print;
 use anyhow::bail;
 use app::exit::Exit;
 use bus::{LineSettings, Pace, RawReply, escaped, send_raw};
-use dcon::{Command, Family};
+use dcon::{Command, Model};
 use serde_json::json;
+use texts::Lang;
 use tokio_serial::SerialStream;
 
 /// One command.
@@ -39,7 +41,7 @@ pub struct SendArgs {
 }
 
 pub(super) async fn run(args: &SendArgs) -> anyhow::Result<Exit> {
-    let family = family(args.model.as_deref())?;
+    let model = model(args.model.as_deref())?;
     let text = checked(&args.command)?;
     let mut request = text.to_vec();
     if args.checksum {
@@ -49,24 +51,16 @@ pub(super) async fn run(args: &SendArgs) -> anyhow::Result<Exit> {
     let mut port = args.port.open(args.baud)?;
     let mut settings = args.port.settings(args.baud, args.checksum);
     settings.store_allowance_ms = args.allowance;
-    if let Some(command) = unambiguous(text, family)
-        && let Some(found) = in_effect(&mut port, &settings, &command).await?
+    if let Some(command) = unambiguous(text, model)
+        && let Some((reply, meaning)) = in_effect(&mut port, &settings, &command).await?
     {
-        return print_unchanged(args, &found);
+        return print_unchanged(args, &reply, &meaning);
     }
     let reply = send_raw(&mut port, &settings, Pace::real(), &request).await?;
-    let mut meanings = dcon::interpret(&request, &reply.bytes, args.checksum);
-    meanings.retain(|(command, _)| family.is_none_or(|family| family.has_command(command)));
+    let found = dcon::interpret(&request, &reply.bytes, args.checksum, model);
+    let words = bus::meanings(&found, model, Lang::En);
     let broadcast = text.ends_with(b"**");
-    let good = !reply.more && meanings.iter().any(|(_, reply)| reply.is_ok());
-    let mut words: Vec<String> = meanings
-        .iter()
-        .map(|(command, reply)| match reply {
-            Ok(reply) => format!("{command}: {reply}"),
-            Err(reason) => format!("{command}: {reason}"),
-        })
-        .collect();
-    words.dedup();
+    let good = !reply.more && found.iter().any(|(_, reply)| reply.is_ok());
     print(&if args.json {
         let object = json!({
             "request": escaped(&request), "reply": escaped(&reply.bytes), "more": reply.more,
@@ -89,7 +83,7 @@ fn transcript(request: &[u8], reply: &RawReply, words: &[String], broadcast: boo
     let mut rows = vec![format!("> {}", escaped(request))];
     if reply.bytes.is_empty() {
         rows.push(if broadcast {
-            "  sent to all; no module answers".to_owned()
+            format!("  {}; no module answers", words.join(" | "))
         } else {
             format!(
                 "  no reply within {taken_ms:.1} ms: no module with this address, rate and checksum knows this command"
@@ -110,21 +104,21 @@ fn transcript(request: &[u8], reply: &RawReply, words: &[String], broadcast: boo
 }
 
 /// Returns the only command that `text` can mean; `None` when it can mean several, or none.
-fn unambiguous(text: &[u8], family: Option<Family>) -> Option<Command> {
+fn unambiguous(text: &[u8], model: Option<Model>) -> Option<Command> {
     let mut commands = dcon::decode_request(text);
-    commands.retain(|command| family.is_none_or(|family| family.has_command(command)));
+    commands.retain(|command| model.is_none_or(|model| model.has_command(command)));
     match commands[..] {
         [command] => Some(command),
         _ => None,
     }
 }
 
-/// Reads the setting that `command` writes; returns the reply if the setting is in effect already.
+/// Reads the setting that `command` writes; returns the reply and its meaning if the setting is in effect already.
 async fn in_effect(
     port: &mut SerialStream,
     settings: &LineSettings,
     command: &Command,
-) -> anyhow::Result<Option<String>> {
+) -> anyhow::Result<Option<(String, String)>> {
     let Some(setting) = command.setting() else {
         return Ok(None);
     };
@@ -132,17 +126,20 @@ async fn in_effect(
     setting.encode(settings.checksum, &mut question);
     let said = send_raw(port, settings, Pace::real(), &question).await?;
     let found = setting.decode(&said.bytes, settings.checksum);
+    let words = bus::reply(&setting, &found, None).say(Lang::En);
     Ok(found
         .is_ok_and(|found| command.is_in_effect(&found))
-        .then(|| escaped(&said.bytes)))
+        .then(|| (escaped(&said.bytes), words)))
 }
 
-fn print_unchanged(args: &SendArgs, found: &str) -> anyhow::Result<Exit> {
+fn print_unchanged(args: &SendArgs, reply: &str, meaning: &str) -> anyhow::Result<Exit> {
     print(&if args.json {
-        let object = json!({ "request": args.command, "written": false, "found": found });
+        let object = json!({
+            "request": args.command, "written": false, "found": reply, "meaning": meaning,
+        });
         format!("{object}\n")
     } else {
-        format!("  in effect already, {found}: not written again, an EEPROM wears\n")
+        format!("  in effect already, {reply} ({meaning}): not written again, an EEPROM wears\n")
     })?;
     Ok(Exit::Done)
 }
@@ -168,12 +165,14 @@ fn checked(command: &str) -> anyhow::Result<&[u8]> {
     Ok(text)
 }
 
-fn family(model: Option<&str>) -> anyhow::Result<Option<Family>> {
-    let Some(model) = model else {
+fn model(name: Option<&str>) -> anyhow::Result<Option<Model>> {
+    let Some(name) = name else {
         return Ok(None);
     };
-    match Family::of_name(model) {
-        Some(family) => Ok(Some(family)),
-        None => bail!("--model: found \"{model}\", expected a module of the 7000 series, as 7017F"),
+    match Model::of_name(name) {
+        Some(model) => Ok(Some(model)),
+        None => bail!(
+            "--model: found \"{name}\", expected a model of the list in docs/bus.md, such as 7017F"
+        ),
     }
 }

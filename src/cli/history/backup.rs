@@ -3,9 +3,8 @@
 use app::backup_folder::back_up;
 use app::copies;
 use app::order::Files;
-use config::Folder;
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Arguments of `history backup`.
 #[derive(Debug, clap::Args)]
@@ -22,17 +21,13 @@ pub struct BackupArgs {
 }
 
 /// Runs the command.
-pub fn run(config: &Folder, db: &Path, args: &BackupArgs) -> anyhow::Result<()> {
+pub fn run(files: &Files, args: &BackupArgs) -> anyhow::Result<()> {
     if let Some(file) = &args.file {
-        let bytes = copies::backup(db, file)?;
+        let bytes = copies::backup(&files.db, file)?;
         eprintln!("{}: {bytes} bytes, checked", file.display());
     }
     if let Some(into) = &args.into {
-        let files = Files {
-            config: config.clone(),
-            db: db.to_owned(),
-        };
-        let made = back_up(&files, into, args.keep)?;
+        let made = back_up(files, into, args.keep)?;
         for old in &made.deleted {
             eprintln!("{}: deleted", old.display());
         }

@@ -31,7 +31,7 @@ pub(super) struct ExportArgs {
     /// Form of the file; when absent, from the end of its name
     #[arg(long, value_enum)]
     format: Option<Kind>,
-    /// Language of the spreadsheet's summary
+    /// Language of the spreadsheet; CSV has keys and codes
     #[arg(long, value_enum, default_value = "zh")]
     lang: LangArg,
 }

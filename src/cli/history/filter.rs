@@ -18,23 +18,33 @@ pub(super) struct RunArgs {
     pub recipe: Option<String>,
 }
 
+/// Selects a span of time.
+#[derive(Debug, Args)]
+pub(super) struct SpanArgs {
+    /// At this time or later (2026-11-22, today, -8h, RFC 3339)
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    pub since: Option<Moment>,
+    /// Before this time (2026-11-22, today, -8h, RFC 3339)
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    pub until: Option<Moment>,
+}
+
 /// Selects parts of the runs.
 #[derive(Debug, Args)]
 pub(super) struct PartArgs {
     #[command(flatten)]
     pub runs: RunArgs,
-    /// Judged at this time or later (RFC 3339)
-    #[arg(long, value_name = "TIME")]
-    pub since: Option<Moment>,
-    /// Judged before this time (RFC 3339)
-    #[arg(long, value_name = "TIME")]
-    pub until: Option<Moment>,
+    #[command(flatten)]
+    pub span: SpanArgs,
     /// Only this verdict
     #[arg(long, value_parser = checks::VERDICTS)]
     pub verdict: Option<String>,
     /// Only parts for this bin
     #[arg(long)]
     pub bin: Option<String>,
+    /// Only parts with this serial number
+    #[arg(long, value_name = "SERIAL")]
+    pub serial: Option<String>,
     /// Production parts, reference parts (golden), or both
     #[arg(long, value_parser = checks::KINDS, default_value = "lot")]
     pub kind: String,
@@ -74,18 +84,28 @@ impl RunArgs {
     }
 }
 
-impl PartArgs {
-    pub fn filter(&self) -> Filter {
+impl SpanArgs {
+    /// Returns `filter`, restricted to this span.
+    pub fn within(&self, filter: Filter) -> Filter {
         Filter {
             since: self.since,
             until: self.until,
+            ..filter
+        }
+    }
+}
+
+impl PartArgs {
+    pub fn filter(&self) -> Filter {
+        Filter {
             verdict: self.verdict.clone(),
             bin: self.bin.clone(),
+            serial: self.serial.clone(),
             kind: Some(self.kind.clone()),
             suspect: self.suspect,
             limit: self.limit,
             offset: self.offset,
-            ..self.runs.filter()
+            ..self.span.within(self.runs.filter())
         }
     }
 

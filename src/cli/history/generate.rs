@@ -21,8 +21,8 @@ pub(super) struct GenerateArgs {
     /// Recipe that the parts are judged by
     #[arg(long, value_name = "NAME", default_value = "jzc-22f-012")]
     recipe: String,
-    /// Instant of the last part (RFC 3339); now when absent
-    #[arg(long, value_name = "TIME")]
+    /// Instant of the last part (2026-11-22, -8h, RFC 3339); now when absent
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     until: Option<Moment>,
 }
 

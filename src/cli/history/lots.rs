@@ -3,7 +3,7 @@
 use super::filter::RunArgs;
 use crate::cli::output::{Column, FormatArgs, Output, text};
 use clap::Args;
-use history::{Archive, LotSummary};
+use history::{Archive, LotSummary, Moment};
 
 #[derive(Debug, Args)]
 pub(super) struct ListArgs {
@@ -19,8 +19,8 @@ pub(super) const COLUMNS: [Column<LotSummary>; 16] = [
     ("recipe", |it| it.recipe.clone()),
     ("source", |it| it.source.clone()),
     ("seed", |it| text(it.seed.as_ref())),
-    ("opened", |it| it.opened.to_string()),
-    ("closed", |it| text(it.closed)),
+    ("opened", |it| it.opened.local()),
+    ("closed", |it| text(it.closed.map(Moment::local))),
     ("parts", |it| it.counts.parts.to_string()),
     ("pass", |it| it.counts.pass.to_string()),
     ("fail", |it| it.counts.fail.to_string()),

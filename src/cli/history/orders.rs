@@ -1,23 +1,22 @@
 //! `history orders`: orders with person, place and answer.
 
-use super::filter::RunArgs;
+use super::filter::{RunArgs, SpanArgs};
 use crate::cli::output::{Column, FormatArgs, Output, text};
 use clap::Args;
-use history::{Archive, Filter, Moment, OrderEntry};
+use history::{Archive, OrderEntry};
 
 #[derive(Debug, Args)]
 pub(super) struct OrdersArgs {
     #[command(flatten)]
     runs: RunArgs,
-    /// Answered at this time or later (RFC 3339)
-    #[arg(long, value_name = "TIME")]
-    since: Option<Moment>,
-    /// Answered before this time (RFC 3339)
-    #[arg(long, value_name = "TIME")]
-    until: Option<Moment>,
+    #[command(flatten)]
+    span: SpanArgs,
     /// Only this person
     #[arg(long, value_name = "NAME")]
     who: Option<String>,
+    /// Only this order, for example `people` (changes of people) or `login` (wrong passwords)
+    #[arg(long, value_name = "WORD")]
+    order: Option<String>,
     /// Only orders that were refused
     #[arg(long)]
     refused: bool,
@@ -26,7 +25,7 @@ pub(super) struct OrdersArgs {
 }
 
 pub(super) const COLUMNS: [Column<OrderEntry>; 8] = [
-    ("time", |it| it.at.to_string()),
+    ("time", |it| it.at.local()),
     ("lot", |it| text(it.lot.as_ref())),
     ("run", |it| text(it.run)),
     ("who", |it| it.who.clone()),
@@ -37,12 +36,8 @@ pub(super) const COLUMNS: [Column<OrderEntry>; 8] = [
 ];
 
 pub(super) fn run(archive: &Archive, args: &OrdersArgs) -> anyhow::Result<()> {
-    let filter = Filter {
-        since: args.since,
-        until: args.until,
-        ..args.runs.filter()
-    };
-    let mut orders = archive.orders(&filter, args.who.as_deref())?;
+    let filter = args.span.within(args.runs.filter());
+    let mut orders = archive.orders(&filter, args.who.as_deref(), args.order.as_deref())?;
     orders.retain(|it| !args.refused || it.refused.is_some());
     Output::stdout().list(args.format.format(), &orders, &COLUMNS)
 }

@@ -3,8 +3,8 @@
 use crate::cli::output::{Column, Output, figure, input};
 use anyhow::Context;
 use app::exit::Exit;
-use app::gauge_study::read_csv;
 use clap::{Args, Subcommand};
+use history::inquiry::gauge::read_csv;
 use quality::average_range::average_and_range;
 use quality::gauge_rr::{GaugeRr, anova};
 use std::io::{self, Write};
@@ -32,7 +32,7 @@ enum Command {
 
 /// Runs the command. An error is bad input: exit status 2.
 pub fn run_quality(args: QualityArgs) -> anyhow::Result<Exit> {
-    super::super::unless_pipe_closed(dispatch(&args.command))
+    super::super::unless_pipe_closed(dispatch(&args.command), Exit::Done)
 }
 
 fn dispatch(command: &Command) -> anyhow::Result<Exit> {

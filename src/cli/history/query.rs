@@ -62,7 +62,7 @@ fn write_table(
     let mut table = Table::new(&headings);
     archive.each(filter, |part| {
         let mut row = vec![
-            part.time.to_string(),
+            part.time.local(),
             part.lot.clone(),
             part.run.to_string(),
             part.seq.to_string(),

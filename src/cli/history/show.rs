@@ -11,12 +11,16 @@ use std::io::{self, Write};
 #[derive(Debug, Args)]
 pub(super) struct ShowArgs {
     /// Name of the lot
-    lot: String,
+    #[arg(required_unless_present = "serial")]
+    lot: Option<String>,
     /// Number of the part in the lot
     seq: Option<u64>,
     /// Only this run of the lot (1, 2, ...)
     #[arg(long, value_name = "N")]
     run: Option<u32>,
+    /// Every test of the part with this serial number, in all lots
+    #[arg(long, value_name = "SERIAL", conflicts_with_all = ["lot", "run", "golden"])]
+    serial: Option<String>,
     /// The reference part of that number
     #[arg(long)]
     golden: bool,
@@ -26,9 +30,18 @@ pub(super) struct ShowArgs {
 
 pub(super) fn run(archive: &Archive, args: &ShowArgs) -> anyhow::Result<()> {
     let mut out = Output::stdout();
-    let lot = &args.lot;
+    if let Some(serial) = &args.serial {
+        let parts = archive.of_serial(serial)?;
+        anyhow::ensure!(
+            !parts.is_empty(),
+            "no part has the serial number {serial:?}"
+        );
+        show_parts(&parts, args, &mut out)?;
+        return Ok(out.flush()?);
+    }
+    let lot = args.lot.as_deref().unwrap_or_default();
     let filter = Filter {
-        lot: Some(lot.clone()),
+        lot: Some(lot.to_owned()),
         run: args.run,
         ..Filter::default()
     };
@@ -53,24 +66,33 @@ pub(super) fn run(archive: &Archive, args: &ShowArgs) -> anyhow::Result<()> {
                         if all.is_empty() { "none" } else { &all }
                     )?;
                 }
-                let ordered = archive.orders(&filter, None)?;
+                let ordered = archive.orders(&filter, None, None)?;
                 writeln!(out, "{} orders", ordered.len())?;
                 out.table(&ordered, &orders::COLUMNS)?;
             }
         }
-        Some(seq) => one_part(archive, args, seq, &mut out)?,
+        Some(seq) => one_part(archive, args, (lot, seq), &mut out)?,
     }
     Ok(out.flush()?)
 }
 
-fn one_part(archive: &Archive, args: &ShowArgs, seq: u64, out: &mut Output) -> anyhow::Result<()> {
-    let (lot, kind) = (&args.lot, if args.golden { "golden" } else { "lot" });
+fn one_part(
+    archive: &Archive,
+    args: &ShowArgs,
+    (lot, seq): (&str, u64),
+    out: &mut Output,
+) -> anyhow::Result<()> {
+    let kind = if args.golden { "golden" } else { "lot" };
     let mut parts = archive.show(lot, seq, kind)?;
     parts.retain(|part| args.run.is_none_or(|run| part.run == run));
     anyhow::ensure!(
         !parts.is_empty(),
         "lot {lot:?} has no part {seq} of kind {kind}"
     );
+    show_parts(&parts, args, out)
+}
+
+fn show_parts(parts: &[Part], args: &ShowArgs, out: &mut Output) -> anyhow::Result<()> {
     parts
         .iter()
         .try_for_each(|part| match args.format.format() {
@@ -93,12 +115,12 @@ fn page(part: &Part, out: &mut Output) -> anyhow::Result<()> {
     writeln!(
         out,
         "lot {lot}, run {run}, {kind} part {seq}, recipe {recipe}, {}",
-        part.time
+        part.time.local()
     )?;
     writeln!(out, "serial   {}", text(part.serial.as_ref()))?;
     writeln!(out, "verdict  {verdict} {}", part.reasons.join("; "))?;
     let landed = match (&part.landed_bin, part.landed_at) {
-        (Some(bin), Some(at)) => format!("landed in {bin} at {at}"),
+        (Some(bin), Some(at)) => format!("landed in {bin} at {}", at.local()),
         (Some(bin), None) => format!("landed in {bin}"),
         (None, _) => "not seen landing".to_owned(),
     };
@@ -133,7 +155,7 @@ fn curve(it: &Curve, out: &mut Output) -> anyhow::Result<()> {
         begin_us,
         ..
     } = it;
-    let begin = Moment(*begin_us);
+    let begin = Moment(*begin_us).local();
     let bits = dut::bits_of(signal);
     let unit = match unit.as_str() {
         "" => bits.unwrap_or("counts"),
@@ -182,7 +204,7 @@ fn samples(part: &Part, out: &mut Output) -> io::Result<()> {
         ("channel", |it| it.1.channel.clone()),
         ("command", |it| it.1.command.clone()),
         ("reply", |it| it.1.raw.clone()),
-        ("at", |it| it.1.at.to_string()),
+        ("at", |it| it.1.at.local()),
     ];
     out.table(&samples.collect::<Vec<_>>(), &columns)
 }

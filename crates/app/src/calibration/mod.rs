@@ -19,7 +19,10 @@ use history::{CalibrationRecord, Store, snapshot_hash};
 use machine::dut::Calibration;
 use std::path::Path;
 use std::sync::OnceLock;
+use texts::Message;
 
+/// Remedy for a calibration that permits no lot.
+pub(super) const REMEDY: &str = "run `relayrig calibrate` before the next lot";
 /// Name of the lot under which the history keeps the reference parts.
 const LOT: &str = "calibration";
 
@@ -120,7 +123,7 @@ fn valid_calibration(
             "--verify: found no calibration for {nominal_v} V in the history, expected one (relayrig calibrate)"
         );
     };
-    if record.due_at_us <= jiff::Timestamp::now().as_microsecond() {
+    if record.is_overdue(jiff::Timestamp::now().as_microsecond()) {
         let due = date(record.due_at_us)?;
         bail!(
             "--verify: the calibration ran out at {due}, expected a valid one (relayrig calibrate)"
@@ -155,16 +158,19 @@ pub fn date(us: i64) -> anyhow::Result<String> {
 
 /// Returns why the stored calibration permits no lot; `None` when the calibration is valid, or when there is none (the
 /// run then calibrates first).
-pub(super) fn refusal(db: &Path, nominal_v: f64) -> anyhow::Result<Option<String>> {
+pub(super) fn refusal(db: &Path, nominal_v: f64) -> anyhow::Result<Option<Message>> {
     let Some(record) = open(db)?.latest_calibration_of(false, nominal_v)? else {
         return Ok(None);
     };
-    let remedy = "run `relayrig calibrate` before the next lot";
-    if record.due_at_us <= jiff::Timestamp::now().as_microsecond() {
+    if record.is_overdue(jiff::Timestamp::now().as_microsecond()) {
         let due = date(record.due_at_us)?;
-        return Ok(Some(format!("the calibration ran out at {due}: {remedy}")));
+        let said = format!("the calibration ran out at {due}: {REMEDY}");
+        return Ok(Some(
+            Message::detail("calibration_out", said).with("at", due),
+        ));
     }
     let made = date(record.made_at_us)?;
-    Ok((!record.verified)
-        .then(|| format!("the calibration made at {made} failed its last verification: {remedy}")))
+    let said = format!("the calibration made at {made} failed its last verification: {REMEDY}");
+    let failed = || Message::detail("calibration_not_verified", said).with("at", made);
+    Ok((!record.verified).then(failed))
 }

@@ -1,4 +1,4 @@
-//! The account that runs the rig, and what it may do with a file.
+//! Finds the account that runs the rig, and whether it may write a file.
 
 use nix::unistd::{Gid, Group, Uid, User, getgrouplist};
 use std::ffi::CString;
@@ -8,11 +8,17 @@ use std::path::Path;
 
 /// An account of the operating system.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Account {
+pub(crate) struct Account {
     /// Name; its number when it has no name.
     pub name: String,
     uid: u32,
     groups: Vec<u32>,
+}
+
+/// Returns the name of the account that runs this program; its user id when it has no name.
+#[must_use]
+pub fn own_account() -> String {
+    Account::new(Uid::effective()).name
 }
 
 impl Account {
@@ -47,16 +53,16 @@ impl Account {
 
     /// Returns true when mode and owner let the account write the file; access control lists are not read.
     pub fn may_write(&self, file: &Metadata) -> bool {
-        self.uid == 0 || self.has_bit(file, 0o2)
+        self.uid == 0 || self.has_write_bit(file)
     }
 
-    fn has_bit(&self, file: &Metadata, bit: u32) -> bool {
+    fn has_write_bit(&self, file: &Metadata) -> bool {
         let shift = match (file.uid() == self.uid, self.groups.contains(&file.gid())) {
             (true, _) => 6,
             (false, true) => 3,
             (false, false) => 0,
         };
-        file.mode() & (bit << shift) != 0
+        file.mode() & (0o2 << shift) != 0
     }
 }
 
@@ -94,7 +100,7 @@ mod tests {
             fs::set_permissions(file.path(), Permissions::from_mode(mode)).unwrap();
             let others = account(uid + 1, gid + 1);
             [account(uid.max(1), gid + 1), account(uid + 1, gid), others]
-                .map(|it| it.has_bit(&meta(), 0o2))
+                .map(|it| it.has_write_bit(&meta()))
         };
         assert!(writers(0o020)[1] && !writers(0o020)[2]);
         assert!(writers(0o002)[2]);

@@ -1,15 +1,17 @@
-//! Checks of the calibrations: a rig takes no lot on factors that ran out or failed their verification.
+//! Checks the calibrations: a rig takes no lot with factors that ran out or failed their verification.
 
 use super::finding::{Check, Finding, Subject};
-use crate::calibration::date;
+use crate::calibration::{REMEDY, date};
 use history::{CalibrationRecord, Examination};
 use jiff::Timestamp;
 use machine::dut::Calibration;
 
 /// Microseconds of an hour.
 const HOUR_US: i64 = 3_600_000_000;
+const EXPECTED: &str = "a verified calibration that has not run out";
 
-/// Checks the newest calibration for each coil voltage; the simulated rig calibrates before each lot and has no finding.
+/// Checks the newest calibration for each coil voltage. Returns no findings for the simulated rig, which calibrates
+/// before each lot.
 pub(super) fn check(history: &Examination, now: Timestamp) -> Vec<Finding> {
     if history.is_simulated == Some(true) {
         return Vec::new();
@@ -25,8 +27,6 @@ pub(super) fn check(history: &Examination, now: Timestamp) -> Vec<Finding> {
         .collect()
 }
 
-const EXPECTED: &str = "a verified calibration that has not run out";
-
 fn check_one(record: &CalibrationRecord, now_us: i64) -> Finding {
     let voltage = serde_json::from_str::<Calibration>(&record.body);
     let name = match &voltage {
@@ -34,18 +34,17 @@ fn check_one(record: &CalibrationRecord, now_us: i64) -> Finding {
         Err(_) => record.hash.clone(),
     };
     let subject = Subject::new(Check::Calibration, name, EXPECTED);
-    let remedy = "run `relayrig calibrate` before the next lot";
     if let Err(error) = voltage {
-        return subject.fault(format!("factors that cannot be read: {error}"), remedy);
+        return subject.fault(format!("factors that cannot be read: {error}"), REMEDY);
     }
     let made = date(record.made_at_us).unwrap_or_default();
     let left_h = record.due_at_us.saturating_sub(now_us) / HOUR_US;
-    if record.due_at_us <= now_us {
+    if record.is_overdue(now_us) {
         let found = format!("made {made}, overdue for {} h", -left_h);
-        return subject.fault(found, remedy);
+        return subject.fault(found, REMEDY);
     }
     match record.verified {
         true => subject.ok(format!("made {made}, valid for {left_h} h more")),
-        false => subject.fault(format!("made {made}, failed its verification"), remedy),
+        false => subject.fault(format!("made {made}, failed its verification"), REMEDY),
     }
 }

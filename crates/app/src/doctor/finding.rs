@@ -1,16 +1,17 @@
-//! A finding of the doctor: what was checked, what was found and expected, and what to do.
+//! A finding of `doctor` or `host check`: what was checked, what was found and expected, and what to do.
 
 use serde::Serialize;
+use std::fmt;
 
-/// What is checked.
+/// Subject of a check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Check {
-    /// All files of the configuration.
+    /// Files of the configuration: complete, without a fault.
     Configuration,
-    /// Folder of the history: there and writable.
+    /// Folder of the history: exists, writable.
     DataFolder,
-    /// Free space in that folder.
+    /// Free space in the folder of the history.
     DiskSpace,
     /// History: whole, owner, size.
     History,
@@ -30,11 +31,13 @@ pub enum Check {
     RealTime,
     /// Right to keep the program in memory.
     LockedMemory,
+    /// Cause of late waits; only `host check` looks for it.
+    Lateness,
 }
 
 impl Check {
     /// Returns the name for a person, for example `disk space`.
-    pub const fn label(self) -> &'static str {
+    const fn label(self) -> &'static str {
         match self {
             Self::Configuration => "configuration",
             Self::DataFolder => "data folder",
@@ -48,11 +51,12 @@ impl Check {
             Self::Calibration => "calibration",
             Self::RealTime => "real time",
             Self::LockedMemory => "locked memory",
+            Self::Lateness => "lateness",
         }
     }
 }
 
-/// How bad a finding is.
+/// Severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Health {
@@ -66,26 +70,47 @@ pub enum Health {
     Fault,
 }
 
-/// A checked thing with what was found.
+/// Result of one check.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Finding {
-    /// What was checked.
+    /// Kind of the check.
     pub check: Check,
-    /// Path or name of the checked thing.
+    /// Path or name of the subject.
     pub subject: String,
-    /// How bad it is.
+    /// Severity of the finding.
     pub health: Health,
-    /// What was found.
+    /// State that the check found.
     pub found: String,
-    /// What was expected.
+    /// State that a healthy rig has.
     pub expected: String,
     /// What to do; `None` when all is as expected.
     pub remedy: Option<String>,
 }
 
-/// A thing under check, before something was found.
+impl fmt::Display for Finding {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let word = match self.health {
+            Health::Ok => "ok",
+            Health::Unknown => "unknown",
+            Health::Warning => "WARNING",
+            Health::Fault => "FAULT",
+        };
+        let (label, subject) = (self.check.label(), &self.subject);
+        let (found, expected) = (&self.found, &self.expected);
+        write!(
+            out,
+            "{word:<8} {label} {subject}: found {found}, expected {expected}"
+        )?;
+        match &self.remedy {
+            Some(remedy) => write!(out, "\n         do: {remedy}"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Subject of a check that has no finding yet.
 #[derive(Debug, Clone)]
-pub(super) struct Subject {
+pub(crate) struct Subject {
     check: Check,
     name: String,
     expected: String,

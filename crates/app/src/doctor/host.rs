@@ -1,4 +1,4 @@
-//! Checks of the computer: clock, and the rights to run before other programs and to stay in memory.
+//! Checks the computer: clock, and the rights to run before other programs and to stay in memory.
 
 use super::finding::{Check, Finding, Subject};
 use crate::real_time::PRIORITY;
@@ -14,8 +14,8 @@ const SYS_NICE: u32 = 23;
 pub(super) fn check_clock() -> Finding {
     let subject = Subject::new(Check::Clock, "wall clock", "kept by a time service (NTP)");
     let remedy = "apt install systemd-timesyncd or chrony, and let it reach a time server";
-    let asked = ["show", "--property=NTPSynchronized", "--value"];
-    match output("timedatectl", &asked).as_deref().map(str::trim) {
+    let arguments = ["show", "--property=NTPSynchronized", "--value"];
+    match output("timedatectl", &arguments).as_deref().map(str::trim) {
         Some("yes") => subject.ok("synchronised"),
         Some("no") => subject.warning("not synchronised", remedy),
         Some(_) | None => subject.unknown("no answer of timedatectl", remedy),
@@ -32,7 +32,7 @@ fn output(program: &str, arguments: &[&str]) -> Option<String> {
 /// Rights of the program that runs the rig.
 #[derive(Debug, PartialEq, Eq)]
 struct Privileges {
-    /// Whose rights these are.
+    /// Program that has these rights, in words for the finding.
     of: &'static str,
     /// Highest real-time priority, 0 for none.
     priority: u64,

@@ -1,25 +1,27 @@
-//! What is wrong with an installation, and what to do.
+//! Finds what is wrong with an installation, and says what to do.
 //!
-//! The doctor reads files, rights and the state of the computer. It opens no port and writes nothing, so it may look while
-//! the rig works. It judges rights for the account that runs the rig, which owns the data, not for root or another reader.
+//! The doctor reads files, rights and the state of the computer. It opens no port and writes no file, so it may run
+//! while the rig works. It judges the rights of the account that runs the rig, which owns the data, not those of its
+//! caller.
 
-mod account;
+pub(crate) mod account;
 mod calibration;
-mod finding;
+pub(crate) mod finding;
 mod host;
-mod ports;
+pub(crate) mod ports;
 mod storage;
 
 use crate::order::Files;
 use crate::source::LinePort;
 use account::Account;
+pub use account::own_account;
 use config::{ConfigFaults, Folder, Plant, check_all, recipe_names};
 use finding::Subject;
 pub use finding::{Check, Finding, Health};
 use jiff::Timestamp;
 use std::path::Path;
 
-/// An installation to look at.
+/// An installation to examine.
 #[derive(Debug, Clone, Copy)]
 pub struct Installation<'a> {
     /// Configuration and history.
@@ -30,15 +32,16 @@ pub struct Installation<'a> {
     pub backups: Option<&'a Path>,
 }
 
-/// Returns what was found, in the order of [`Check`].
+/// Returns the findings in the order of [`Check`].
 pub fn examine(installation: &Installation<'_>) -> Vec<Finding> {
     let files = installation.files;
-    let account = Account::of_rig(&storage::folder_of(&files.db));
+    let folder = files.data_folder();
+    let account = Account::of_rig(folder);
     let plant = check_all(&files.config);
     let now = Timestamp::now();
     let (history, facts) = storage::check_history(&files.db, &account);
     let mut findings = vec![configuration(&files.config, &plant)];
-    findings.extend(storage::check_disk(&files.db, &account));
+    findings.extend(storage::check_disk(folder, &account));
     findings.push(history);
     findings.extend(storage::check_people(&files.db, &account));
     let backups = installation.backups.filter(|_| files.db.exists());
@@ -54,7 +57,7 @@ pub fn examine(installation: &Installation<'_>) -> Vec<Finding> {
 }
 
 fn configuration(folder: &Folder, plant: &Result<Plant, ConfigFaults>) -> Finding {
-    let subject = Subject::new(Check::Configuration, folder.path("").display(), "no fault");
+    let subject = Subject::new(Check::Configuration, folder.root().display(), "no fault");
     match plant {
         Ok(_) => subject.ok(format!("{} recipes, no fault", recipe_names(folder).len())),
         Err(faults) => subject.fault(

@@ -1,4 +1,4 @@
-//! Checks of the serial ports. No port is opened: opening one changes its control lines, which disturbs a running rig.
+//! Checks serial ports. Opens none of them, because that would change control lines of a running rig.
 
 use super::account::{Account, group, rights};
 use super::finding::{Check, Finding, Subject};
@@ -14,17 +14,17 @@ const UNSTABLE: [&str; 2] = ["/dev/ttyUSB", "/dev/ttyACM"];
 /// Latency timer of a USB converter that suits the protocol, ms.
 const LATENCY_MS: u32 = 1;
 
-/// A line with the port that it is to open.
+/// A line with its port.
 #[derive(Debug)]
 struct Wired {
     line: String,
     port: PathBuf,
-    /// The port behind all links; `None` when there is none.
+    /// Path of the port with all links resolved; `None` when the port is missing.
     device: Option<PathBuf>,
 }
 
-/// Checks the port of every line; `given` replaces those of the wiring.
-pub(super) fn check(wiring: &Wiring, given: &[LinePort], account: &Account) -> Vec<Finding> {
+/// Checks the port of every line, and the latency timer of a USB converter; `given` replaces ports of the wiring.
+pub(crate) fn check(wiring: &Wiring, given: &[LinePort], account: &Account) -> Vec<Finding> {
     let wired = wiring.lines.iter().map(|line| {
         let other = given.iter().find(|it| it.line == line.name);
         let port = PathBuf::from(other.map_or(&line.port, |it| &it.port));
@@ -92,10 +92,13 @@ fn check_latency(sys: &Path, device: &Path) -> Option<Finding> {
         .join("class/tty")
         .join(name)
         .join("device/latency_timer");
-    let found: u32 = fs::read_to_string(file).ok()?.trim().parse().ok()?;
+    let found: u32 = fs::read_to_string(&file).ok()?.trim().parse().ok()?;
     let expected = format!("{LATENCY_MS} ms");
     let subject = Subject::new(Check::Latency, device.display(), expected);
-    let remedy = "install /etc/udev/rules.d/70-relayrig.rules, then plug the converter in again";
+    let remedy = format!(
+        "echo 1 > {}; for good, install /etc/udev/rules.d/70-relayrig.rules",
+        file.display()
+    );
     Some(match found {
         ..=LATENCY_MS => subject.ok(format!("{found} ms")),
         _ => subject.warning(format!("{found} ms, which every request waits"), remedy),

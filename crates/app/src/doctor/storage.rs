@@ -1,46 +1,37 @@
-//! Checks of the files that the rig writes: folder, disk, history, people, backups.
+//! Checks the files that the rig writes: folder, disk, history, people, backups.
 
 use super::account::{Account, rights};
 use super::finding::{Check, Finding, Subject};
 use crate::backup_folder::backups;
-use history::{Examination, HistoryError, SCHEMA, examine};
+use history::{Examination, HistoryError, SCHEMA, examine, with_end};
 use jiff::Timestamp;
-use nix::sys::statvfs::{FsFlags, Statvfs, statvfs};
 use page::access::access_path;
+use rustix::fs::{StatVfsMountFlags, statvfs};
 use std::fs::{self, Metadata};
 use std::io::ErrorKind;
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
-/// Least free space, bytes: room for 250,000 parts.
+/// Least free space, bytes.
 const ROOM: u64 = 1_000_000_000;
 /// Free space below which the history may soon fail to grow, bytes.
 const NO_ROOM: u64 = 100_000_000;
-/// Oldest newest backup, hours: a daily one may fail once.
+/// Greatest age of the newest backup, hours: one of the daily backups may fail.
 const BACKUP_H: i64 = 50;
 
-/// Returns the folder of a file.
-pub(super) fn folder_of(file: &Path) -> PathBuf {
-    match file.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
-        Some(_) | None => PathBuf::from("."),
-    }
-}
-
 /// Checks folder and disk of the history.
-pub(super) fn check_disk(db: &Path, account: &Account) -> Vec<Finding> {
-    let folder = folder_of(db);
+pub(super) fn check_disk(folder: &Path, account: &Account) -> Vec<Finding> {
     let subject = |check, expected: &str| Subject::new(check, folder.display(), expected);
     let writable = subject(
         Check::DataFolder,
         &format!("a folder that {} may write", account.name),
     );
-    let (Ok(meta), Ok(disk)) = (fs::metadata(&folder), statvfs(&folder)) else {
+    let (Ok(meta), Ok(disk)) = (fs::metadata(folder), statvfs(folder)) else {
         let remedy = "make the folder, or name another history with --db";
         return vec![writable.fault("nothing readable", remedy)];
     };
     let found = rights(&meta);
-    let writable = match disk.flags().contains(FsFlags::ST_RDONLY) {
+    let writable = match disk.f_flag.contains(StatVfsMountFlags::RDONLY) {
         true => writable.fault(
             "a read-only file system",
             "look for errors of the disk (dmesg), then mount it writable",
@@ -52,13 +43,8 @@ pub(super) fn check_disk(db: &Path, account: &Account) -> Vec<Finding> {
         ),
     };
     let room = subject(Check::DiskSpace, &format!("at least {}", size(ROOM)));
-    vec![writable, check_room(room, free(&disk))]
-}
-
-fn free(disk: &Statvfs) -> u64 {
-    #[allow(clippy::useless_conversion, reason = "the widths differ by platform")]
-    let bytes = u64::from(disk.blocks_available()).saturating_mul(disk.fragment_size().into());
-    bytes
+    let free = disk.f_bavail.saturating_mul(disk.f_frsize);
+    vec![writable, check_room(room, free)]
 }
 
 fn check_room(room: Subject, free: u64) -> Finding {
@@ -82,14 +68,14 @@ pub(super) fn check_history(db: &Path, account: &Account) -> (Finding, Option<Ex
         Err(HistoryError::Missing { .. }) => {
             return (subject.ok("none yet; the first run makes it"), None);
         }
-        Err(error) => return (subject.fault(causes(&error), remedy_of(&error)), None),
+        Err(error) => {
+            let remedy = remedy_of(&error);
+            let found = format!("{:#}", anyhow::Error::from(error));
+            return (subject.fault(found, remedy), None);
+        }
         Ok(facts) => facts,
     };
-    let files = ["", "-wal", "-shm"].map(|end| {
-        let mut name = db.as_os_str().to_owned();
-        name.push(end);
-        PathBuf::from(name)
-    });
+    let files = ["", "-wal", "-shm"].map(|end| with_end(db, end));
     let locked = files.iter().find_map(|file| {
         let meta = fs::metadata(file).ok()?;
         let open = account.may_write(&meta) && !meta.permissions().readonly();
@@ -111,14 +97,6 @@ fn describe(files: &[PathBuf], schema: i64) -> String {
     match schema {
         SCHEMA => format!("{bytes}, whole"),
         older => format!("{bytes}, whole, schema {older}; the next start brings it to {SCHEMA}"),
-    }
-}
-
-fn causes(error: &HistoryError) -> String {
-    use std::error::Error;
-    match error.source() {
-        Some(source) => format!("{error}: {source}"),
-        None => error.to_string(),
     }
 }
 
@@ -150,7 +128,7 @@ fn is_private(file: &Metadata) -> bool {
     file.mode() & 0o077 == 0
 }
 
-/// What is found of a file that only another account may see.
+/// Finding for a file that only another account may see.
 const HIDDEN: &str = "no right to look";
 
 /// Returns true when the file may exist, but this process has no right to see it.

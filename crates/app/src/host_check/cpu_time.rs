@@ -1,4 +1,4 @@
-//! Time of the CPUs, and the part of it that a hypervisor has given to other machines.
+//! CPU time, and how much of it a hypervisor has given to other machines.
 
 use serde::Serialize;
 use std::iter::Sum;
@@ -6,7 +6,7 @@ use std::iter::Sum;
 /// Time of all CPUs together.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct CpuTime {
-    /// All of it, ms.
+    /// Time in any state, idle included, ms.
     pub cpu_ms: f64,
     /// Time during which a CPU had work and the hypervisor did not run it, ms.
     pub stolen_ms: f64,

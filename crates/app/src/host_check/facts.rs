@@ -1,10 +1,10 @@
-//! State of the computer as far as it matters to the rig, and the readers of the kernel's texts about it.
+//! Facts about the computer that may delay the rig, parsed from files of the kernel.
 
 use super::cpu_time::CpuTime;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-/// What a look at the computer found.
-#[derive(Debug, Clone, Default, PartialEq)]
+/// State of the computer that may delay the rig.
+#[derive(Debug, Default)]
 pub struct Facts {
     /// Path of this program.
     pub program: PathBuf,
@@ -20,15 +20,13 @@ pub struct Facts {
     pub preemption: Option<Preemption>,
     /// Share of each period that threads under SCHED_FIFO may run; `None` when unknown.
     pub real_time_share: Option<RealTimeShare>,
-    /// True on a virtual machine that says so.
+    /// True on a virtual machine whose CPU flags name a hypervisor.
     pub is_virtual: bool,
     /// Time of the CPUs during the test.
     pub cpu_time: CpuTime,
-    /// Ports of the lines.
-    pub ports: Vec<PortFacts>,
 }
 
-/// How far a kernel lets a thread interrupt its own work.
+/// Places where a thread may interrupt the kernel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Preemption {
     /// Nearly everywhere (PREEMPT_RT).
@@ -68,38 +66,6 @@ impl RealTimeShare {
     }
 }
 
-/// Permission to open a port.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Access {
-    /// To read and to write.
-    Granted,
-    /// Not both.
-    Denied,
-    /// There is no such port.
-    Missing,
-}
-
-/// State of the port of a line.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PortFacts {
-    /// Name of the line.
-    pub line: String,
-    /// Path in `rig.toml`.
-    pub port: String,
-    /// Permission of this user.
-    pub access: Access,
-    /// Latency timer of a USB converter: its file, and its value in ms. `None` when the port has none.
-    pub latency_timer: Option<(PathBuf, u32)>,
-}
-
-/// Returns the file with the latency timer of this port, links resolved; `None` when the port is no USB converter.
-pub fn latency_timer_file(device: &Path) -> Option<PathBuf> {
-    let name = device.file_name()?.to_str()?;
-    let devices = Path::new("/sys/bus/usb-serial/devices");
-    let is_usb = name.starts_with("ttyUSB");
-    is_usb.then(|| devices.join(name).join("latency_timer"))
-}
-
 /// Returns true when `/proc/cpuinfo` names a hypervisor among the flags of a CPU.
 pub fn is_virtual(cpu_info: &str) -> bool {
     let mut flags = cpu_info.lines().filter(|line| line.starts_with("flags"));
@@ -127,15 +93,6 @@ mod tests {
             let found = Preemption::parse(version, command_line);
             assert_eq!(found, expected, "{version} {command_line}");
         }
-    }
-
-    #[test]
-    fn only_usb_converters_have_a_latency_timer() {
-        let file = latency_timer_file(Path::new("/dev/ttyUSB3"));
-        let expected = "/sys/bus/usb-serial/devices/ttyUSB3/latency_timer";
-        assert_eq!(file.as_deref(), Some(Path::new(expected)));
-        assert_eq!(latency_timer_file(Path::new("/dev/ttyS0")), None);
-        assert_eq!(latency_timer_file(Path::new("/")), None);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The waits of a phase as bars of text, on a logarithmic scale.
+//! Draws the waits of a phase as bars of text, on a logarithmic scale.
 
 use machine::view::LatenessView;
 

@@ -1,5 +1,5 @@
-//! The load of the test: two busy threads per CPU, and one that writes and syncs a file without pause; all at normal
-//! priority.
+//! Makes the load of the test: two busy threads per CPU, and one that writes and syncs a file without pause, all at
+//! normal priority.
 
 use anyhow::Context;
 use std::fs::File;

@@ -1,31 +1,33 @@
-//! Whether this computer keeps the rig's time: a latency test as cyclictest makes it, on the thread and the timer of the
-//! rig, first with the computer as it is, then under load.
+//! Tests whether this computer keeps the rig's time: a latency test as cyclictest makes it, on the thread and the timer
+//! of the rig, first with the computer as it is, then under load.
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`phase`] | the waits of one phase |
-//! | [`load`] | the load that the test makes |
-//! | [`verdict`] | what `rig.toml` tolerates |
-//! | [`cpu_time`] | time that a hypervisor has stolen |
-//! | [`facts`], [`survey`] | state of the computer, and its files |
-//! | [`advice`] | what to change |
-//! | [`histogram`], [`plot`] | the waits as text and as a picture |
+//! | `phase` | the waits of one phase |
+//! | `load` | the load that the test makes |
+//! | `verdict` | what `rig.toml` tolerates |
+//! | `cpu_time` | time that a hypervisor has stolen |
+//! | `facts`, `survey` | state of the computer, and its files |
+//! | `advice` | what to change |
+//! | `histogram`, `plot` | the waits as text and as a picture |
 
-pub mod advice;
-pub mod cpu_time;
-pub mod facts;
+mod advice;
+mod cpu_time;
+mod facts;
 pub mod histogram;
-pub mod load;
+mod load;
 pub mod phase;
 pub mod plot;
-pub mod survey;
+mod survey;
 pub mod verdict;
 
 use crate::block_on;
 use crate::controls::Interrupts;
+use crate::doctor::account::Account;
+use crate::doctor::{Finding, Health, ports};
 use crate::real_time::RigThread;
 use crate::source::RigSource;
-use advice::{Advice, advise};
+use advice::advise;
 use anyhow::Context;
 use bus::Pace;
 use cpu_time::CpuTime;
@@ -40,12 +42,12 @@ use verdict::Verdict;
 /// Answer of the test.
 #[derive(Debug)]
 pub struct Report {
-    /// As the computer is, then under load.
+    /// Results in the order of [`Phase::ALL`].
     pub phases: Vec<PhaseResult>,
     /// Whether the worst lateness is tolerated.
     pub verdict: Verdict,
-    /// What to change; empty when everything is as expected.
-    pub advice: Vec<Advice>,
+    /// Causes of late waits and faults of ports, with what to change; empty when there are none.
+    pub advice: Vec<Finding>,
 }
 
 /// Tests this computer for `span`, half of it per phase, against the needs of `wiring`. The load writes an unnamed file
@@ -74,7 +76,11 @@ pub fn run(
             ended(&result)?;
             phases.push(result);
         }
-        Ok(Some(report(wiring, &thread, phases)))
+        let mut report = report(wiring, &thread, phases);
+        let mut ports = ports::check(wiring, &[], &Account::of_rig(folder));
+        ports.retain(|it| it.health != Health::Ok);
+        report.advice.extend(ports);
+        Ok(Some(report))
     })
 }
 
@@ -100,7 +106,7 @@ fn report(wiring: &Wiring, thread: &RigThread, phases: Vec<PhaseResult>) -> Repo
     let worst_ms = phases.iter().map(|it| it.lateness.worst_ms);
     let verdict = Verdict::of(wiring, worst_ms.fold(0.0, f64::max));
     let spent = phases.iter().map(|it| it.cpu_time);
-    let facts = survey::facts(wiring, &thread.rights, spent.sum());
+    let facts = survey::facts(&thread.rights, spent.sum());
     Report {
         advice: advise(&facts, &verdict),
         phases,

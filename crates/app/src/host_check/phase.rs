@@ -12,14 +12,14 @@ use units::Span;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Phase {
-    /// The computer with what else runs on it.
+    /// With the usual programs of this computer.
     AsItIs,
-    /// The same under the load of the test.
+    /// With the load of the test in addition.
     Loaded,
 }
 
 impl Phase {
-    /// Both, in order.
+    /// Both phases in the order of the test.
     pub const ALL: [Self; 2] = [Self::AsItIs, Self::Loaded];
 
     /// Returns the name for people.
@@ -34,7 +34,7 @@ impl Phase {
 /// Result of a phase.
 #[derive(Debug, Clone, Serialize)]
 pub struct PhaseResult {
-    /// The phase.
+    /// Phase that was measured.
     pub phase: Phase,
     /// Lateness of its waits.
     pub lateness: LatenessView,
@@ -43,7 +43,7 @@ pub struct PhaseResult {
     pub cpu_time: CpuTime,
 }
 
-/// Waits again and again for `span` and returns how late the waits ended. Runs on the rig's thread.
+/// Repeats waits of [`INTERVAL`] for `span` and returns how late they ended. Runs on the rig's thread.
 pub(super) async fn measure(span: Span) -> Lateness {
     let pace = Pace::real();
     let timer = Timer::new(pace);

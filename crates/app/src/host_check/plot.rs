@@ -1,4 +1,4 @@
-//! The waits of both phases as an SVG picture, with the tolerated lateness. Lengths are px.
+//! Draws the waits of both phases as an SVG picture, with the tolerated lateness. Lengths are px.
 
 use super::phase::{Phase, PhaseResult};
 use history::report::svg::Svg;

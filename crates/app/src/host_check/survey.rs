@@ -1,27 +1,20 @@
-//! Reads the state of the computer from the files of the kernel. Opens no port: a rig may be running.
+//! Reads the state of the computer from the files of the kernel.
 
 use super::cpu_time::CpuTime;
-use super::facts::{
-    Access, Facts, PortFacts, Preemption, RealTimeShare, is_virtual, latency_timer_file,
-};
-use machine::rig::wiring::{Line, Wiring};
+use super::facts::{Facts, Preemption, RealTimeShare, is_virtual};
 use machine::view::HostView;
-use rustix::fs::{AtFlags, CWD, accessat};
-use rustix::io::Errno;
 use rustix::param::clock_ticks_per_second;
 use rustix::process::{Resource, getrlimit};
 use std::fs;
-use std::path::Path;
-use std::str::FromStr;
 
-/// Returns the time of the CPUs since boot; `None` where the kernel does not say it.
+/// Returns the time of the CPUs since boot; `None` where the kernel does not report it.
 pub(super) fn cpu_time() -> Option<CpuTime> {
     let stat = fs::read_to_string("/proc/stat").ok()?;
     CpuTime::parse(&stat, clock_ticks_per_second())
 }
 
-/// Looks at the computer; `cpu_time` is that of the test.
-pub(super) fn facts(wiring: &Wiring, rights: &HostView, cpu_time: CpuTime) -> Facts {
+/// Reads the state of the computer; `cpu_time` is that of the test.
+pub(super) fn facts(rights: &HostView, cpu_time: CpuTime) -> Facts {
     Facts {
         program: std::env::current_exe().unwrap_or_default(),
         is_fifo: rights.fifo_priority.is_some(),
@@ -32,7 +25,6 @@ pub(super) fn facts(wiring: &Wiring, rights: &HostView, cpu_time: CpuTime) -> Fa
         real_time_share: real_time_share(),
         is_virtual: is_virtual(&fs::read_to_string("/proc/cpuinfo").unwrap_or_default()),
         cpu_time,
-        ports: wiring.lines.iter().map(port).collect(),
     }
 }
 
@@ -61,28 +53,6 @@ fn governors() -> Vec<String> {
     texts.map(|text| text.trim().to_owned()).collect()
 }
 
-fn port(line: &Line) -> PortFacts {
-    let path = Path::new(&line.port);
-    let device = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    let timer = latency_timer_file(&device);
-    PortFacts {
-        line: line.name.clone(),
-        port: line.port.clone(),
-        access: access(path),
-        latency_timer: timer.and_then(|file| number(&file).map(|ms| (file, ms))),
-    }
-}
-
-/// Asks the kernel for the permission of this process, without opening the port.
-fn access(path: &Path) -> Access {
-    let wanted = rustix::fs::Access::READ_OK | rustix::fs::Access::WRITE_OK;
-    match accessat(CWD, path, wanted, AtFlags::EACCESS) {
-        Ok(()) => Access::Granted,
-        Err(Errno::NOENT | Errno::NOTDIR) => Access::Missing,
-        Err(_) => Access::Denied,
-    }
-}
-
-fn number<T: FromStr>(file: impl AsRef<Path>) -> Option<T> {
+fn number(file: &str) -> Option<i64> {
     fs::read_to_string(file).ok()?.trim().parse().ok()
 }

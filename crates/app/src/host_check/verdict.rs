@@ -1,4 +1,4 @@
-//! What the rig tolerates: the lateness of a computer up to which the promises of `rig.toml` hold.
+//! Compares the lateness of a computer with the greatest lateness at which the promises of `rig.toml` hold.
 
 use machine::rig::wiring::Wiring;
 use serde::Serialize;
@@ -30,7 +30,7 @@ pub struct Verdict {
     pub tolerated_ms: f64,
     /// Least `safety.estop_reaction_ms` that keeps the emergency stop at this lateness, ms.
     pub reaction_with_lateness_ms: f64,
-    /// What the rig needs.
+    /// Each promise with the lateness that it tolerates.
     pub needs: [Need; 2],
 }
 

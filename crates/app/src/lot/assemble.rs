@@ -1,7 +1,7 @@
 //! Builds the cycle of a run from configuration, recipe and calibration.
 
-use super::LotContext;
 use super::prior_state::PriorState;
+use super::{LotContext, Purpose};
 use anyhow::Context;
 use bus::Pace;
 use config::Plant;
@@ -13,8 +13,6 @@ use machine::guard::{Actuator, Guard, PartSize};
 use machine::handling::mechanism::Mechanism;
 use machine::handling::moves::Strokes;
 use machine::rig::axis::AxisStation;
-use machine::station::catalogue::AlarmCode;
-use machine::station::trouble::Alarm;
 use machine::station::{Plan, Station};
 use machine::view::{Mimic, MimicBody};
 use std::sync::Arc;
@@ -33,6 +31,7 @@ pub(super) fn cycle(
         uses,
         alarms,
         left,
+        serials,
     } = prior_state;
     let plant = context.plant;
     let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
@@ -69,6 +68,11 @@ pub(super) fn cycle(
         lot: plant.lot.clone(),
         worn: uses,
         left,
+        serials,
+        prompts: match context.purpose {
+            Purpose::Lot => plant.prompts(context.recipe).cloned().collect(),
+            Purpose::BetweenLots(_) | Purpose::Calibration => Vec::new(),
+        },
     };
     let mechanism = Mechanism::new(strokes, wiring.strokes, size_of(context.recipe));
     let mut station = Station::new(plan, device, wiring.axis.clone(), mechanism);
@@ -97,15 +101,11 @@ pub fn mimic(plant: &Plant, recipe: &Recipe) -> anyhow::Result<Mimic> {
 
 /// Raises an alarm again that an earlier run left unacknowledged.
 fn raise_again(station: &mut Station, left: UnacknowledgedAlarm, epoch_us: i64) {
-    let Some(code) = AlarmCode::from_name(&left.code) else {
+    let Some(alarm) = left.alarm() else {
         return tracing::warn!(code = left.code, "skipped an unknown alarm");
     };
     let until = left.shelved_until_us.map(|until_us| until_us - epoch_us);
     let until = until.and_then(|us| u64::try_from(us).ok()).map(RigTime);
-    let alarm = Alarm {
-        code,
-        args: left.args,
-    };
     station.annunciator_mut().inherit(alarm, left.count, until);
 }
 

@@ -12,7 +12,7 @@ use tokio::sync::mpsc;
 /// Event of a run, in order of occurrence.
 #[derive(Debug)]
 pub enum LotEvent {
-    /// The run begins; nothing has been sent to the rig yet.
+    /// The run begins; the rig has received no request yet.
     Begun,
     /// An event of the control cycle.
     Cycle(Event),

@@ -27,8 +27,8 @@ pub struct Journal {
     /// Name of the lot; `None` between lots.
     lot: Option<String>,
     simulated: bool,
-    /// Codes of alarms whose cause is present.
-    active: Vec<String>,
+    /// Alarms whose cause is present.
+    active: Vec<Alarm>,
     /// Code of the alarm that put the lot on hold; `None` when the lot is not on hold.
     held: Option<String>,
     uses: Uses,
@@ -95,26 +95,28 @@ impl Journal {
     /// Returns the rows of a changed alarm list: for alarms whose cause is gone, and for a lot that is no longer on
     /// hold.
     pub fn standing(&mut self, standing: &[ListedAlarm], at_us: i64) -> Vec<Row> {
-        let active: Vec<String> = standing
-            .iter()
-            .filter(|one| one.is_active())
-            .map(|one| one.alarm.code.name())
-            .collect();
-        let gone = self.active.iter().filter(|code| !active.contains(code));
-        let mut rows: Vec<Row> = gone.map(|code| self.returned(code, at_us)).collect();
-        if self.held.take_if(|held| !active.contains(held)).is_some() {
+        let active = standing.iter().filter(|one| one.is_active());
+        let active: Vec<Alarm> = active.map(|one| one.alarm.clone()).collect();
+        let remains = |one: &Alarm| active.iter().any(|it| it.is_same(one));
+        let gone = self.active.iter().filter(|one| !remains(one));
+        let mut rows: Vec<Row> = gone.map(|one| self.returned(one, at_us)).collect();
+        let holds = |held: &str| active.iter().any(|it| it.code.name() == held);
+        if self.held.take_if(|held| !holds(held)).is_some() {
             rows.extend(self.lot(LotState::Running, None, at_us));
         }
         self.active = active;
         rows
     }
 
-    fn returned(&self, code: &str, at_us: i64) -> Row {
+    fn returned(&self, alarm: &Alarm, at_us: i64) -> Row {
+        let own = |(name, value): (&'static str, &str)| (name, value.to_owned());
         Row::AlarmChange(AlarmChangeRecord {
             simulated: self.simulated,
-            code: Some(code.to_owned()),
+            code: Some(alarm.code.name()),
             at_us,
-            change: AlarmChange::Returned,
+            change: AlarmChange::Returned {
+                only: alarm.distinction().map(own),
+            },
         })
     }
 
@@ -269,17 +271,15 @@ mod tests {
 
     #[test]
     fn only_an_accepted_acknowledgement_changes_the_alarm() {
-        let asked = |refused: Option<&str>| AnsweredOrder {
-            order: machine::view::Order {
-                order: "acknowledge".into(),
+        let asked = |refused: Option<texts::Message>| AnsweredOrder {
+            order: machine::view::Order::Acknowledge {
                 alarm: Some("door_open".into()),
-                ..Default::default()
             },
             by: machine::view::By {
                 who: "li".into(),
                 ..Default::default()
             },
-            refused: refused.map(str::to_owned),
+            refused,
         };
         let rows = journal().ordered(&asked(None), 5);
         let [Row::Order(order), Row::AlarmChange(change)] = &rows[..] else {
@@ -288,7 +288,8 @@ mod tests {
         assert_eq!((order.who.as_str(), order.at_us), ("li", 5));
         assert_eq!(order.what, r#"{"order":"acknowledge","alarm":"door_open"}"#);
         assert_eq!(change.code.as_deref(), Some("door_open"));
-        assert_eq!(journal().ordered(&asked(Some("no such alarm")), 5).len(), 1);
+        let refused = texts::Message::new("refusal", "no_such_alarm");
+        assert_eq!(journal().ordered(&asked(Some(refused)), 5).len(), 1);
     }
 
     #[test]

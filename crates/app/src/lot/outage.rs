@@ -104,7 +104,10 @@ impl HistoryRetry<'_> {
 
 /// Returns the alarm of a history that cannot be written.
 pub(super) fn history_lost(db: &Path, error: &anyhow::Error) -> Alarm {
-    Alarm::history_lost(&db.display().to_string(), &format!("{error:#}"))
+    let refusal = error
+        .downcast_ref::<HistoryError>()
+        .map_or("history_failed", HistoryError::refusal);
+    Alarm::history_lost(&db.display().to_string(), refusal, &format!("{error:#}"))
 }
 
 #[cfg(test)]

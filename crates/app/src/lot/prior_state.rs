@@ -5,7 +5,10 @@ use anyhow::Context;
 use history::{Store, UnacknowledgedAlarm};
 use machine::dut::Calibration;
 use machine::handling::inside::Inside;
+use machine::handling::serial::{Serials, Source, SourceName};
 use machine::handling::wear::Uses;
+use std::collections::BTreeSet;
+use units::Span;
 
 /// State of the rig that a run takes over.
 pub(super) struct PriorState {
@@ -17,6 +20,8 @@ pub(super) struct PriorState {
     pub alarms: Vec<UnacknowledgedAlarm>,
     /// Parts that the last run left inside.
     pub left: Inside,
+    /// Serial numbers of the lot's parts.
+    pub serials: Serials,
 }
 
 impl PriorState {
@@ -43,8 +48,39 @@ impl PriorState {
             uses: uses(store, simulated)?,
             alarms: store.unacknowledged_alarms(simulated)?,
             left,
+            serials: serials(store, context)?,
         })
     }
+}
+
+/// Returns the serial numbers of the run's parts. In a retest the parts come again with the numbers that they have.
+fn serials(store: &Store, context: &LotContext) -> anyhow::Result<Serials> {
+    let (order, plant) = (context.order, context.plant);
+    let settings = plant.lot.serial.as_ref();
+    let Some(settings) = settings.filter(|_| context.purpose == Purpose::Lot) else {
+        return Ok(Serials::default());
+    };
+    let source = match settings.source {
+        SourceName::Counted => Source::Counted {
+            template: settings.template.clone(),
+            lot: order.lot.clone(),
+            given: store.parts_numbered(&order.lot)?,
+        },
+        SourceName::Reader => Source::Reader {
+            patience: Span::ms(
+                plant
+                    .serial_reader
+                    .as_ref()
+                    .map_or(0, |it| it.timeout_ms as u64),
+            ),
+        },
+        SourceName::Wedge => Source::Wedge,
+    };
+    let taken = match order.retest {
+        None => store.serials(&order.lot)?,
+        Some(_) => BTreeSet::new(),
+    };
+    Ok(Serials::new(source, taken))
 }
 
 /// Returns the calibration of a live simulated rig.
@@ -95,5 +131,6 @@ fn valid_calibration(store: &Store, context: &LotContext) -> anyhow::Result<Opti
         serde_json::from_str(&record.body).context("the stored calibration cannot be read")?;
     let facts = calibration.facts();
     let fits = facts.is_complete && facts.made_at_us <= context.epoch_us;
-    Ok((record.verified && fits && record.due_at_us > context.epoch_us).then_some(calibration))
+    let holds = record.verified && !record.is_overdue(context.epoch_us);
+    Ok((fits && holds).then_some(calibration))
 }

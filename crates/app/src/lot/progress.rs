@@ -35,7 +35,7 @@ pub struct PartUnderWay {
 impl PartUnderWay {
     /// Returns the number of the part among those of its kind, and the name of the kind.
     pub fn number(&self) -> (u64, &'static str) {
-        rows::number(&self.judged.part.kind, self.reference_count)
+        rows::number(&self.judged.part.role, self.reference_count)
     }
 }
 
@@ -133,6 +133,7 @@ impl<'a> LotProgress<'a> {
             | Event::Calibrated(_)
             | Event::Checked(..)
             | Event::Ordered(..)
+            | Event::Prompted(_)
             | Event::Inside(..) => {}
         }
         None
@@ -140,7 +141,7 @@ impl<'a> LotProgress<'a> {
 
     fn judged(&mut self, judged: &Judged) {
         let ordinal = judged.part.ordinal;
-        match judged.part.kind {
+        match judged.part.role {
             PartRole::Reference(_) => self.reference_count += 1,
             PartRole::Lot(_) => self.counts.add(judged.verdict.name()),
         }
@@ -162,7 +163,7 @@ impl<'a> LotProgress<'a> {
         reasons.push(Reason::interrupted(&interrupted.why));
         let before = std::mem::replace(&mut part.judged.verdict, Verdict::Void(reasons));
         part.judged.part.bin = Some(Bin::RETEST);
-        if matches!(part.judged.part.kind, PartRole::Lot(_)) {
+        if matches!(part.judged.part.role, PartRole::Lot(_)) {
             self.counts.remove(before.name());
             self.counts.add("void");
         }
@@ -170,7 +171,7 @@ impl<'a> LotProgress<'a> {
 
     fn landed(&mut self, landed: &Landed) -> Option<LotEvent> {
         let part = self.under_way.remove(&landed.part.ordinal)?;
-        if matches!(landed.part.kind, PartRole::Lot(_)) {
+        if matches!(landed.part.role, PartRole::Lot(_)) {
             self.last_landed = Some(landed.at);
             *self.counts.bins.entry(landed.bin.to_string()).or_insert(0) += 1;
         }

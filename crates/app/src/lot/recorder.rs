@@ -129,6 +129,7 @@ impl Recorder {
             | Event::Left(_)
             | Event::Landed(_)
             | Event::LotBegan(_)
+            | Event::Prompted(_)
             | Event::PromiseBroken(_) => {}
         }
         Ok(())

@@ -11,8 +11,8 @@ use serde_json::{Map, Value, json};
 use units::RigTime;
 
 /// Returns the number of a part among those of its kind, and the name of the kind.
-pub fn number(kind: &PartRole, reference_count: u64) -> (u64, &'static str) {
-    match kind {
+pub fn number(role: &PartRole, reference_count: u64) -> (u64, &'static str) {
+    match role {
         PartRole::Lot(seq) => (*seq, "lot"),
         PartRole::Reference(_) => (reference_count, "golden"),
     }
@@ -20,14 +20,14 @@ pub fn number(kind: &PartRole, reference_count: u64) -> (u64, &'static str) {
 
 /// Returns the row of a part with its measurements and their raw replies.
 pub fn part(context: &LotContext, judged: &Judged, reference_count: u64) -> PartRecord {
-    let (seq, kind) = number(&judged.part.kind, reference_count);
+    let (seq, kind) = number(&judged.part.role, reference_count);
     let at = |time: RigTime| context.wall_us(time);
     PartRecord {
         lot: context.order.lot.clone(),
         seq,
-        serial: match &judged.part.kind {
+        serial: match &judged.part.role {
             PartRole::Reference(serial) => Some(serial.clone()),
-            PartRole::Lot(_) => None,
+            PartRole::Lot(_) => judged.part.serial.clone(),
         },
         verdict: judged.verdict.name().to_string(),
         bin: judged
@@ -128,9 +128,9 @@ pub fn json(context: &LotContext, judged: &Judged, cycle_s: Option<f64>, bin: &s
         values.insert(key.into(), json!(rounded(reading.value)));
         uncertainty.insert(key.into(), json!(rounded(reading.expanded())));
     }
-    let (seq, _) = number(&judged.part.kind, 0);
+    let (seq, _) = number(&judged.part.role, 0);
     let spent = judged.record.spent;
-    json!({
+    let mut object = json!({
         "type": "part",
         "seq": seq,
         "lot": context.order.lot,
@@ -151,7 +151,11 @@ pub fn json(context: &LotContext, judged: &Judged, cycle_s: Option<f64>, bin: &s
             "ramp_s": spent.ramp.as_seconds(),
             "bound_s": spent.bound.as_seconds(),
         },
-    })
+    });
+    if let Some(serial) = &judged.part.serial {
+        object["serial"] = json!(serial);
+    }
+    object
 }
 
 /// Rounds to seven significant digits, so that outputs are easy to read and compare.

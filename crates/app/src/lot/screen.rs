@@ -68,7 +68,7 @@ impl Subscriber for Screen {
 
 /// Returns true for a part of the lot under way.
 fn is_shown(judged: &Judged, between_lots: bool) -> bool {
-    !between_lots && matches!(judged.part.kind, PartRole::Lot(_))
+    !between_lots && matches!(judged.part.role, PartRole::Lot(_))
 }
 
 /// Shows the lot and its limits.
@@ -100,7 +100,7 @@ fn judged(view: &mut View, lot: &LotProgress, judged: &Judged) {
     let json = rows::json(&lot.context, judged, None, "");
     let numbers = |key: &str| serde_json::from_value(json[key].clone()).unwrap_or_default();
     let last = LastPart {
-        seq: rows::number(&judged.part.kind, 0).0,
+        seq: rows::number(&judged.part.role, 0).0,
         verdict: judged.verdict.name().into(),
         bin: judged
             .part

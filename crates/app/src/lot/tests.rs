@@ -9,6 +9,7 @@ use config::{Folder, Plant, load_recipe};
 use history::{Archive, Filter, LotState};
 use machine::view::{By, Order, OrderRequest, View};
 use rusqlite::Connection;
+use serde_json::{Value, json};
 use std::path::PathBuf;
 use texts::{Lang, Message};
 use tokio::sync::oneshot;
@@ -105,15 +106,16 @@ async fn until(view: &mut watch::Receiver<View>, test: impl Fn(&View) -> bool) {
 }
 
 async fn order(orders: &mpsc::Sender<OrderRequest>, word: &str) -> Result<(), Message> {
+    give(orders, json!({"order": word})).await
+}
+
+async fn give(orders: &mpsc::Sender<OrderRequest>, order: Value) -> Result<(), Message> {
     let (answer, answered) = oneshot::channel();
-    let order = Order {
-        order: word.into(),
-        ..Order::default()
-    };
+    let order = serde_json::from_value(order).unwrap();
     let way_back = move |it| drop(answer.send(it));
     let request = OrderRequest::new(order, By::default(), way_back);
     orders.send(request).await.unwrap();
-    answered.await.unwrap()
+    answered.await.unwrap().map(drop)
 }
 
 fn lost(view: &View) -> bool {
@@ -125,12 +127,8 @@ fn lost(view: &View) -> bool {
 fn a_failed_assertion_ends_the_run_in_the_history() {
     let test = TestLot::new(true);
     let exit = test.run(async |orders, _seen| {
-        let lamp_test = Order {
-            order: "lamp_test".into(),
-            ..Order::default()
-        };
         // The cycle calls this function, so the panic happens in the task of the cycle.
-        let request = OrderRequest::new(lamp_test, By::default(), |_| {
+        let request = OrderRequest::new(Order::LampTest {}, By::default(), |_| {
             panic!("an assertion of the cycle")
         });
         orders.send(request).await.unwrap();
@@ -147,6 +145,43 @@ fn a_failed_assertion_ends_the_run_in_the_history() {
 }
 
 #[test]
+fn the_end_of_a_run_leaves_no_order_unanswered() {
+    let test = TestLot::new(true);
+    test.run(async |orders, mut seen| {
+        until(&mut seen, |view| view.judged >= 1).await;
+        for (word, state) in [("stop", "Stopped"), ("reset", "Idle")] {
+            assert_eq!(order(&orders, word).await, Ok(()), "{word}");
+            until(&mut seen, |view| view.machine.state == state).await;
+        }
+        let mode = |mode| json!({"order": "mode", "mode": mode});
+        assert_eq!(give(&orders, mode("manual")).await, Ok(()));
+        let close = async {
+            assert_eq!(give(&orders, mode("production")).await, Ok(()));
+            give(&orders, json!({"order": "close_lot", "lot": "A"})).await
+        };
+        let jog = json!({"order": "jog", "motion": "pusher_extend"});
+        let (jogged, closed) = tokio::join!(give(&orders, jog), close);
+        assert_eq!(
+            (jogged.unwrap_err().code(), closed),
+            ("not_arrived", Ok(()))
+        );
+        // The cycle still writes the safe outputs.
+        let late = order(&orders, "lamp_test").await.unwrap_err();
+        assert_eq!(late.code(), "run_ended");
+    });
+    let archive = Archive::open(&test.db).unwrap();
+    for word in ["jog", "lamp_test"] {
+        let recorded = archive
+            .orders(&Filter::default(), None, Some(word))
+            .unwrap();
+        assert!(
+            recorded.len() == 1 && recorded[0].refused.is_some(),
+            "{word}"
+        );
+    }
+}
+
+#[test]
 fn a_lot_continues_after_an_outage_without_loss() {
     let test = TestLot::new(true);
     let exit = test.run(async |orders, mut seen| {
@@ -157,10 +192,7 @@ fn a_lot_continues_after_an_outage_without_loss() {
         })
         .await;
         let why = order(&orders, "clear").await.unwrap_err().say(Lang::En);
-        assert!(
-            why.contains("history.db cannot be written") && why.contains("no room"),
-            "{why}"
-        );
+        assert_eq!(why, "make the history file writable first");
         test.mend();
         until(&mut seen, |view| !lost(view)).await;
         for (word, state) in [

@@ -26,25 +26,26 @@ mod router;
 use super::admission::{AdmissionError, admit};
 use super::controls::Controls;
 use super::exit::Exit;
+use super::links;
 use super::lot::{
     FOUND_LOT, HistoryRetry, LotContext, LotRunner, Purpose, Subscriber, lost, mimic, pace_of,
 };
+use super::lot_decision::AboutLot;
 use super::order::{Files, LotOrder};
 use super::order_queue::OrderQueue;
 use super::source::RigSource;
-use super::{links, lot_decision};
 #[cfg(feature = "sim")]
 use super::{simulated, simulated::LiveRig};
-use anyhow::{Context, bail};
+use ::page::Door;
+use ::page::access::SetupCode;
+use anyhow::bail;
 use config::{Folder, Plant, load_recipe, recipe_names};
-use history::{Decision, HistoryError, Store};
+use history::{HistoryError, Store};
 use machine::dut::Recipe;
 use machine::station::packml::State;
 use machine::view::OrderRequest;
-pub use page::FirstLogin;
 use page::Page;
 use router::{AfterRun, OrderRouter};
-use std::net::{SocketAddr, TcpListener};
 use std::sync::Arc;
 use tokio::sync::mpsc;
 
@@ -67,18 +68,16 @@ pub struct Service {
 }
 
 impl Service {
-    /// Opens the rig and serves its page at `listen`; the day begins with lot `first`, if given.
+    /// Opens the rig and serves its page at `door`; the day begins with lot `first`, if given.
     ///
     /// # Errors
-    /// Fails when the address is in use, the configuration or the lot is refused, or the rig cannot be built.
+    /// Fails for a faulty configuration, for a lot that the rig refuses, and when the rig cannot be built.
     pub fn open(
         files: &Files,
         source: RigSource,
-        listen: SocketAddr,
+        door: Door,
         first: Option<LotOrder>,
     ) -> anyhow::Result<Self> {
-        let listener = TcpListener::bind(listen)
-            .with_context(|| format!("--listen {listen}: the page cannot listen there"))?;
         let plant = Arc::new(Plant::load(&files.config)?);
         match &source {
             RigSource::Serial(given) => links::check(&plant, given)?,
@@ -97,7 +96,7 @@ impl Service {
         let (orders, asked) = mpsc::channel(::page::WAITING);
         let mimic = mimic(&plant, &recipe)?;
         let source = with_live_rig(source, &plant, &order)?;
-        let page = Page::start(listener, files, &controls, orders, mimic)?;
+        let page = Page::start(door, files, &controls, orders, mimic)?;
         Ok(Self {
             router: OrderRouter::new(&files.db, &plant, &source),
             source,
@@ -111,14 +110,14 @@ impl Service {
         })
     }
 
-    /// Returns the address of the page.
-    pub fn address(&self) -> SocketAddr {
-        self.page.address
+    /// Returns the address of the page, `http://127.0.0.1:8080/` for example.
+    pub fn url(&self) -> &str {
+        &self.page.url
     }
 
-    /// Returns the login that a first start created for the engineer; only the first call returns it.
-    pub fn take_first_login(&mut self) -> Option<FirstLogin> {
-        self.page.first_login.take()
+    /// Returns the code that adds the first engineer at the page; `None` when there is an engineer.
+    pub fn setup_code(&self) -> Option<&SetupCode> {
+        self.page.setup.as_ref()
     }
 
     /// Serves until a signal ends the program; `outer` receives the events of every run.
@@ -166,11 +165,12 @@ impl Service {
                 Exit::Stopped => match self.router.next() {
                     Some(AfterRun::Lot(lot)) => next = Some(*lot),
                     Some(AfterRun::Hold(held)) => {
-                        let row = lot_decision::state_row(&held.0, &held.1, Decision::Hold);
+                        let about = AboutLot::of(&held.0);
+                        let rows: Vec<_> =
+                            about.map(|it| it.state_row(&held.1)).into_iter().collect();
                         let hold = async || {
-                            let rows = std::slice::from_ref(&row);
                             let store = Store::open(&self.files.db);
-                            Ok(store.and_then(|mut store| store.record(rows))?)
+                            Ok(store.and_then(|mut store| store.record(&rows))?)
                         };
                         if let Err(error) = self.retry().until_written(hold).await {
                             return Ok(lost(&error));

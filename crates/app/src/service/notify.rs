@@ -1,14 +1,14 @@
-//! Tells systemd how the service is: ready, alive, state in words, stopping.
+//! Tells systemd the state of the service: ready, alive, state in words, stopping.
 //!
-//! The proof of life is the view, because a cycle that turns publishes it at least once a second, and so does the wait for
-//! a history that cannot be written. A program that only keeps its threads sends nothing, and systemd restarts it.
+//! A new view proves that the service is alive: a running cycle publishes one at least once a second, and so does the
+//! wait for a history that cannot be written. When the cycle hangs, no view follows and systemd restarts the program.
 //!
 //! - `READY=1` follows the first view of a cycle: page and lines are open by then.
 //! - `WATCHDOG=1` follows a view, at most four times within `WatchdogSec`.
 //! - `STATUS=` is the state in words, when it changes.
 //! - `STOPPING=1` follows the first signal.
 //!
-//! Without `NOTIFY_SOCKET` nothing is sent.
+//! Without `NOTIFY_SOCKET` the program sends no message.
 
 use crate::controls::Controls;
 use machine::view::View;
@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 /// Pings within the time after which systemd takes the service for dead.
 const PINGS: u32 = 4;
 
-/// What systemd knows of the service.
+/// State of the service as systemd knows it.
 #[derive(Debug, Default)]
 struct Notifier {
     is_ready: bool,
@@ -27,15 +27,6 @@ struct Notifier {
     pinged: Option<Instant>,
     /// Longest time between two pings; `None` without a watchdog.
     every: Option<Duration>,
-}
-
-/// A message to systemd.
-#[derive(Debug, PartialEq, Eq)]
-enum Message {
-    Ready,
-    Watchdog,
-    Status(String),
-    Stopping,
 }
 
 /// Tells systemd about every view of the rig until the program ends.
@@ -54,46 +45,34 @@ pub(super) async fn notify_systemd(controls: Controls) {
     }
 }
 
-fn send(messages: &[Message]) {
-    let states = messages.iter().map(Message::state).collect::<Vec<_>>();
-    if states.is_empty() {
+fn send(messages: &[NotifyState]) {
+    if messages.is_empty() {
         return;
     }
-    if let Err(error) = sd_notify::notify(&states) {
+    if let Err(error) = sd_notify::notify(messages) {
         tracing::warn!("systemd cannot be notified: {error}");
-    }
-}
-
-impl Message {
-    fn state(&self) -> NotifyState<'_> {
-        match self {
-            Self::Ready => NotifyState::Ready,
-            Self::Watchdog => NotifyState::Watchdog,
-            Self::Status(text) => NotifyState::Status(text),
-            Self::Stopping => NotifyState::Stopping,
-        }
     }
 }
 
 impl Notifier {
     /// Returns the messages that follow a view at `now`.
-    fn messages(&mut self, view: &View, is_stopping: bool, now: Instant) -> Vec<Message> {
+    fn messages(&mut self, view: &View, is_stopping: bool, now: Instant) -> Vec<NotifyState<'_>> {
         let mut messages = Vec::new();
         // Only a cycle dates the view.
         if view.at_us > 0 && !std::mem::replace(&mut self.is_ready, true) {
-            messages.push(Message::Ready);
+            messages.push(NotifyState::Ready);
         }
         if is_stopping && !std::mem::replace(&mut self.is_stopping, true) {
-            messages.push(Message::Stopping);
+            messages.push(NotifyState::Stopping);
         }
         if self.is_ping_due(now) {
             self.pinged = Some(now);
-            messages.push(Message::Watchdog);
+            messages.push(NotifyState::Watchdog);
         }
         let status = status(view, is_stopping);
         if status != self.status {
-            self.status.clone_from(&status);
-            messages.push(Message::Status(status));
+            self.status = status;
+            messages.push(NotifyState::Status(&self.status));
         }
         messages
     }
@@ -142,13 +121,19 @@ mod tests {
         }
     }
 
+    /// Returns the messages as systemd receives them.
+    fn sent(notifier: &mut Notifier, view: &View, is_stopping: bool, now: Instant) -> Vec<String> {
+        let messages = notifier.messages(view, is_stopping, now);
+        messages.iter().map(ToString::to_string).collect()
+    }
+
     #[test]
     fn ready_waits_for_the_first_view_of_a_cycle() {
         let (mut notifier, now) = (notifier(), Instant::now());
-        let text = Message::Status("between lots; stopped".into());
-        assert_eq!(notifier.messages(&view(0), false, now), [text]);
-        let ready = [Message::Ready, Message::Watchdog];
-        assert_eq!(notifier.messages(&view(1), false, now), ready);
+        let text = ["STATUS=between lots; stopped"];
+        assert_eq!(sent(&mut notifier, &view(0), false, now), text);
+        let ready = ["READY=1", "WATCHDOG=1"];
+        assert_eq!(sent(&mut notifier, &view(1), false, now), ready);
     }
 
     #[test]
@@ -156,27 +141,26 @@ mod tests {
         let (mut notifier, start) = (notifier(), Instant::now());
         notifier.messages(&view(1), false, start);
         let at = |seconds| start + Duration::from_secs(seconds);
-        assert_eq!(notifier.messages(&view(2), false, at(4)), []);
-        let ping = [Message::Watchdog];
-        assert_eq!(notifier.messages(&view(3), false, at(5)), ping);
-        assert_eq!(notifier.messages(&view(4), false, at(6)), []);
+        let mut ping = |at_us, at| sent(&mut notifier, &view(at_us), false, at);
+        assert!(ping(2, at(4)).is_empty());
+        assert_eq!(ping(3, at(5)), ["WATCHDOG=1"]);
+        assert!(ping(4, at(6)).is_empty());
     }
 
     #[test]
     fn without_a_watchdog_no_ping_is_sent() {
         let mut notifier = Notifier::default();
-        let messages = notifier.messages(&view(1), false, Instant::now());
-        assert!(!messages.contains(&Message::Watchdog), "{messages:?}");
+        let messages = sent(&mut notifier, &view(1), false, Instant::now());
+        assert_eq!(messages, ["READY=1", "STATUS=between lots; stopped"]);
     }
 
     #[test]
     fn stopping_is_sent_once() {
         let (mut notifier, now) = (notifier(), Instant::now());
         notifier.messages(&view(1), false, now);
-        let said = notifier.messages(&view(2), true, now);
-        let text = Message::Status("between lots; stopped; stopping".into());
-        assert_eq!(said, [Message::Stopping, text]);
-        assert_eq!(notifier.messages(&view(3), true, now), []);
+        let stopping = ["STOPPING=1", "STATUS=between lots; stopped; stopping"];
+        assert_eq!(sent(&mut notifier, &view(2), true, now), stopping);
+        assert!(sent(&mut notifier, &view(3), true, now).is_empty());
     }
 
     #[test]

@@ -4,52 +4,36 @@ use crate::controls::Controls;
 use crate::order::Files;
 use anyhow::Context;
 use machine::view::{Mimic, OrderRequest};
-use page::access;
-use std::net::{SocketAddr, TcpListener};
-use std::path::PathBuf;
+use page::Door;
+use page::access::SetupCode;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use tokio::sync::{mpsc, watch};
 
-/// Login of the first engineer, created at the first start.
-#[derive(Debug)]
-pub struct FirstLogin {
-    /// Name of the engineer.
-    pub name: String,
-    /// Password; stored nowhere.
-    pub password: String,
-    /// File of the logins.
-    pub people: PathBuf,
-}
-
 pub(super) struct Page {
-    pub address: SocketAddr,
-    /// Login created at a first start; `None` at every later start.
-    pub first_login: Option<FirstLogin>,
+    pub url: String,
+    /// Code that adds the first engineer; `None` when there is an engineer.
+    pub setup: Option<SetupCode>,
     ended: watch::Sender<bool>,
     thread: JoinHandle<()>,
 }
 
 impl Page {
     pub fn start(
-        listener: TcpListener,
+        door: Door,
         files: &Files,
         controls: &Controls,
         orders: mpsc::Sender<OrderRequest>,
         mimic: Mimic,
     ) -> anyhow::Result<Self> {
+        let (listener, tls) = door.into_parts();
         listener
             .set_nonblocking(true)
             .context("the page's socket")?;
         let address = listener.local_addr().context("the page's socket")?;
-        let people = access::access_path(&files.db);
-        let opened = ::page::Sessions::open(&people);
-        let (sessions, first) = opened.context("the logins are kept beside the history (--db)")?;
-        let first_login = first.map(|(name, password)| FirstLogin {
-            name,
-            password,
-            people,
-        });
+        let scheme = if tls.is_some() { "https" } else { "http" };
+        let opened = ::page::Sessions::open(&files.db);
+        let (sessions, setup) = opened.context("the logins are kept beside the history (--db)")?;
         let shared = ::page::Shared {
             sessions,
             mimic: Arc::new(mimic),
@@ -66,15 +50,16 @@ impl Page {
         let thread = std::thread::spawn(move || {
             let served = runtime.block_on(async {
                 let listener = tokio::net::TcpListener::from_std(listener)?;
-                ::page::serve(listener, shared, seen).await
+                ::page::serve(listener, tls, shared, seen).await;
+                Ok::<_, std::io::Error>(())
             });
             if let Err(error) = served {
                 tracing::error!("the page failed: {error}");
             }
         });
         Ok(Self {
-            address,
-            first_login,
+            url: format!("{scheme}://{address}/"),
+            setup,
             ended,
             thread,
         })

@@ -12,7 +12,7 @@
 use super::AdmittedLot;
 use crate::admission;
 use crate::lot::Purpose;
-use crate::lot_decision;
+use crate::lot_decision::{self, AboutLot};
 use crate::order::LotOrder;
 use crate::source::RigSource;
 use config::Plant;
@@ -20,7 +20,7 @@ use history::{Decision, Store};
 use machine::view::{By, Order, OrderRequest};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use texts::{Lang, Message};
+use texts::Message;
 use tokio::sync::{mpsc, oneshot};
 
 /// What follows a run that an order ended: another lot, or a hold.
@@ -98,19 +98,20 @@ impl OrderRouter {
 
     async fn handle(&self, asked: OrderRequest) {
         let (order, by) = (asked.order.clone(), asked.by.clone());
-        let decision = Decision::ordered(&order.order);
-        let ours = order.lot.is_some() && self.run().lot == order.lot;
-        let wanted = match decision {
-            None if order.order == "start" => self.admitted(&order).await.map(Some),
-            Some(Decision::Hold) if ours => {
-                let reason = order.reason.as_deref().unwrap_or_default();
-                let checked = Decision::Hold.check_reason(reason);
-                checked.map(|()| Some(AfterRun::Hold(Box::new((order, by)))))
-            }
-            Some(Decision::Close) if ours => Ok(None),
-            Some(Decision::Release) if ours => Err(refused("lot_under_way")),
-            Some(Decision::Reopen) if ours => Err(refused("lot_not_complete")),
-            _not_under_way => return self.write(asked).await,
+        let about = AboutLot::of(&order);
+        let ours = about.is_some_and(|it| self.run().lot.as_deref() == Some(it.lot));
+        let wanted = match (&order, about.filter(|_| ours)) {
+            (Order::Start { .. }, _) => self.admitted(&order).await.map(Some),
+            (_, None) => return self.write(asked).await,
+            (_, Some(about)) => match about.decision {
+                Decision::Hold => about
+                    .decision
+                    .check_reason(about.reason)
+                    .map(|()| Some(AfterRun::Hold(Box::new((order.clone(), by))))),
+                Decision::Close => Ok(None),
+                Decision::Release => Err(refused("lot_under_way")),
+                Decision::Reopen => Err(refused("lot_not_complete")),
+            },
         };
         if let Err(why) = wanted.and_then(|next| self.set_next(next)) {
             self.refuse(asked, why);
@@ -132,11 +133,19 @@ impl OrderRouter {
 
     /// Returns the lot of a `start` order; fails when the lot is not admitted.
     async fn admitted(&self, order: &Order) -> Result<AfterRun, Message> {
-        let order = LotOrder {
-            lot: order.lot.clone().unwrap_or_default(),
-            recipe: order.recipe.clone().unwrap_or_default(),
-            count: order.count,
-            retest: order.retest.clone(),
+        let order = match order.clone() {
+            Order::Start {
+                lot: Some(lot),
+                recipe,
+                count,
+                retest,
+            } => LotOrder {
+                lot,
+                recipe: recipe.unwrap_or_default(),
+                count,
+                retest,
+            },
+            _other => return Err(not_now()),
         };
         let router = self.clone();
         let check = move || {
@@ -147,7 +156,7 @@ impl OrderRouter {
                 .map_err(|why| why.screen_message())?;
             match admission::calibration_refusal(db, &recipe, source) {
                 Ok(None) => Ok(AfterRun::Lot(Box::new((order, recipe)))),
-                Ok(Some(why)) => Err(refused("calibration_invalid").with("detail", why)),
+                Ok(Some(why)) => Err(refused("calibration_invalid").with_inner("detail", &why)),
                 Err(error) => Err(trouble(&error)),
             }
         };
@@ -158,12 +167,15 @@ impl OrderRouter {
     async fn write(&self, asked: OrderRequest) {
         let (db, simulated) = (self.0.db.clone(), self.0.source.is_simulated());
         let (order, by) = (asked.order.clone(), asked.by.clone());
-        let write = move || match Decision::ordered(&order.order) {
-            Some(decision) => lot_decision::write(&db, &order, &by, decision),
-            None => write_replacement(&db, &order, &by, simulated),
+        let write = move || match (AboutLot::of(&order), &order) {
+            (Some(about), _) => lot_decision::write(&db, &order, &by, about),
+            (None, Order::Replaced { counter }) => {
+                write_replacement(&db, (&order, counter), &by, simulated)
+            }
+            (None, _other) => Err(not_now()),
         };
         match blocking(write).await {
-            Ok(()) => asked.answer(Ok(())),
+            Ok(()) => asked.answer(Ok(None)),
             Err(why) => self.refuse(asked, why),
         }
     }
@@ -171,7 +183,7 @@ impl OrderRouter {
     /// Answers with the refusal and records it in the audit.
     fn refuse(&self, asked: OrderRequest, why: Message) {
         let (order, by) = (asked.order.clone(), asked.by.clone());
-        self.pass(OrderRequest::denied(order, by, why.say(Lang::En)));
+        self.pass(OrderRequest::denied(order, by, why.clone()));
         asked.answer(Err(why));
     }
 
@@ -204,12 +216,19 @@ impl OrderRouter {
 }
 
 fn is_about_lots(order: &Order) -> bool {
-    let start = order.order == "start" && order.lot.is_some();
-    start || machine::view::LOT_ORDERS.contains(&order.order.as_str())
+    match order {
+        Order::Start { lot, .. } => lot.is_some(),
+        Order::Replaced { .. } => true,
+        other => AboutLot::of(other).is_some(),
+    }
 }
 
-fn write_replacement(db: &Path, order: &Order, by: &By, simulated: bool) -> Result<(), Message> {
-    let name = order.counter.as_deref().unwrap_or_default();
+fn write_replacement(
+    db: &Path,
+    (order, name): (&Order, &str),
+    by: &By,
+    simulated: bool,
+) -> Result<(), Message> {
     let at_us = jiff::Timestamp::now().as_microsecond();
     let write = |mut store: Store| {
         let known = store.replaced(simulated, name, &by.who, at_us)?;
@@ -238,7 +257,7 @@ fn refused(code: &'static str) -> Message {
 }
 
 fn trouble(error: &dyn std::fmt::Display) -> Message {
-    refused("program_trouble").with("detail", error)
+    refused("program_trouble").with("said", error)
 }
 
 fn not_now() -> Message {

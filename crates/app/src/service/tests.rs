@@ -15,14 +15,10 @@ async fn until(view: &mut watch::Receiver<View>, test: impl Fn(&View) -> bool) {
 
 async fn reset(orders: &mpsc::Sender<OrderRequest>) {
     let (answer, answered) = oneshot::channel();
-    let order = Order {
-        order: "reset".into(),
-        ..Order::default()
-    };
     let way_back = move |it| drop(answer.send(it));
-    let request = OrderRequest::new(order, By::default(), way_back);
+    let request = OrderRequest::new(Order::Reset {}, By::default(), way_back);
     orders.send(request).await.unwrap();
-    assert_eq!(answered.await.unwrap(), Ok(()));
+    assert_eq!(answered.await.unwrap(), Ok(None));
 }
 
 #[test]

@@ -14,7 +14,7 @@ use machine::station::catalogue::AlarmCode;
 use machine::station::trouble::Alarm;
 use rigsim::{SharedRig, SimError};
 use std::collections::{BTreeMap, BTreeSet};
-use texts::Lang;
+use texts::{Lang, Message};
 use units::RigTime;
 
 /// Account of a story.
@@ -27,7 +27,7 @@ pub struct Narrator {
     parts: BTreeMap<u64, (String, &'static str)>,
     explained: BTreeSet<AlarmCode>,
     /// Alarms whose cause is present.
-    active: BTreeSet<AlarmCode>,
+    active: Vec<Alarm>,
     bins: BTreeMap<Bin, u64>,
 }
 
@@ -44,7 +44,7 @@ impl Narrator {
             zero: None,
             parts: BTreeMap::new(),
             explained: BTreeSet::new(),
-            active: BTreeSet::new(),
+            active: Vec::new(),
             bins: BTreeMap::new(),
         }
     }
@@ -78,8 +78,9 @@ impl Narrator {
             Event::ListedAlarms(standing, _) => self.standing(standing, now),
             Event::Ordered(answered, _) if answered.by.origin == PANEL => {
                 let refused = answered.refused.as_ref();
-                let why = refused.map_or_else(String::new, |why| format!(": refused, {why}"));
-                self.stamped(now, &format!("panel     {}{why}", answered.order.order));
+                let said = |why: &Message| format!(": refused, {}", why.say(Lang::En));
+                let why = refused.map_or_else(String::new, said);
+                self.stamped(now, &format!("panel     {}{why}", answered.order.word()));
             }
             Event::State(_)
             | Event::Left(_)
@@ -87,6 +88,7 @@ impl Narrator {
             | Event::Ordered(..)
             | Event::Inside(..)
             | Event::Calibrated(_)
+            | Event::Prompted(_)
             | Event::PromiseBroken(_) => {}
         }
     }
@@ -102,9 +104,10 @@ impl Narrator {
     }
 
     /// Adds a line about an order of the script, with its answer.
-    pub fn order(&mut self, words: &str, answer: Result<(), Refusal>, now: RigTime) {
+    pub fn order(&mut self, words: &str, answer: Result<Option<Message>, Refusal>, now: RigTime) {
         let text = match answer {
-            Ok(()) => format!("operator  {words}"),
+            Ok(None) => format!("operator  {words}"),
+            Ok(Some(remark)) => format!("operator  {words}: {}", remark.say(Lang::En)),
             Err(why) => format!("operator  {words}: refused, {why}"),
         };
         self.begin(now);
@@ -163,10 +166,10 @@ impl Narrator {
 
     fn standing(&mut self, standing: &[ListedAlarm], now: RigTime) {
         let active = standing.iter().filter(|one| one.is_active());
-        let active: BTreeSet<AlarmCode> = active.map(|one| one.alarm.code).collect();
-        for code in std::mem::replace(&mut self.active, active.clone()) {
-            if !active.contains(&code) {
-                self.stamped(now, &format!("gone      {code}"));
+        let active: Vec<Alarm> = active.map(|one| one.alarm.clone()).collect();
+        for gone in std::mem::replace(&mut self.active, active.clone()) {
+            if !active.iter().any(|it| it.is_same(&gone)) {
+                self.stamped(now, &format!("gone      {}", gone.code));
             }
         }
     }
@@ -174,7 +177,7 @@ impl Narrator {
     fn landed(&mut self, landed: &Landed) {
         let (part, bin) = (&landed.part, landed.bin);
         if let (PartRole::Lot(_), Some((name, verdict))) =
-            (&part.kind, self.parts.get(&part.ordinal))
+            (&part.role, self.parts.get(&part.ordinal))
         {
             let text = format!("{name:<9} {verdict}, in bin {bin}");
             *self.bins.entry(bin).or_insert(0) += 1;
@@ -198,7 +201,7 @@ impl Narrator {
 }
 
 fn name(part: &Part) -> String {
-    match &part.kind {
+    match &part.role {
         PartRole::Reference(serial) => format!("part {serial}"),
         PartRole::Lot(number) => format!("part {number}"),
     }

@@ -16,6 +16,7 @@ use std::io::{BufWriter, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Receiver;
+use texts::{Lang, Message};
 use thiserror::Error;
 use tokio::sync::{mpsc, oneshot};
 use units::{RigTime, Span};
@@ -156,7 +157,10 @@ pub(super) enum Refusal {
 }
 
 /// Sends an order and returns the station's answer.
-async fn ask(order: &Order, orders: &mpsc::Sender<OrderRequest>) -> Result<(), Refusal> {
+async fn ask(
+    order: &Order,
+    orders: &mpsc::Sender<OrderRequest>,
+) -> Result<Option<Message>, Refusal> {
     let (answer, answered) = oneshot::channel();
     let order = order.clone();
     let by = By {
@@ -170,7 +174,7 @@ async fn ask(order: &Order, orders: &mpsc::Sender<OrderRequest>) -> Result<(), R
         .await
         .map_err(|_| Refusal::Ended)?;
     let answer = answered.await.map_err(|_| Refusal::Ended)?;
-    answer.map_err(|why| Refusal::Refused(why.say(texts::Lang::En)))
+    answer.map_err(|why| Refusal::Refused(why.say(Lang::En)))
 }
 
 impl Observed {
@@ -182,7 +186,7 @@ impl Observed {
                 self.alarms.insert(alarm.code.name());
             }
             Event::Judged(judged) => {
-                if let PartRole::Lot(number) = judged.part.kind {
+                if let PartRole::Lot(number) = judged.part.role {
                     self.numbers.insert(judged.part.ordinal, number);
                     self.judged.insert(number);
                 }
@@ -195,6 +199,7 @@ impl Observed {
             | Event::Ordered(..)
             | Event::Inside(..)
             | Event::Calibrated(_)
+            | Event::Prompted(_)
             | Event::PromiseBroken(_) => {}
         }
     }

@@ -13,7 +13,7 @@
 
 use anyhow::{Context, bail};
 use machine::station::packml::State;
-use machine::view::{ORDERS, Order};
+use machine::view::Order;
 use units::Span;
 
 /// Number of parts in a lot when the script does not give one.
@@ -159,31 +159,19 @@ fn seconds(text: &str) -> anyhow::Result<Span> {
     }
 }
 
-/// Parses an order; the cycle checks its arguments later, as it does for an order from a screen.
+/// Parses an order, `WORD [MEMBER=VALUE]...`; refuses unknown members, as the page does. A value that is JSON, such as a
+/// number, is read as such; `lot="7"` is the text 7.
 fn order(words: &[&str]) -> anyhow::Result<Order> {
-    let Some((word, members)) = words
-        .split_first()
-        .filter(|(word, _)| ORDERS.contains(word))
-    else {
-        bail!(
-            "found {:?}, expected one of {}",
-            words.join(" "),
-            ORDERS.join(", ")
-        );
-    };
-    let mut order = Order {
-        order: (*word).to_owned(),
-        ..Order::default()
-    };
+    let (word, members) = words.split_first().context("found no order")?;
+    let mut json = serde_json::json!({ "order": word });
     for member in members {
-        match member.split_once('=') {
-            Some(("motion", value)) => order.motion = Some(value.to_owned()),
-            Some(("mode", value)) => order.mode = Some(value.to_owned()),
-            Some(("alarm", value)) => order.alarm = Some(value.to_owned()),
-            Some((..)) | None => bail!("found {member:?}, expected motion=, mode= or alarm="),
-        }
+        let Some((name, value)) = member.split_once('=') else {
+            bail!("found {member:?}, expected MEMBER=VALUE");
+        };
+        let value = serde_json::from_str(value).unwrap_or_else(|_| (*value).into());
+        json[name] = value;
     }
-    Ok(order)
+    Ok(config::strict::from_slice(json.to_string().as_bytes())?)
 }
 
 #[cfg(test)]
@@ -216,7 +204,20 @@ mod tests {
             (jog.event.clone(), words.as_str()),
             (Awaited::State(State::Idle), "jog motion=pusher_extend")
         );
-        assert_eq!(order.motion.as_deref(), Some("pusher_extend"));
+        let motion = machine::handling::Move::PusherExtend;
+        assert_eq!(**order, Order::Jog { motion });
+    }
+
+    #[test]
+    fn a_member_of_an_order_may_be_a_number() {
+        let words = ["start", "lot=\"7\"", "recipe=jzc-22f-012", "count=3"];
+        let expected = Order::Start {
+            lot: Some("7".into()),
+            recipe: Some("jzc-22f-012".into()),
+            count: Some(3),
+            retest: None,
+        };
+        assert_eq!(order(&words).unwrap(), expected);
     }
 
     #[test]
@@ -240,9 +241,10 @@ mod tests {
                 "after lot order fly",
                 "found \"fly\", expected one of reset",
             ),
+            ("after lot order jog pusher", "expected MEMBER=VALUE"),
             (
-                "after lot order jog pusher",
-                "expected motion=, mode= or alarm=",
+                "after lot order jog mtion=pusher_extend",
+                "mtion: found an unknown member, expected \"motion\"?",
             ),
             (
                 "after lot sleep",

@@ -7,6 +7,7 @@ macro_rules! keys {
 
 pub mod card;
 pub mod golden;
+pub mod instrument;
 pub mod lot;
 pub mod recipe;
 pub mod rig;

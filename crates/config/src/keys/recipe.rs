@@ -1,15 +1,33 @@
 //! Keys of `recipes/NAME.toml`: those that every recipe has, and the sections that its kind describes.
 
 use machine::dut::Kind;
-use machine::form::{Form, Key, key, whole};
+use machine::form::{Form, Key, key, optional, whole};
 
 const DECISION: &[Key] = keys! {
     key("rule", Form::Choice(&["guard_band", "simple"]), "gauge", "limits moved inwards by U (k = 2), or the bare value");
     key("slow_repeats", whole(1, 100, ""), "station", "confirmation measurements of a result inside the guard band");
 };
 
+const CHOICE: &[Key] = keys! {
+    key("name", Form::Text, "station", "name in orders and in the record, used once");
+    key("text_en", Form::Text, "hmi", "label in English");
+    key("text_zh", Form::Text, "hmi", "label in Chinese");
+    optional("stops", Form::Flag, "station", "whether the answer stops the lot; default false");
+};
+
+/// Keys of `[[prompt]]` in recipes and in `lot.toml`.
+pub(super) const PROMPT: &[Key] = keys! {
+    key("name", Form::Text, "station", "name in orders and in the record, used once");
+    key("when", Form::Choice(&["lot_start", "before_calibration", "after_calibration", "lot_end"]), "station",
+        "before the first motion; before a calibration that is due; before the first part; after the last one");
+    key("text_en", Form::Text, "hmi", "request in English");
+    key("text_zh", Form::Text, "hmi", "request in Chinese");
+    optional("picture", Form::Text, "hmi", "PNG, JPEG or SVG file in config/pictures");
+    key("choices", Form::List(&Form::Table(CHOICE)), "station", "answers; at least one goes on");
+};
+
 /// Returns the keys that a recipe of this kind may have.
-pub fn of(kind: Kind) -> [Key; 8] {
+pub fn of(kind: Kind) -> [Key; 9] {
     let place = kind as usize;
     let sections = kind.sections();
     *keys! {
@@ -21,5 +39,6 @@ pub fn of(kind: Kind) -> [Key; 8] {
         key("limits", Form::Table(sections.limits), "gauge", "limits, inclusive; a missing side is not judged");
         key("decision", Form::Table(DECISION), "gauge, station", "how results become verdicts");
         key("test", Form::Table(sections.test), "station", "how the part is measured");
+        optional("prompt", Form::List(&Form::Table(PROMPT)), "station", "what a person must answer during a lot; nothing moves meanwhile");
     }
 }

@@ -10,7 +10,7 @@ use machine::form::{Form, Key, Points, key, optional};
 use machine::rig::point::{DigitalIn, DigitalOut, Fixture};
 use machine::rig::stroke::ActuatorKey;
 use measuring::{ACCURACY, CALIBRATION};
-use modules::{BUS, HISTORY, LINE, MODULE, SAFETY};
+use modules::{BUS, HISTORY, LINE, MODULE, RECIPES, SAFETY, SERIAL_READER};
 use points::{ACTUATOR, ANALOG_IN, ANALOG_OUT, BIN, CHANNEL, DIGITAL_IN, STATION, SUPPLY_RANGE};
 
 /// Returns the form of points that only kinds of device need: no point is required, and `may` returns the known names.
@@ -63,7 +63,10 @@ pub const FILE: &[Key] = keys! {
     key("line", Form::Named(&Form::Table(LINE)), "bus", "RS-485 lines by name");
     key("bus", Form::Table(BUS), "bus, cycle", "times and counts of every line");
     key("safety", Form::Table(SAFETY), "rig", "what the plant demands of the emergency stop");
-    optional("history", Form::Table(HISTORY), "app", "reaction to a history that cannot be written");
+    optional("history", Form::Table(HISTORY), "app", "reaction to a history that cannot be written; how long traces of alarms stay");
+    optional("recipes", Form::Table(RECIPES), "app, page", "what the plant demands of a recipe before a lot may use it");
+    optional("serial_reader", Form::Table(SERIAL_READER), "bus, station",
+        "code reader at the pocket, on a line of its own; sends a line of text per part by itself");
     key("module", Form::Named(&Form::Table(MODULE)), "rig", "modules by name");
     optional("analog_in", of_kinds(analog_in, &Form::Table(ANALOG_IN)), "rig", "analog inputs by point");
     optional("temperature", of_kinds(temperature, &Form::Table(CHANNEL)), "rig", "thermometers by point");

@@ -64,6 +64,8 @@ fn revisions_in_memory_last_as_long_as_the_folder() {
         let change = Change {
             name: NAME.into(),
             from: revision(&plant.folder, NAME, None).unwrap().hash,
+            reason: "tighter".into(),
+            save_as: None,
             values: [("limits.operate_voltage_v.high".to_owned(), json!(volts))].into(),
         };
         let saved = revise(&plant, &change).unwrap();
@@ -93,7 +95,7 @@ fn init_writes_every_file_to_new_and_empty_directories() {
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
     assert_eq!(mode(&new), mode(&folder.path().join("plant")));
     let entries = |dir: &Path| fs::read_dir(dir).unwrap().count();
-    assert_eq!((entries(new.parent().unwrap()), entries(&empty)), (1, 8));
+    assert_eq!((entries(new.parent().unwrap()), entries(&empty)), (1, 9));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Tests of revisions: what is kept, what is refused, and that a refusal leaves the folder as it was.
 
 use super::plant::Copy;
-use crate::{Change, ConfigError, Plant, load_recipe, revise, revision};
+use crate::{Approval, Change, ConfigError, Plant, approval, load_recipe, revise, revision};
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -19,6 +19,8 @@ fn change(plant: &Plant, path: &str, value: serde_json::Value) -> Change {
     Change {
         name: NAME.into(),
         from: revision(&plant.folder, NAME, None).unwrap().hash,
+        reason: "tighter".into(),
+        save_as: None,
         values: [(path.to_owned(), value)].into(),
     }
 }
@@ -39,12 +41,27 @@ pub(super) fn files(folder: &Path) -> BTreeMap<String, String> {
 }
 
 #[test]
+fn a_change_without_reason_changes_nothing() {
+    let (copy, plant) = bench();
+    let before = files(copy.0.path());
+    for reason in ["", " "] {
+        let mut change = change(&plant, "limits.operate_voltage_v.high", json!(8.7));
+        change.reason = reason.into();
+        let refused = revise(&plant, &change).unwrap_err();
+        assert!(matches!(refused, ConfigError::NoReason), "{refused}");
+    }
+    assert_eq!(files(copy.0.path()), before);
+}
+
+#[test]
 fn a_revision_loads_next_and_keeps_the_old_text() {
     let (copy, plant) = bench();
     let old = load_recipe(&copy.0.path().into(), NAME).unwrap();
     let path = "limits.operate_voltage_v.high";
     let saved = revise(&plant, &change(&plant, path, json!(8.7))).unwrap();
     assert_eq!((saved.number, saved.newest), (2, 2));
+    let lines: Vec<String> = saved.changes.iter().map(ToString::to_string).collect();
+    assert_eq!(lines, ["limits.operate_voltage_v.high: 9.0 V -> 8.7 V"]);
     let new = load_recipe(&copy.0.path().into(), NAME).unwrap();
     assert_eq!(new.hash, saved.hash);
     assert!(
@@ -183,4 +200,90 @@ fn an_unknown_revision_is_refused_with_the_newest() {
             "{refused}"
         );
     }
+}
+
+#[test]
+fn a_new_recipe_differs_in_name_and_given_values() {
+    let (copy, plant) = bench();
+    let old = files(copy.0.path());
+    let mut wanted = change(&plant, "limits.operate_voltage_v.high", json!(8.7));
+    wanted.save_as = Some("customer-a".into());
+    let saved = revise(&plant, &wanted).unwrap();
+    assert_eq!((saved.name.as_str(), saved.number), ("customer-a", 1));
+    let lines: Vec<String> = saved.changes.iter().map(ToString::to_string).collect();
+    let expected = [
+        "name: jzc-22f-012 -> customer-a",
+        "limits.operate_voltage_v.high: 9.0 V -> 8.7 V",
+    ];
+    assert_eq!(lines, expected);
+    assert_eq!(wanted.audit(Some(&saved))["order"], "new_recipe");
+    let new = load_recipe(&copy.0.path().into(), "customer-a").unwrap();
+    assert_eq!(new.hash, saved.hash);
+    let now = files(copy.0.path());
+    assert_eq!(now.len(), old.len() + 1);
+    assert!(
+        old.iter()
+            .all(|it| now.contains_key(it.0) && now[it.0] == *it.1)
+    );
+}
+
+#[test]
+fn a_new_recipe_needs_a_free_usable_name() {
+    let (copy, plant) = bench();
+    let before = files(copy.0.path());
+    let long = "x".repeat(61);
+    for name in [
+        "",
+        " ",
+        "../rig",
+        "a/b",
+        ".hidden",
+        "-a",
+        "a b",
+        "a\0",
+        &long,
+        NAME,
+        "JZC-22F-012",
+    ] {
+        let mut wanted = change(&plant, "decision.slow_repeats", json!(4));
+        wanted.save_as = Some(name.into());
+        let refused = revise(&plant, &wanted).unwrap_err();
+        let taken = name.eq_ignore_ascii_case(NAME);
+        assert_eq!(
+            matches!(refused, ConfigError::RecipeTaken { .. }),
+            taken,
+            "{refused}"
+        );
+        assert_eq!(
+            matches!(refused, ConfigError::RecipeName { .. }),
+            !taken,
+            "{refused}"
+        );
+    }
+    assert_eq!(files(copy.0.path()), before);
+}
+
+#[test]
+fn approval_is_a_key_of_the_rig_file() {
+    for (text, expected) in [
+        ("", Approval::None),
+        ("[recipes]\n", Approval::None),
+        (
+            "[recipes]\napproval = \"second_person\"\n",
+            Approval::SecondPerson,
+        ),
+    ] {
+        let copy = Copy::with("rig.toml", |rig| format!("{rig}\n{text}"));
+        assert_eq!(approval(&copy.0.path().into()).unwrap(), expected);
+    }
+    let copy = Copy::with("rig.toml", |rig| {
+        format!("{rig}\n[recipes]\napproval = \"always\"\n")
+    });
+    let refused = Plant::load(&copy.0.path().into()).unwrap_err();
+    assert!(
+        refused
+            .to_string()
+            .contains("\"none\" or \"second_person\""),
+        "{refused}"
+    );
 }

@@ -24,6 +24,22 @@ pub(super) const BUS: &[Key] = keys! {
 pub(super) const HISTORY: &[Key] = keys! {
     optional("give_up_s", from_to(0.0, 86_400.0, "s"), "app",
         "time after which a program ends with status 3 because it cannot write the history; default 600");
+    optional("traces", whole(0, 10_000, ""), "app",
+        "number of alarms whose traces of the lines stay beside the history; default 200");
+    optional("trace_days", whole(0, 3650, "days"), "app", "time after which the traces of an alarm are deleted; default 90");
+};
+
+pub(super) const RECIPES: &[Key] = keys! {
+    optional("approval", Form::Choice(&["none", "second_person"]), "app, page",
+        "whether a recipe needs two engineers before a lot may use it, one who saved it and one who approved it; default none");
+};
+
+pub(super) const SERIAL_READER: &[Key] = keys! {
+    key("port", Form::Text, "bus", "path of the serial port, 8N1");
+    key("baud", Form::Listed(&[1200, 2400, 4800, 9600, 19200, 38400, 57600, 115_200]), "bus", "bits per second");
+    optional("timeout_ms", from_to(50.0, 60_000.0, "ms"), "station",
+        "longest time from the arrival of a part in the pocket to its code; default 1000");
+    optional("no_code", Form::Text, "bus", "what the reader sends when it finds no code, for example NOREAD");
 };
 
 pub(super) const SAFETY: &[Key] = keys! {

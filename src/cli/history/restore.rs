@@ -1,0 +1,49 @@
+//! `relayrig history restore`: history, people and configuration from a backup.
+
+use crate::cli::output::Output;
+use app::exit::Exit;
+use app::order::Files;
+use app::restore::Contents;
+use config::Folder;
+use std::path::{Path, PathBuf};
+
+/// Arguments of `history restore`.
+#[derive(Debug, clap::Args)]
+pub struct RestoreArgs {
+    /// Dated folder of `backup --into`, the folder that holds them (the newest counts), or a copied history
+    backup: PathBuf,
+    /// Only check the backup; writes nothing
+    #[arg(long, conflicts_with = "replace")]
+    check: bool,
+    /// Replace what is there; it stays beside the restored files as NAME.before-TIME
+    #[arg(long)]
+    replace: bool,
+}
+
+/// Runs the command; a fault that the check of the backup finds is an answer (status 1).
+pub fn run(config: &Folder, db: &Path, args: &RestoreArgs) -> anyhow::Result<Exit> {
+    let backup = Contents::find(&args.backup)?;
+    let mut out = Output::stdout();
+    out.line(&backup.at.display().to_string())?;
+    let mut is_whole = true;
+    for (name, found) in backup.check() {
+        is_whole &= found.is_ok();
+        let found = found.unwrap_or_else(|error| format!("FAULT {error:#}"));
+        out.line(&format!("  {name}: {found}"))?;
+    }
+    if !is_whole {
+        eprintln!("nothing was restored");
+        return Ok(Exit::AnswerIsNo);
+    }
+    if !args.check {
+        let files = Files {
+            config: config.clone(),
+            db: db.to_owned(),
+        };
+        for old in backup.restore(&files, args.replace)? {
+            eprintln!("{}: kept", old.display());
+        }
+        out.line(&format!("restored; the history is {}", db.display()))?;
+    }
+    Ok(Exit::Done)
+}

@@ -1,0 +1,157 @@
+//! `relayrig instrument send`: sends one command as typed, shows the reply and the error queue.
+
+use super::{LinkArgs, profile, sentence};
+use crate::cli::output::print;
+use anyhow::bail;
+use app::exit::Exit;
+use app::instrument::message;
+use bus::instrument::Link;
+use bus::{Pace, escaped};
+use config::Folder;
+use scpi::{ErrorEntry, Failure, Form, Raw, number, string};
+use serde_json::json;
+
+/// One command.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  relayrig instrument send --link tcp:192.168.1.20:5025 '*IDN?'
+  relayrig instrument send --link serial:/dev/ttyUSB0:9600 --profile dmm-34461a 'CONF:CURR:DC 0.0001'
+  relayrig instrument send --link tcp:192.168.1.21:5555 ':WAV:DATA?' --json
+
+The command goes out as typed, without resynchronisation; the error queue is read behind it. Exit status: 0 done, 1 no \
+reply, a damaged one, or an error of the instrument, 2 bad input.")]
+pub struct SendArgs {
+    #[command(flatten)]
+    link: LinkArgs,
+    /// Profile that gives end of message, flow control and times
+    #[arg(long, value_name = "NAME")]
+    profile: Option<String>,
+    /// Leave the error queue as it is
+    #[arg(long)]
+    keep_errors: bool,
+    /// One JSON object
+    #[arg(long)]
+    json: bool,
+    /// The command; one with ? has a reply
+    command: String,
+}
+
+/// Entries of the error queue that are read at most.
+const ENTRIES: usize = 32;
+
+pub(super) async fn run(folder: &Folder, args: &SendArgs) -> anyhow::Result<Exit> {
+    if !args.command.bytes().all(|it| (0x20..0x7F).contains(&it)) || args.command.is_empty() {
+        bail!(
+            "COMMAND: found {:?}, expected printable ASCII characters",
+            args.command
+        );
+    }
+    let profile = profile(folder, args.profile.as_ref())?;
+    let mut link = args.link.link(profile.as_ref());
+    let pace = Pace::real();
+    if let Some(remote) = profile.and_then(|it| it.remote) {
+        // A failure shows again with the command itself.
+        let _ = link.exchange(&remote, None).await;
+    }
+    let began = pace.now();
+    let form = args.command.contains('?').then_some(Form::Any);
+    let outcome = link.exchange(&args.command, form).await;
+    let taken_ms = pace.now().since(began).as_seconds() * 1e3;
+    let errors = match (&outcome, args.keep_errors) {
+        (Ok(_) | Err(Failure::Timeout { .. }), false) => errors(&mut link).await,
+        _ => Vec::new(),
+    };
+    let is_good = outcome.is_ok() && errors.is_empty();
+    print(&if args.json {
+        let list: Vec<_> = errors
+            .iter()
+            .map(|it| json!({ "code": it.code, "text": it.text }))
+            .collect();
+        let reply = outcome.as_ref().ok().and_then(Option::as_ref);
+        let object = json!({
+            "command": args.command, "reply": reply.map(shown), "meaning": reply.map(meaning), "taken_ms": taken_ms,
+            "failure": outcome.as_ref().err().map(message), "errors": list,
+        });
+        format!("{object}\n")
+    } else {
+        transcript(&args.command, &outcome, taken_ms, &errors)
+    })?;
+    Ok(if is_good {
+        Exit::Done
+    } else {
+        Exit::AnswerIsNo
+    })
+}
+
+async fn errors(link: &mut Link) -> Vec<ErrorEntry> {
+    let mut found = Vec::new();
+    while found.len() < ENTRIES {
+        let reply = link.exchange("SYST:ERR?", Some(Form::Line)).await;
+        let raw = reply.ok().flatten();
+        let entry = raw.and_then(|it| ErrorEntry::read(it.text().ok()?).ok());
+        match entry.filter(|it| it.code != 0) {
+            Some(entry) => found.push(entry),
+            None => break,
+        }
+    }
+    found
+}
+
+fn transcript(
+    command: &str,
+    outcome: &Result<Option<Raw>, Failure>,
+    taken_ms: f64,
+    errors: &[ErrorEntry],
+) -> String {
+    let mut rows = vec![format!("> {command}")];
+    match outcome {
+        Ok(Some(raw)) => {
+            rows.push(format!("< {}   {taken_ms:.1} ms", shown(raw)));
+            rows.push(format!("  {}", meaning(raw)));
+        }
+        Ok(None) => {}
+        Err(failure) => rows.push(format!("  {}", sentence(failure))),
+    }
+    rows.extend(
+        errors
+            .iter()
+            .map(|it| format!("  error {}: {}", it.code, it.text)),
+    );
+    rows.join("\n") + "\n"
+}
+
+/// Bytes of a block that are shown.
+const SHOWN: usize = 32;
+
+fn shown(raw: &Raw) -> String {
+    match raw {
+        Raw::Line(line) => escaped(line),
+        Raw::Block(bytes) => {
+            let head = &bytes[..bytes.len().min(SHOWN)];
+            let head: Vec<String> = head.iter().map(|it| format!("{it:02X}")).collect();
+            let more = if bytes.len() > SHOWN { " ..." } else { "" };
+            head.join(" ") + more
+        }
+    }
+}
+
+fn meaning(raw: &Raw) -> String {
+    let text = match raw {
+        Raw::Block(bytes) => return format!("a block of {} bytes", bytes.len()),
+        Raw::Line(_) => raw.text(),
+    };
+    let meant = text.map(
+        |text| match (number(text), string(text), ErrorEntry::read(text)) {
+            (Ok(value), _, _) => format!("the number {value}"),
+            (Err(reason @ (scpi::ReplyError::OverRange | scpi::ReplyError::NotANumber)), _, _) => {
+                reason.to_string()
+            }
+            (Err(_), Ok(text), _) => format!("the string {text}"),
+            (Err(_), Err(_), Ok(entry)) => {
+                format!("the entry {} of an error queue, {}", entry.code, entry.text)
+            }
+            (Err(_), Err(_), Err(_)) => "text".to_owned(),
+        },
+    );
+    meant.unwrap_or_else(|reason| reason.to_string())
+}
