@@ -2,18 +2,20 @@
 
 use super::access::{AccessError, Role};
 use axum::Json;
-use axum::extract::Query;
-use axum::extract::rejection::{JsonRejection, QueryRejection};
+use axum::extract::rejection::QueryRejection;
 use axum::http::{HeaderValue, Method, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use config::ConfigError;
+use config::strict::Unreadable;
 use history::HistoryError;
 use history::inquiry::InquiryError;
-use serde_json::json;
+use serde::Serialize;
+use serde_json::{Value, json};
 use std::fmt::Display;
 use std::time::Duration;
-use texts::{Lang, Message};
+use texts::{Args, Lang, Message};
 use tokio::task::spawn_blocking;
+use utoipa::ToSchema;
 
 /// Reason for the refusal of a request; each variant names its HTTP status.
 #[derive(Debug, thiserror::Error)]
@@ -33,24 +35,28 @@ pub(super) enum ApiError {
     /// 401: name or password is wrong; the answer does not say which.
     #[error("{}", refusal("wrong_password").say(Lang::En))]
     WrongPassword,
+    /// 401: the set-up code is wrong, or there is an engineer.
+    #[error("{}", refusal("wrong_code").say(Lang::En))]
+    WrongCode,
     /// 403: the role of the person, `found`, is weaker than `needed`.
     #[error("{}", not_allowed(*.found, *.needed).say(Lang::En))]
     NotAllowed { found: Role, needed: Role },
     /// 429; the header `Retry-After` gives the time in seconds.
     #[error("{}", too_many_tries(*.wait).say(Lang::En))]
     TooManyTries { wait: Duration },
-    /// 500: the file of people failed.
+    /// 400 for a malformed name or password, 404 for an unknown person, 409 for a taken name and for the last engineer;
+    /// the status of the history when its audit does not open; otherwise 500.
     #[error(transparent)]
     Access(#[from] AccessError),
-    /// 400, 413 or 415: axum cannot read the body.
+    /// 400, 408, 413 or 415: the body cannot be read.
     #[error("{reason}")]
     Body { reason: String, status: StatusCode },
-    /// 400: no order has the name `found`; `known` lists all names.
-    #[error("there is no order {found:?}; known are {known}")]
-    UnknownOrder { found: String, known: String },
+    /// 400: a member of body or query string is unknown, missing or malformed.
+    #[error(transparent)]
+    Unreadable(#[from] Unreadable),
     /// 409: the station refuses the order now.
     #[error("{order}: {}", .why.say(Lang::En))]
-    NotNow { order: &'static str, why: Message },
+    NotNow { order: String, why: Message },
     /// 400: the query string is malformed.
     #[error("{reason}")]
     Query { reason: String },
@@ -67,9 +73,9 @@ pub(super) enum ApiError {
     /// revision.
     #[error("{refused}")]
     Revision { refused: ConfigError },
-    /// 500: the program saved the revision but could not write it to the audit.
-    #[error("the revision was saved, but not noted in the audit of orders: {source}")]
-    NotAudited { source: HistoryError },
+    /// 409: the person may not approve this revision; `code` says why.
+    #[error("{}", refusal(.code).say(Lang::En))]
+    NotApproved { code: &'static str },
     /// 500: a blocking task panicked or was cancelled.
     #[error("the reader of the history ended without an answer")]
     ReaderLost,
@@ -78,8 +84,40 @@ pub(super) enum ApiError {
 /// JSON answer, or the refusal of the request.
 pub(super) type JsonResult<T> = Result<Json<T>, ApiError>;
 
-/// Members of a query string, or the reason why they are malformed.
-pub(super) type Members<T> = Result<Query<T>, QueryRejection>;
+/// Body of every refusal.
+#[derive(Debug, Default, Serialize, ToSchema)]
+pub(super) struct Refusal {
+    /// The status in words, for example `bad request`.
+    error: String,
+    /// The reason as a sentence, English.
+    reason: String,
+    /// The same in Chinese.
+    reason_zh: String,
+    /// The reason as a code.
+    code: String,
+    /// Arguments of the code.
+    args: Args,
+    /// Member of the request at fault.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    member: Option<String>,
+    /// Key of a recipe whose value is refused.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    key: Option<String>,
+    /// The refused value.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    found: Option<String>,
+    /// What the key accepts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    expected: Option<String>,
+    /// The accepted values, as a code with its argument.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    requirement: Option<Value>,
+}
 
 /// Runs `work` on a blocking thread.
 pub(super) async fn blocking<T, E>(
@@ -114,28 +152,41 @@ impl ApiError {
             Self::NoSuchRoute { .. } => StatusCode::NOT_FOUND,
             Self::WrongMethod { .. } => StatusCode::METHOD_NOT_ALLOWED,
             Self::CrossSite { .. } | Self::NotAllowed { .. } => StatusCode::FORBIDDEN,
-            Self::NotLoggedIn | Self::WrongPassword => StatusCode::UNAUTHORIZED,
+            Self::NotLoggedIn | Self::WrongPassword | Self::WrongCode => StatusCode::UNAUTHORIZED,
             Self::TooManyTries { .. } => StatusCode::TOO_MANY_REQUESTS,
             Self::Body { status, .. } => *status,
-            Self::UnknownOrder { .. } | Self::Query { .. } => StatusCode::BAD_REQUEST,
-            Self::NotNow { .. } => StatusCode::CONFLICT,
+            Self::Unreadable(_) | Self::Query { .. } => StatusCode::BAD_REQUEST,
+            Self::NotNow { .. } | Self::NotApproved { .. } => StatusCode::CONFLICT,
             Self::History(history) | Self::Inquiry(InquiryError::History(history)) => {
                 unread(history)
             }
             Self::Inquiry(InquiryError::Member { .. }) => StatusCode::BAD_REQUEST,
             Self::Inquiry(InquiryError::Missing { .. }) => StatusCode::NOT_FOUND,
-            Self::Inquiry(InquiryError::Write(_) | InquiryError::Sheet(_))
-            | Self::Access(_)
-            | Self::NotAudited { .. }
-            | Self::ReaderLost => StatusCode::INTERNAL_SERVER_ERROR,
-            Self::Config(found) => of_config(found, StatusCode::INTERNAL_SERVER_ERROR),
-            Self::Revision { refused } => of_config(refused, StatusCode::BAD_REQUEST),
+            Self::Inquiry(InquiryError::Write(_) | InquiryError::Sheet(_)) | Self::ReaderLost => {
+                StatusCode::INTERNAL_SERVER_ERROR
+            }
+            Self::Access(found) => of_access(found),
+            Self::Config(found) => config_status(found, StatusCode::INTERNAL_SERVER_ERROR),
+            Self::Revision { refused } => config_status(refused, StatusCode::BAD_REQUEST),
         }
     }
 
-    /// Returns further members of the JSON answer, besides `error` and `reason`.
-    fn more(&self) -> serde_json::Value {
+    fn body(&self) -> Refusal {
+        let word = self.status().canonical_reason().unwrap_or("refused");
+        let why = self.message();
+        let refusal = Refusal {
+            error: word.to_ascii_lowercase(),
+            reason: self.to_string(),
+            reason_zh: why.say(Lang::Zh),
+            code: why.code().to_owned(),
+            args: why.args().clone(),
+            ..Refusal::default()
+        };
         match self {
+            Self::Unreadable(Unreadable { member, .. }) => Refusal {
+                member: (!member.is_empty()).then(|| member.clone()),
+                ..refusal
+            },
             Self::Revision {
                 refused:
                     refused @ ConfigError::Value {
@@ -144,34 +195,47 @@ impl ApiError {
                         requirement,
                         ..
                     },
-            } => {
-                json!({ "key": refused.key(), "found": found, "expected": expected, "requirement": requirement })
-            }
-            _ => match self.message() {
-                Some(why) => {
-                    json!({ "reason_zh": why.say(Lang::Zh), "code": why.code(), "args": why.args() })
-                }
-                None => json!({}),
+            } => Refusal {
+                key: refused.key(),
+                found: Some(found.clone()),
+                expected: Some(expected.clone()),
+                requirement: Some(json!(requirement)),
+                ..refusal
             },
+            _ => refusal,
         }
     }
 
-    /// Returns the refusal in both languages if an operator may get it; other refusals are English only.
-    fn message(&self) -> Option<Message> {
-        Some(match self {
+    /// Returns the refusal in both languages. A mistake that only programs make has a general Chinese text.
+    pub fn message(&self) -> Message {
+        let said = |code| refusal(code).with("said", self);
+        match self {
             Self::NotNow { why, .. } => why.clone(),
             Self::NotLoggedIn => refusal("not_logged_in"),
             Self::WrongPassword => refusal("wrong_password"),
+            Self::WrongCode => refusal("wrong_code"),
+            Self::Access(found) => found.message(),
             Self::NotAllowed { found, needed } => not_allowed(*found, *needed),
             Self::TooManyTries { wait } => too_many_tries(*wait),
             Self::History(history) | Self::Inquiry(InquiryError::History(history)) => {
-                refusal(of_history(history)?)
+                said(history.refusal())
             }
-            Self::Revision {
-                refused: ConfigError::NotNewest { newest, .. },
-            } => refusal("not_newest").with("newest", newest),
-            _ => return None,
-        })
+            Self::Inquiry(InquiryError::Member { field, .. }) => {
+                said("member").with("member", field)
+            }
+            Self::Inquiry(InquiryError::Missing { .. }) => said("nothing_found"),
+            Self::Config(refused) | Self::Revision { refused } => refused.message(),
+            Self::NotApproved { code } => refusal(code),
+            Self::NoSuchRoute { .. }
+            | Self::WrongMethod { .. }
+            | Self::CrossSite { .. }
+            | Self::Body { .. }
+            | Self::Unreadable(_)
+            | Self::Query { .. } => said("bad_request"),
+            Self::Inquiry(InquiryError::Write(_) | InquiryError::Sheet(_)) | Self::ReaderLost => {
+                said("program_trouble")
+            }
+        }
     }
 }
 
@@ -189,30 +253,36 @@ fn too_many_tries(wait: Duration) -> Message {
     refusal("too_many_tries").with("wait_s", wait.as_secs() + 1)
 }
 
-fn of_history(history: &HistoryError) -> Option<&'static str> {
-    match history {
-        HistoryError::Missing { .. } => Some("history_missing"),
-        HistoryError::Locked { .. } => Some("history_locked"),
-        HistoryError::DiskFull { .. } => Some("disk_full"),
-        HistoryError::ReadOnly { .. } => Some("history_read_only"),
-        _ => None,
-    }
-}
-
 /// Returns the status of a configuration error; `wrong` is the status for a text that the configuration refuses.
-fn of_config(found: &ConfigError, wrong: StatusCode) -> StatusCode {
+fn config_status(found: &ConfigError, wrong: StatusCode) -> StatusCode {
     match found {
-        ConfigError::UnknownRecipe { .. } | ConfigError::UnknownRevision { .. } => {
-            StatusCode::NOT_FOUND
-        }
-        ConfigError::NotNewest { .. } => StatusCode::CONFLICT,
+        ConfigError::UnknownRecipe { .. }
+        | ConfigError::UnknownInstrument { .. }
+        | ConfigError::UnknownRevision { .. } => StatusCode::NOT_FOUND,
+        ConfigError::NotNewest { .. } | ConfigError::RecipeTaken { .. } => StatusCode::CONFLICT,
         ConfigError::NoFolder { .. }
         | ConfigError::Unreadable { .. }
         | ConfigError::Unwritten { .. } => StatusCode::INTERNAL_SERVER_ERROR,
         ConfigError::Syntax { .. }
         | ConfigError::Value { .. }
         | ConfigError::Rule { .. }
-        | ConfigError::NothingChanged { .. } => wrong,
+        | ConfigError::NothingChanged { .. }
+        | ConfigError::RecipeName { .. }
+        | ConfigError::NoReason => wrong,
+    }
+}
+
+fn of_access(found: &AccessError) -> StatusCode {
+    match found {
+        AccessError::Name { .. } | AccessError::Password { .. } => StatusCode::BAD_REQUEST,
+        AccessError::Unknown { .. } => StatusCode::NOT_FOUND,
+        AccessError::Taken { .. } | AccessError::LastEngineer { .. } => StatusCode::CONFLICT,
+        AccessError::NoAudit(source) => unread(source),
+        AccessError::NotAudited(_)
+        | AccessError::Foreign { .. }
+        | AccessError::Damaged { .. }
+        | AccessError::Database { .. }
+        | AccessError::Crypto { .. } => StatusCode::INTERNAL_SERVER_ERROR,
     }
 }
 
@@ -226,28 +296,12 @@ fn unread(history: &HistoryError) -> StatusCode {
 
 impl IntoResponse for ApiError {
     fn into_response(self) -> Response {
-        let status = self.status();
-        let word = status.canonical_reason().unwrap_or("refused");
-        let mut body = self.more();
-        body["error"] = word.to_ascii_lowercase().into();
-        body["reason"] = self.to_string().into();
-        let mut response = (status, Json(body)).into_response();
+        let mut response = (self.status(), Json(self.body())).into_response();
         if let Self::TooManyTries { wait } = self {
             let seconds = HeaderValue::from(wait.as_secs() + 1);
             response.headers_mut().insert(header::RETRY_AFTER, seconds);
         }
         response
-    }
-}
-
-impl From<JsonRejection> for ApiError {
-    fn from(found: JsonRejection) -> Self {
-        let status = match found.status() {
-            StatusCode::UNPROCESSABLE_ENTITY => StatusCode::BAD_REQUEST,
-            status => status,
-        };
-        let reason = found.body_text();
-        Self::Body { reason, status }
     }
 }
 

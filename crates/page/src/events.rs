@@ -6,14 +6,17 @@
 //! | `beat` | `{"alive":true}` | each second; `false` after the controller has ended |
 //!
 //! A browser that receives nothing for three seconds, or `"alive":false`, has old values and must show them as such. A
-//! slow browser skips views and never gets an older one after a newer one. The stream ends with the program.
+//! slow browser skips views and never gets an older one after a newer one. After the end of a stream a browser waits 1 s
+//! before it connects again (`retry`). The stream ends with the program.
 
+use super::answers::{As, Events};
 use super::end_of_program;
 use super::router::{App, AppState};
+use axum::body::{Body, Bytes};
 use axum::extract::State;
-use axum::response::Sse;
-use axum::response::sse::Event;
-use futures_util::stream::{self, Stream};
+use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
+use axum::response::IntoResponse;
+use futures_util::stream;
 use machine::view::View;
 use std::convert::Infallible;
 use std::pin::Pin;
@@ -27,75 +30,83 @@ use tokio::time::{Instant, sleep_until};
 const PACE: Duration = Duration::from_millis(50);
 /// Time between two beats, and between two views when nothing has changed.
 const BEAT: Duration = Duration::from_secs(1);
-/// Time that a browser waits before it connects again.
-const RETRY: Duration = Duration::from_secs(1);
 
 /// `GET /api/events`.
-pub(super) async fn events(State(app): App) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {
-    let feed = Feed::new(&app);
-    Sse::new(stream::unfold(feed, |mut feed| async move {
+pub(super) async fn events(State(app): App) -> As<Events> {
+    let events = stream::unfold(Feed::new(&app), |mut feed| async move {
         let event = feed.next().await?;
-        Some((Ok(event), feed))
-    }))
+        Some((Ok::<_, Infallible>(event), feed))
+    });
+    let headers = [
+        (CONTENT_TYPE, "text/event-stream"),
+        (CACHE_CONTROL, "no-cache"),
+    ];
+    As::new((headers, Body::from_stream(events)).into_response())
+}
+
+/// Writes every due view as an event, once for all streams; writes none while there is no stream. The task ends with its
+/// runtime.
+pub(super) fn publish(
+    mut views: watch::Receiver<View>,
+    events: watch::Sender<Bytes>,
+    streams: Arc<AtomicUsize>,
+) -> impl Future<Output = ()> {
+    let mut sent = views.borrow_and_update().clone();
+    async move {
+        loop {
+            changed(&mut views, Instant::now(), &mut sent).await;
+            sent.clone_from(&views.borrow_and_update());
+            if streams.load(Ordering::Relaxed) > 0 {
+                events.send_replace(event_of(&sent));
+            }
+        }
+    }
+}
+
+fn event_of(view: &View) -> Bytes {
+    let data = serde_json::to_string(view).unwrap_or_default();
+    format!("event: view\ndata: {data}\n\n").into()
 }
 
 /// The stream of one browser.
 struct Feed {
     view: watch::Receiver<View>,
+    /// The last view as an event, which all streams share.
+    events: watch::Receiver<Bytes>,
     over: Pin<Box<dyn Future<Output = ()> + Send>>,
-    /// Last view sent, with the instant of sending; `None` before the first.
-    sent: Option<(Instant, View)>,
+    has_begun: bool,
     next_beat: Instant,
     _counted: Counted,
-}
-
-/// What the stream does next.
-enum Turn {
-    View,
-    Beat,
-    Over,
 }
 
 impl Feed {
     fn new(app: &AppState) -> Self {
         Self {
             view: app.shared.view.clone(),
+            events: app.events.clone(),
             over: Box::pin(end_of_program(app.ended.clone())),
-            sent: None,
+            has_begun: false,
             next_beat: Instant::now() + BEAT,
             _counted: Counted::new(&app.streams),
         }
     }
 
-    async fn next(&mut self) -> Option<Event> {
-        match self.turn().await {
-            Turn::View => {
-                let view = self.view.borrow_and_update().clone();
-                let event = Event::default().event("view");
-                let event = event.data(serde_json::to_string(&view).ok()?);
-                let first = self.sent.replace((Instant::now(), view)).is_none();
-                Some(if first { event.retry(RETRY) } else { event })
-            }
-            Turn::Beat => {
-                self.next_beat = Instant::now() + BEAT;
-                let alive = self.view.has_changed().is_ok();
-                let data = format!("{{\"alive\":{alive}}}");
-                Some(Event::default().event("beat").data(data))
-            }
-            Turn::Over => None,
+    /// Returns the next event. A due beat comes before a view, so that a busy rig cannot suppress beats.
+    async fn next(&mut self) -> Option<Bytes> {
+        if !std::mem::replace(&mut self.has_begun, true) {
+            self.events.mark_unchanged();
+            let retry = b"retry: 1000\n".as_slice();
+            return Some([retry, &event_of(&self.view.borrow())].concat().into());
         }
-    }
-
-    /// Waits for the next turn. A due beat comes before a view, so that a busy rig cannot suppress beats.
-    async fn turn(&mut self) -> Turn {
-        let Some((at, sent)) = &mut self.sent else {
-            return Turn::View;
-        };
         tokio::select! {
             biased;
-            () = &mut self.over => Turn::Over,
-            () = sleep_until(self.next_beat) => Turn::Beat,
-            () = changed(&mut self.view, *at, sent) => Turn::View,
+            () = &mut self.over => None,
+            () = sleep_until(self.next_beat) => {
+                self.next_beat = Instant::now() + BEAT;
+                let alive = self.view.has_changed().is_ok();
+                Some(format!("event: beat\ndata: {{\"alive\":{alive}}}\n\n").into())
+            }
+            Ok(()) = self.events.changed() => Some(self.events.borrow_and_update().clone()),
         }
     }
 }

@@ -5,7 +5,8 @@
 //! - The view comes through a watch channel, so that the cycle never waits for a client: a slow one skips to the latest
 //!   view, and views do not queue.
 //! - An answer in the range 4xx or 5xx is always JSON: `{"error": "<word>", "reason": "<sentence>"}`.
-//! - A body has at most 16 kB. A request that changes anything must not come from a page of another site.
+//! - A body has at most 16 kB. The server limits connections in number and time (`server.rs`). A request that changes
+//!   anything must not come from a page of another site.
 //! - When the program ends, every event stream ends, and connections still open are cut after [`GRACE`].
 //!
 //! | route | answer |
@@ -13,10 +14,11 @@
 //! | `GET /`, `GET /page/...` | the operator's page with what all pages share; the script of another page |
 //! | `GET /api/view` | the view |
 //! | `GET /api/events` | the view as server-sent events: at once, on change, otherwise once a second; a beat each second |
-//! | `POST /api/login\|logout`, `GET /api/me` | sessions |
-//! | `POST /api/orders` | `{"order":"stop"}` and the others of [`machine::view::ORDERS`] and [`machine::view::LOT_ORDERS`] |
+//! | `POST /api/login\|logout\|password`, `GET /api/me`, `POST /api/setup`, `GET /api/setup/needed` | sessions; the first engineer |
+//! | `GET /api/people`, `POST /api/people/change` | people, for engineers (`people.rs`) |
+//! | `POST /api/orders` | `{"order":"stop"}` and the others of [`machine::view::Order`] |
 //! | `GET /api/history/...` | JSON, pages and files as the command `history` gives them; routes in `history.rs` |
-//! | `GET /api/recipes...`, `POST /api/recipes/revise` | recipes and their revisions (`recipes.rs`) |
+//! | `GET /api/recipes...`, `POST /api/recipes/revise\|approve` | recipes and their revisions (`recipes.rs`, `approval.rs`) |
 //! | `GET /api/lots`, `GET /api/wear` | lots with the orders that their states allow; wear counters (`lots.rs`) |
 //! | `GET /api/calibration` | factors with date, uncertainty and due date; reference parts with their last readings |
 //! | `GET /mimic.svg` | the machine to scale, from above and from the front |
@@ -24,13 +26,17 @@
 //! | `GET /api/openapi.json` | the OpenAPI document |
 //! | `GET /metrics` | Prometheus text |
 //!
-//! Reading needs no login; orders and revisions do (`sessions.rs`).
+//! Reading needs no login; orders and revisions do (`sessions.rs`). A route refuses every member that it does not take.
 
 pub mod access;
+mod answers;
 mod api;
+mod approval;
+mod asked;
 mod calibration;
 mod error;
 mod events;
+mod gauge;
 mod history;
 mod login;
 mod lots;
@@ -39,22 +45,25 @@ mod mimic;
 mod orders;
 mod origin;
 mod page;
+mod people;
+mod prompt;
 mod recipes;
 mod router;
+mod server;
 mod sessions;
 mod trace;
 
+pub use approval::approve_with_password;
 use config::Folder;
 use machine::view::{Mimic, OrderRequest};
 pub use orders::WAITING;
+pub use server::{Door, DoorError, Tls, serve};
 pub use sessions::Sessions;
 pub use trace::Traffic;
 
-use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
-use tokio::net::TcpListener;
 use tokio::sync::{mpsc, watch};
 
 /// Time that open connections get to finish when the program ends.
@@ -79,34 +88,10 @@ pub struct Shared {
     pub orders: mpsc::Sender<OrderRequest>,
 }
 
-/// Serves `listener` until `ended` turns true or loses its sender, then at most [`GRACE`] longer.
-///
-/// # Errors
-/// Fails when `listener` fails.
-pub async fn serve(
-    listener: TcpListener,
-    shared: Shared,
-    ended: watch::Receiver<bool>,
-) -> std::io::Result<()> {
-    let router = router::router(shared, ended.clone());
-    let router = router.into_make_service_with_connect_info::<SocketAddr>();
-    let service =
-        axum::serve(listener, router).with_graceful_shutdown(end_of_program(ended.clone()));
-    tokio::select! {
-        served = service => served,
-        () = after_grace(ended) => Ok(()),
-    }
-}
-
 /// Resolves when the program ends.
 async fn end_of_program(mut ended: watch::Receiver<bool>) {
     // A lost sender also means the end.
     let _ = ended.wait_for(|ended| *ended).await;
-}
-
-async fn after_grace(ended: watch::Receiver<bool>) {
-    end_of_program(ended).await;
-    tokio::time::sleep(GRACE).await;
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //!
 //! Figures of the lot are gauges, because each lot starts them at zero. An unknown figure is absent rather than zero.
 
+use super::answers::{As, Prometheus};
 use super::router::App;
 use axum::extract::State;
 use axum::http::header::CONTENT_TYPE;
@@ -17,7 +18,7 @@ use std::fmt;
 use std::sync::atomic::Ordering;
 
 /// `GET /metrics`.
-pub(super) async fn metrics(State(app): App) -> impl IntoResponse {
+pub(super) async fn metrics(State(app): App) -> As<Prometheus, impl IntoResponse> {
     let alive = app.shared.view.has_changed().is_ok();
     let streams = app.streams.load(Ordering::Relaxed);
     let view = app.shared.view.borrow().clone();
@@ -27,7 +28,7 @@ pub(super) async fn metrics(State(app): App) -> impl IntoResponse {
         alive,
         streams,
     });
-    (media_type, text)
+    As::new((media_type, text))
 }
 
 fn text(scrape: Scrape) -> String {
@@ -193,7 +194,7 @@ impl Figures<'_> {
         figure.encode_gauge(&value)
     }
 
-    /// Writes the lateness of the cycle; nothing in virtual time, which has none.
+    /// Writes the lateness of the cycle as a histogram; virtual time has none.
     fn lateness(&mut self, it: &LatenessView) -> fmt::Result {
         if it.waits == 0 {
             return Ok(());

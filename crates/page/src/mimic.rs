@@ -7,6 +7,7 @@
 //!
 //! Bodies are drawn back to front: the lowest first in the view from above, the farthest first in the front view.
 
+use super::answers::{As, Svg};
 use super::router::App;
 use axum::extract::State;
 use axum::http::header::CONTENT_TYPE;
@@ -65,9 +66,9 @@ impl Side {
 }
 
 /// `GET /mimic.svg`.
-pub(super) async fn picture(State(app): App) -> impl IntoResponse {
+pub(super) async fn picture(State(app): App) -> As<Svg, impl IntoResponse> {
     let svg = drawing(&app.shared.mimic).into_string();
-    ([(CONTENT_TYPE, "image/svg+xml")], svg)
+    As::new(([(CONTENT_TYPE, "image/svg+xml")], svg))
 }
 
 /// Draws both views; returns an empty drawing for a machine without bodies.

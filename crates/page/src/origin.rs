@@ -3,8 +3,9 @@
 //! A browser sends `Origin` with every POST, and the script of a page cannot forge it. An order passes when
 //! - `Sec-Fetch-Site`, if present, is `same-origin` or `none`, and
 //! - `Origin`, if present, is `http://` or `https://` and exactly the `Host` of the request, and
-//! - with an `Origin`, that host is an IP address, a name without a dot, or a name under `.local` or `.internal`. This
-//!   defeats DNS rebinding, by which a public name resolves to this rig.
+//! - with an `Origin` of `http://`, that host is an IP address, a name without a dot, or a name under `.local` or
+//!   `.internal`. This defeats DNS rebinding, by which a public name resolves to this rig. Over `https://` the
+//!   certificate defeats it: a browser accepts no name that the certificate lacks.
 //!
 //! A request with neither header comes from a program that is no browser, and passes.
 
@@ -21,7 +22,16 @@ pub(super) type Peer = Result<ConnectInfo<SocketAddr>, ExtensionRejection>;
 
 /// Returns the IP address of the client for the audit; empty when absent.
 pub(super) fn address(peer: Peer) -> String {
-    peer.map_or_else(|_| String::new(), |peer| peer.0.ip().to_string())
+    peer.map_or_else(
+        |_| String::new(),
+        |peer| peer.0.ip().to_canonical().to_string(),
+    )
+}
+
+/// Returns true when a page that came over https sent the request; scripts send no `Origin`.
+pub(super) fn is_https(headers: &HeaderMap) -> bool {
+    let origin = headers.get(header::ORIGIN);
+    origin.is_some_and(|it| it.as_bytes().starts_with(b"https://"))
 }
 
 /// Fails when a page of another site sent the request.
@@ -45,13 +55,12 @@ pub(super) fn check(headers: &HeaderMap) -> Result<(), ApiError> {
 
 fn is_of_host(origin: &str, headers: &HeaderMap) -> bool {
     let host = headers.get(header::HOST).and_then(|it| it.to_str().ok());
-    let authority = origin
-        .strip_prefix("http://")
-        .or_else(|| origin.strip_prefix("https://"));
-    let (Some(host), Some(authority)) = (host, authority) else {
-        return false;
+    let (authority, proven) = match origin.split_once("://") {
+        Some(("http", authority)) => (authority, false),
+        Some(("https", authority)) => (authority, true),
+        Some(_) | None => return false,
     };
-    authority.eq_ignore_ascii_case(host) && is_near(host)
+    host.is_some_and(|host| authority.eq_ignore_ascii_case(host) && (proven || is_near(host)))
 }
 
 fn is_near(host: &str) -> bool {
@@ -126,11 +135,13 @@ mod tests {
     }
 
     #[test]
-    fn a_public_name_of_this_host_is_refused() {
+    fn a_public_name_takes_a_certificate() {
         let name = "rig.evil.example:8080";
         assert!(!judged(&[
             ("host", name),
             ("origin", "http://rig.evil.example:8080")
         ]));
+        let certified = ("origin", "https://rig.plant.example");
+        assert!(judged(&[("host", "rig.plant.example"), certified]));
     }
 }

@@ -9,6 +9,8 @@ mod compressed;
 mod kinds;
 mod page_scripts;
 
+use super::answers::{As, Html, Script};
+use super::asked::{Asked, members};
 use super::error::ApiError;
 use axum::extract::Path;
 use axum::http::HeaderMap;
@@ -16,13 +18,18 @@ use axum::http::header::{CACHE_CONTROL, CONTENT_SECURITY_POLICY};
 use axum::response::IntoResponse;
 use compressed::CompressedBody;
 use data_encoding::BASE64;
+use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use std::sync::LazyLock;
+use utoipa::IntoParams;
+use utoipa::openapi::schema::Type;
+use utoipa::openapi::{Object, ObjectBuilder};
 
 const FRAME: &str = include_str!("page/page.html");
 const LOOK: &str = concat!(
     include_str!("page/look.css"),
-    include_str!("page/pages.css")
+    include_str!("page/pages.css"),
+    include_str!("page/narrow.css")
 );
 /// Scripts of the answer to `GET /`, in order: shared functions, the operator's page, the start.
 const SCRIPT: &str = concat!(
@@ -31,10 +38,11 @@ const SCRIPT: &str = concat!(
     include_str!("page/script/pages.js"),
     include_str!("page/script/link.js"),
     include_str!("page/script/orders.js"),
-    include_str!("page/script/people.js"),
+    include_str!("page/script/login.js"),
     include_str!("page/script/mimic.js"),
     include_str!("page/script/operator.js"),
     include_str!("page/script/alarm_bar.js"),
+    include_str!("page/script/prompt.js"),
     include_str!("page/script/activity.js"),
     include_str!("page/script/parts.js"),
     include_str!("page/script/start.js"),
@@ -58,22 +66,57 @@ static POLICY: LazyLock<String> = LazyLock::new(|| {
     )
 });
 
+/// Members of `GET /`, which the script of the page reads.
+#[derive(Debug, Deserialize, IntoParams)]
+#[expect(dead_code, reason = "the script of the page reads them")]
+pub(super) struct PageOptions {
+    /// Language, `zh` or `en`.
+    #[param(example = "en")]
+    lang: Option<String>,
+    /// `light` or `dark`.
+    #[param(example = "dark")]
+    theme: Option<String>,
+}
+
+members!(PageOptions);
+
+/// Member of the path of a script.
+#[derive(Debug, Deserialize, IntoParams)]
+pub(super) struct ScriptName {
+    /// Name with a hash of the script.
+    #[param(schema_with = script_names)]
+    file: String,
+}
+
+fn script_names() -> Object {
+    let names = page_scripts::SCRIPTS.keys();
+    let names = names.map(|it| it.trim_start_matches("/page/"));
+    ObjectBuilder::new()
+        .schema_type(Type::String)
+        .enum_values(Some(names))
+        .description(Some("Name with a hash of the script."))
+        .build()
+}
+
 /// `GET /`.
-pub(super) async fn page(headers: HeaderMap) -> impl IntoResponse {
+pub(super) async fn page(
+    Asked(_options): Asked<PageOptions>,
+    headers: HeaderMap,
+) -> As<Html, impl IntoResponse> {
     let policy = [(CONTENT_SECURITY_POLICY, POLICY.as_str())];
-    (policy, PAGE.answer(&headers))
+    As::new((policy, PAGE.answer(&headers)))
 }
 
 /// `GET /page/{file}`: fails when no script has this name and hash.
 pub(super) async fn script(
-    Path(file): Path<String>,
+    Path(ScriptName { file }): Path<ScriptName>,
     headers: HeaderMap,
-) -> Result<impl IntoResponse, ApiError> {
+) -> Result<As<Script, impl IntoResponse>, ApiError> {
     let path = format!("/page/{file}");
     let script = page_scripts::SCRIPTS.get(&path);
     let script = script.ok_or(ApiError::NoSuchRoute { path })?;
     let kept = [(CACHE_CONTROL, "public, max-age=31536000, immutable")];
-    Ok((kept, script.answer(&headers)))
+    Ok(As::new((kept, script.answer(&headers))))
 }
 
 #[cfg(test)]

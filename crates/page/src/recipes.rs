@@ -1,64 +1,73 @@
 //! `/api/recipes/...`: recipes with their revisions, and the route that saves a new revision.
 //!
-//! | route | members | answer |
-//! |---|---|---|
-//! | `GET /api/recipes` | | array of recipes: `name`, `title_en`, `title_zh`, `number`, `hash`, `saved_at_us`, or `trouble` |
-//! | `GET /api/recipes/show` | `name`, `revision` | one revision with its fields |
-//! | `GET /api/recipes/card` | `name`, `lang` | operation process card for A4 |
-//! | `POST /api/recipes/revise` | `name`, `from`, `values` | the new revision |
-//!
 //! Reading needs no login; a revision needs an engineer. The audit of orders gets every try of a logged-in person with its
-//! outcome. The history is opened before the change, so that no revision begins without an audit.
+//! outcome. The history is opened before the change, so that no revision begins without an audit. `approval.rs` adds the
+//! engineers who answer for a revision.
 
-use super::access::{Person, Role};
-use super::error::{ApiError, JsonResult, Members, blocking};
+use super::access::{Person, Role, audited};
+use super::approval::ApprovalState;
+use super::asked::{Asked, Author, Body, members};
+use super::error::{ApiError, JsonResult, blocking};
 use super::history::members::language;
 use super::history::paper::{Page, with_policy};
 use super::router::App;
-use super::{origin, sessions};
+use super::sessions;
 use axum::Json;
-use axum::extract::rejection::JsonRejection;
-use axum::extract::{Query, State};
-use axum::http::HeaderMap;
-use config::{Change, Folder, Plant, Revision};
+use axum::extract::State;
+use config::{Approval, Change, Folder, Plant, Revision};
 use history::inquiry::paper::paper;
 use history::report::Lang;
 use history::report::card;
-use history::{OrderRecord, Row, Store};
+use history::{Archive, RevisionEntry};
 use serde::{Deserialize, Serialize};
-use serde_json::json;
+use std::path::Path;
+use utoipa::{IntoParams, ToSchema};
 
 /// A recipe in the list.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, ToSchema)]
 pub(super) struct ListedRecipe {
     name: String,
     title_en: String,
     title_zh: String,
+    /// Number of the newest revision; null for a faulty recipe.
     number: Option<u32>,
+    /// SHA-256 of the text of that revision.
     hash: Option<String>,
+    /// Time at which that revision was saved, microseconds since 1970 UTC.
     saved_at_us: Option<i64>,
+    /// False while the plant wants an approval that this revision lacks.
+    approved: bool,
     /// Error that keeps the recipe from loading; absent for a good recipe.
     trouble: Option<String>,
 }
 
 /// `GET /api/recipes`.
 pub(super) async fn list(State(app): App) -> JsonResult<Vec<ListedRecipe>> {
-    let folder = app.shared.config.clone();
+    let (folder, db) = (app.shared.config.clone(), app.shared.db.clone());
     blocking(move || {
+        let wanted = config::approval(&folder)?;
         let names = config::recipe_names(&folder).into_iter();
-        Ok::<_, ApiError>(Json(names.map(|name| listed(&folder, name)).collect()))
+        let all = names.map(|name| listed(&folder, (wanted, &db), name));
+        all.collect::<Result<_, ApiError>>().map(Json)
     })
     .await
 }
 
-fn listed(folder: &Folder, name: String) -> ListedRecipe {
+fn listed(
+    folder: &Folder,
+    (wanted, db): (Approval, &Path),
+    name: String,
+) -> Result<ListedRecipe, ApiError> {
     let found = config::revision(folder, &name, None);
     let good = found.as_ref().ok();
     let title = |path: &str| {
         let title = good?.fields.iter().find(|it| it.path == path)?;
         Some(title.value.as_str()?.to_owned())
     };
-    ListedRecipe {
+    let approval = good.map(|it| ApprovalState::read(wanted, db, it));
+    let approval = approval.transpose()?.flatten();
+    Ok(ListedRecipe {
+        approved: approval.is_none_or(|it| it.is_approved()),
         title_en: title("title_en").unwrap_or_default(),
         title_zh: title("title_zh").unwrap_or_default(),
         number: good.map(|it| it.number),
@@ -66,34 +75,65 @@ fn listed(folder: &Folder, name: String) -> ListedRecipe {
         saved_at_us: good.and_then(|it| it.saved_at_us),
         trouble: found.as_ref().err().map(ToString::to_string),
         name,
+    })
+}
+
+/// A revision with the engineers who answer for it.
+#[derive(Debug, Serialize, ToSchema)]
+pub(super) struct ShownRevision {
+    #[serde(flatten)]
+    revision: Revision,
+    /// Engineers who answer for the revision; null in a plant that wants no approval.
+    approval: Option<ApprovalState>,
+}
+
+impl ShownRevision {
+    pub fn read(folder: &Folder, db: &Path, revision: Revision) -> Result<Self, ApiError> {
+        let approval = ApprovalState::read(config::approval(folder)?, db, &revision)?;
+        Ok(Self { revision, approval })
     }
 }
 
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Deserialize, IntoParams)]
 pub(super) struct RevisionQuery {
+    /// Name of the recipe.
+    #[param(example = "jzc-22f-012")]
     name: String,
+    /// Number of the revision, from 1; the newest when absent.
+    #[param(minimum = 1, example = 1)]
     revision: Option<u32>,
 }
 
 /// `GET /api/recipes/show`.
-pub(super) async fn show(State(app): App, which: Members<RevisionQuery>) -> JsonResult<Revision> {
-    let Query(RevisionQuery { name, revision }) = which?;
-    let folder = app.shared.config.clone();
-    let read = move || config::revision(&folder, &name, revision);
+pub(super) async fn show(
+    State(app): App,
+    Asked(RevisionQuery { name, revision }): Asked<RevisionQuery>,
+) -> JsonResult<ShownRevision> {
+    let (folder, db) = (app.shared.config.clone(), app.shared.db.clone());
+    let read = move || {
+        let revision = config::revision(&folder, &name, revision)?;
+        ShownRevision::read(&folder, &db, revision)
+    };
     blocking(read).await.map(Json)
 }
 
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Deserialize, IntoParams)]
 pub(super) struct CardQuery {
+    /// Name of the recipe.
+    #[param(example = "jzc-22f-012")]
     name: String,
+    /// Language, `zh` (when absent) or `en`.
+    #[param(inline)]
     lang: Option<Lang>,
 }
 
+members!(RevisionQuery, CardQuery);
+
 /// `GET /api/recipes/card`.
-pub(super) async fn card(State(app): App, printed: Members<CardQuery>) -> Result<Page, ApiError> {
-    let Query(CardQuery { name, lang }) = printed?;
+pub(super) async fn card(
+    State(app): App,
+    Asked(CardQuery { name, lang }): Asked<CardQuery>,
+) -> Result<Page, ApiError> {
     let folder = app.shared.config.clone();
     let made = move || {
         let recipe = config::load_recipe(&folder, &name)?;
@@ -105,33 +145,42 @@ pub(super) async fn card(State(app): App, printed: Members<CardQuery>) -> Result
     blocking(made).await
 }
 
+#[derive(Debug, Deserialize, IntoParams)]
+pub(super) struct RecipeQuery {
+    /// Name of the recipe.
+    #[param(example = "jzc-22f-012")]
+    name: String,
+}
+
+members!(RecipeQuery);
+
+/// `GET /api/recipes/revisions`.
+pub(super) async fn revisions(
+    State(app): App,
+    Asked(RecipeQuery { name }): Asked<RecipeQuery>,
+) -> JsonResult<Vec<RevisionEntry>> {
+    let folder = app.shared.config.clone();
+    let read = move |archive: &Archive| {
+        config::revision(&folder, &name, None)?;
+        Ok(archive.revisions(&name)?)
+    };
+    app.readers.read(read).await.map(Json)
+}
+
 /// `POST /api/recipes/revise`.
 pub(super) async fn revise(
     State(app): App,
-    from: origin::Peer,
-    headers: HeaderMap,
-    body: Result<Json<Change>, JsonRejection>,
-) -> JsonResult<Revision> {
-    let person = app.shared.sessions.author(&headers).await?;
-    let Json(change) = body?;
-    let origin = origin::address(from);
+    author: Author,
+    Body(change): Body<Change>,
+) -> JsonResult<ShownRevision> {
     let (folder, db) = (app.shared.config.clone(), app.shared.db.clone());
     blocking(move || {
-        let mut audit = Store::open(&db)?;
-        let done = revised(&folder, &person, &change);
-        let noted = audit.record(&[Row::Order(OrderRecord {
-            lot: None,
-            at_us: jiff::Timestamp::now().as_microsecond(),
-            who: person.name,
-            role: person.role.to_string(),
-            origin,
-            what: audit_entry(&change, done.as_ref().ok()).to_string(),
-            refused: done.as_ref().err().map(ToString::to_string),
-        })]);
-        match (done, noted) {
-            (Ok(_), Err(source)) => Err(ApiError::NotAudited { source }),
-            (done, _) => done.map(Json),
-        }
+        let (what, revise) = (
+            |saved: Option<&_>| change.audit(saved),
+            || revised(&folder, &author.person, &change),
+        );
+        let saved = audited(&db, author.by(), what, ApiError::message, revise)??;
+        ShownRevision::read(&folder, &db, saved).map(Json)
     })
     .await
 }
@@ -140,9 +189,4 @@ fn revised(folder: &Folder, person: &Person, change: &Change) -> Result<Revision
     sessions::require_role(person, Role::Engineer)?;
     let plant = Plant::load(folder)?;
     config::revise(&plant, change).map_err(|refused| ApiError::Revision { refused })
-}
-
-fn audit_entry(change: &Change, saved: Option<&Revision>) -> serde_json::Value {
-    let number = saved.map(|it| it.number);
-    json!({"order": "revise", "recipe": change.name, "revision": number, "from": change.from, "values": change.values})
 }

@@ -2,19 +2,17 @@
 
 use super::error::ApiError;
 use super::history::Readers;
-use super::{Shared, api};
+use super::{Shared, api, events};
 use axum::Json;
 use axum::Router;
-use axum::extract::{DefaultBodyLimit, Request, State};
+use axum::body::Bytes;
+use axum::extract::{Request, State};
 use axum::http::{HeaderName, HeaderValue, Method, Uri, header};
 use axum::middleware::{Next, from_fn};
 use axum::response::Response;
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
 use tokio::sync::watch;
-
-/// Largest body of a request, bytes.
-pub(super) const BODY_LIMIT: usize = 16 * 1024;
 
 /// State that every route may use.
 #[derive(Debug, Clone)]
@@ -24,26 +22,31 @@ pub(super) struct AppState {
     pub ended: watch::Receiver<bool>,
     /// Number of open event streams.
     pub streams: Arc<AtomicUsize>,
+    /// The last view as an event; see [`events::publish`].
+    pub events: watch::Receiver<Bytes>,
     pub readers: Readers,
 }
 
 /// Extractor by which a route receives [`AppState`].
 pub(super) type App = State<AppState>;
 
-/// Returns the router of all routes.
+/// Returns the router of all routes; starts the task that writes the events of all streams.
 pub(super) fn router(shared: Shared, ended: watch::Receiver<bool>) -> Router {
+    let (publisher, events) = watch::channel(Bytes::new());
     let app = AppState {
         readers: Readers::new(shared.db.clone()),
         shared,
         ended,
         streams: Arc::default(),
+        events,
     };
+    let (view, streams) = (app.shared.view.clone(), Arc::clone(&app.streams));
+    tokio::spawn(events::publish(view, publisher, streams));
     let routes = api::routes().into_iter();
     routes
         .fold(Router::new(), |all, it| all.route(it.path, it.handler))
         .fallback(no_such_route)
         .method_not_allowed_fallback(wrong_method)
-        .layer(DefaultBodyLimit::max(BODY_LIMIT))
         .layer(from_fn(default_headers))
         .with_state(app)
 }

@@ -7,63 +7,61 @@
 //! | script | `Authorization: Bearer TOKEN` from the answer to `POST /api/login` | what the role allows |
 //!
 //! An expired session counts as none: 401. A role that is too weak gets 403 with the role needed. Browsers do not send
-//! the cookie with requests of other sites, and `origin.rs` refuses those as well. The cookie has no `Secure`, because
-//! the program serves plain HTTP on loopback; elsewhere the plant's proxy adds it.
+//! the cookie with requests of other sites, and `origin.rs` refuses those as well. The cookie of a login over https is
+//! `Secure`.
+//!
+//! `sessions/proof.rs` opens a session when a person proves a password or the set-up code.
 
-use super::access::{AccessError, Limiter, Person, Register, Role, SESSION_S};
+mod proof;
+
+pub(super) use proof::Session;
+
+use super::access::{AccessError, Person, Register, Role, SESSION_S, SetupCode, access_path};
 use super::error::{ApiError, blocking};
 use super::origin;
 use axum::http::{HeaderMap, header};
-use std::path::Path;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Instant;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 const COOKIE: &str = "relayrig_session";
 
-/// People and sessions of this rig, behind one lock: logins run one after another, because each takes 19 MiB and 20 ms
-/// of a core.
+/// People and sessions of this rig, behind one lock.
 #[derive(Debug, Clone)]
 pub struct Sessions(Arc<Inner>);
 
 #[derive(Debug)]
 struct Inner {
     register: Mutex<Register>,
-    limiter: Mutex<Limiter>,
+    /// Held during a login, which takes 19 MiB and 20 ms of a core: logins run one at a time, and other requests wait
+    /// for one at most.
+    login: tokio::sync::Mutex<()>,
+    /// Path of the history, which holds the audit of orders.
+    history: PathBuf,
+    setup: Option<SetupCode>,
 }
 
 impl Sessions {
-    /// Opens or creates the file of people; returns also name and password of the engineer that the first start adds.
+    /// Opens or creates the file of people that belongs to `history`, whose audit holds changes of people; returns also
+    /// the code that adds the first engineer, while there is no engineer.
     ///
     /// # Errors
     /// Fails when the file belongs to another program or to a later version, or SQLite fails.
-    pub fn open(path: &Path) -> Result<(Self, Option<(String, String)>), AccessError> {
-        let mut register = Register::open(path)?;
-        let first = register.first_engineer(now_us())?;
+    pub fn open(history: &Path) -> Result<(Self, Option<SetupCode>), AccessError> {
+        let register = Register::open(&access_path(history))?;
+        let setup = register.setup_code()?;
         let inner = Inner {
             register: Mutex::new(register),
-            limiter: Mutex::default(),
+            login: tokio::sync::Mutex::default(),
+            history: history.to_owned(),
+            setup: setup.clone(),
         };
-        Ok((Self(Arc::new(inner)), first))
+        Ok((Self(Arc::new(inner)), setup))
     }
 
-    /// Opens a session; returns the person and the token. Fails for a wrong name or password, and after too many tries.
-    pub(super) async fn log_in(
-        &self,
-        name: String,
-        password: String,
-    ) -> Result<(Person, String), ApiError> {
-        let key = name.clone();
-        self.check_pace(&key)?;
-        let answer = self
-            .with(move |register| register.log_in(&name, &password, now_us()))
-            .await?;
-        let mut limiter = locked(&self.0.limiter);
-        if answer.is_some() {
-            limiter.succeeded(&key);
-        } else {
-            limiter.failed(&key, Instant::now());
-        }
-        answer.ok_or(ApiError::WrongPassword)
+    /// Returns true while a set-up code may add the first engineer.
+    pub(super) async fn needs_setup(&self) -> Result<bool, ApiError> {
+        let engineer = self.with(|register, _| register.has_engineer()).await?;
+        Ok(self.0.setup.is_some() && !engineer)
     }
 
     /// Ends the session of the request; does nothing without one.
@@ -71,7 +69,7 @@ impl Sessions {
         let Some(token) = token(headers) else {
             return Ok(());
         };
-        self.with(move |register| register.log_out(&token)).await
+        self.with(move |register, _| register.log_out(&token)).await
     }
 
     /// Returns the person of the session; `None` without a valid one.
@@ -79,7 +77,7 @@ impl Sessions {
         let Some(token) = token(headers) else {
             return Ok(None);
         };
-        self.with(move |register| register.holder(&token, now_us()))
+        self.with(move |register, _| register.holder(&token, now_us()))
             .await
     }
 
@@ -89,19 +87,23 @@ impl Sessions {
         self.who(headers).await?.ok_or(ApiError::NotLoggedIn)
     }
 
-    fn check_pace(&self, name: &str) -> Result<(), ApiError> {
-        match locked(&self.0.limiter).wait(name, Instant::now()) {
-            Some(wait) => Err(ApiError::TooManyTries { wait }),
-            None => Ok(()),
-        }
-    }
-
-    async fn with<T: Send + 'static>(
+    /// Runs `work` over the file of people and the path of the history, on a blocking thread.
+    pub(super) async fn with<T, E>(
         &self,
-        work: impl FnOnce(&mut Register) -> Result<T, AccessError> + Send + 'static,
-    ) -> Result<T, ApiError> {
+        work: impl FnOnce(&mut Register, &Path) -> Result<T, E> + Send + 'static,
+    ) -> Result<T, ApiError>
+    where
+        T: Send + 'static,
+        E: Into<ApiError> + Send + 'static,
+    {
         let inner = Arc::clone(&self.0);
-        blocking(move || work(&mut locked(&inner.register))).await
+        blocking(move || {
+            // A holder that panicked left no data half changed.
+            let register = inner.register.lock();
+            let mut register = register.unwrap_or_else(PoisonError::into_inner);
+            work(&mut register, &inner.history)
+        })
+        .await
     }
 }
 
@@ -114,15 +116,21 @@ pub(super) fn require_role(person: &Person, needed: Role) -> Result<(), ApiError
     Ok(())
 }
 
-/// Returns the value of `Set-Cookie` that sets the token, or deletes the cookie when there is none.
-pub(super) fn cookie(token: Option<&str>) -> String {
+/// Returns the value of `Set-Cookie` that sets the token, or deletes the cookie when there is none; over https the
+/// browser then never sends it in the clear.
+pub(super) fn cookie(token: Option<&str>, headers: &HeaderMap) -> String {
     let age = if token.is_some() { SESSION_S } else { 0 };
     let token = token.unwrap_or_default();
-    format!("{COOKIE}={token}; Path=/; HttpOnly; SameSite=Strict; Max-Age={age}")
+    let secure = if origin::is_https(headers) {
+        "; Secure"
+    } else {
+        ""
+    };
+    format!("{COOKIE}={token}; Path=/; HttpOnly; SameSite=Strict; Max-Age={age}{secure}")
 }
 
 /// Returns the token of the request; `Authorization` takes precedence over the cookie.
-fn token(headers: &HeaderMap) -> Option<String> {
+pub(super) fn token(headers: &HeaderMap) -> Option<String> {
     if let Some(value) = headers.get(header::AUTHORIZATION) {
         let token = value.to_str().ok()?.strip_prefix("Bearer ")?;
         return Some(token.trim().to_owned());
@@ -135,11 +143,6 @@ fn token(headers: &HeaderMap) -> Option<String> {
     named.next().map(str::to_owned)
 }
 
-/// Locks even after another holder panicked: no panic leaves the data half changed.
-fn locked<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
-    lock.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-fn now_us() -> i64 {
+pub(super) fn now_us() -> i64 {
     jiff::Timestamp::now().as_microsecond()
 }

@@ -3,20 +3,24 @@
 #![allow(clippy::unwrap_used)]
 
 mod api;
+mod approval;
 mod calibration;
+mod conformance;
+mod document;
 mod events;
 mod history;
 mod login;
 mod lots;
 mod mimic;
 mod orders;
+mod people;
 mod recipes;
 mod rejudge;
 mod routes;
-mod shutdown;
+mod server;
 
-use super::access::{Register, Role};
-use super::{Sessions, Shared, Traffic, WAITING, router};
+use super::access::{Register, Role, SetupCode, access_path};
+use super::{Sessions, Shared, Traffic, WAITING, asked, router};
 use axum::Router;
 use axum::body::{Body, to_bytes};
 use axum::http::{Request, StatusCode};
@@ -41,11 +45,15 @@ struct Fixture {
     ended: watch::Sender<bool>,
     stop: Arc<AtomicBool>,
     denied: Denied,
+    /// True while the controller takes every order.
+    willing: Arc<AtomicBool>,
     controller: JoinHandle<()>,
     orders: mpsc::Sender<OrderRequest>,
     router: Router,
     db: PathBuf,
     sessions: Sessions,
+    /// Code for the first engineer, whom the file lacks.
+    setup: SetupCode,
     /// Token of an operator's session.
     token: String,
 }
@@ -66,15 +74,20 @@ impl Fixture {
         let stop = Arc::new(AtomicBool::new(false));
         let denied = Denied::default();
         let (orders, asked) = mpsc::channel(WAITING);
-        let controller = tokio::spawn(controller(asked, Arc::clone(&stop), Arc::clone(&denied)));
-        let people = db.with_file_name("people.db");
-        let mut register = Register::open(&people).unwrap();
+        let willing = Arc::new(AtomicBool::new(false));
+        let controller = tokio::spawn(controller(
+            asked,
+            Arc::clone(&stop),
+            Arc::clone(&willing),
+            Arc::clone(&denied),
+        ));
+        let mut register = Register::open(&access_path(&db)).unwrap();
         for (name, role) in [("li", Role::Operator), ("wang", Role::Maintainer)] {
             register.add(name, role, PASSWORD, 0).unwrap();
         }
         let now_us = jiff::Timestamp::now().as_microsecond();
-        let (_, token) = register.log_in("li", PASSWORD, now_us).unwrap().unwrap();
-        let (sessions, _) = Sessions::open(&people).unwrap();
+        let token = register.open_session("li", now_us).unwrap();
+        let (sessions, setup) = Sessions::open(&db).unwrap();
         let shared = Shared {
             sessions: sessions.clone(),
             mimic: Arc::new(some_mimic()),
@@ -90,24 +103,30 @@ impl Fixture {
             ended,
             stop,
             denied,
+            willing,
             controller,
             orders,
             router,
             db,
             sessions,
+            setup: setup.unwrap(),
             token,
         }
     }
 
+    /// Sends the request; checks that the answer is as the OpenAPI document says.
     async fn ask(&self, request: Request<Body>) -> Answer {
+        let (method, path) = (request.method().clone(), request.uri().path().to_owned());
         let response = self.router.clone().oneshot(request).await.unwrap();
         let (parts, body) = response.into_parts();
         let body = to_bytes(body, usize::MAX).await.unwrap();
-        Answer {
+        let answer = Answer {
             status: parts.status,
             headers: parts.headers,
             body: body.to_vec(),
-        }
+        };
+        conformance::check(&method, &path, &answer);
+        answer
     }
 
     async fn get(&self, path: &str) -> Answer {
@@ -119,6 +138,19 @@ impl Fixture {
         let request = Request::post("/api/orders").header("content-type", "application/json");
         let request = request.header("authorization", self.bearer());
         self.ask(request.body(body.into()).unwrap()).await
+    }
+
+    fn register(&self) -> Register {
+        Register::open(&access_path(&self.db)).unwrap()
+    }
+
+    /// Opens a session with this role; returns its token.
+    fn session(&self, role: Role) -> String {
+        let mut register = self.register();
+        // Fails without harm when an earlier call has added the person.
+        let _ = register.add(role.word(), role, PASSWORD, 0);
+        let now_us = jiff::Timestamp::now().as_microsecond();
+        register.open_session(role.word(), now_us).unwrap()
     }
 
     fn bearer(&self) -> String {
@@ -141,24 +173,31 @@ impl Fixture {
 async fn controller(
     mut asked: mpsc::Receiver<OrderRequest>,
     stop: Arc<AtomicBool>,
+    willing: Arc<AtomicBool>,
     denied: Denied,
 ) {
     while let Some(asked) = asked.recv().await {
         if let Some(why) = &asked.denied {
             denied.lock().unwrap().push(format!(
-                "{} {} {}: {why}",
-                asked.by.role, asked.by.who, asked.order.order
+                "{} {} {}: {}",
+                asked.by.role,
+                asked.by.who,
+                asked.order.word(),
+                why.say(texts::Lang::En)
             ));
             continue;
         }
-        let answer = match asked.order.order.as_str() {
+        let answer = match asked.order.word().as_str() {
             "stop" => {
                 stop.store(true, Ordering::SeqCst);
-                Ok(())
+                Ok(None)
             }
-            "jog" | "mode" | "step" | "shelve" | "hold_lot" | "release_lot" | "close_lot"
-            | "reopen_lot" | "replaced" => Ok(()),
-            _other => Err(texts::Message::new("refusal", "run_ended")),
+            "reset" | "start" | "hold" | "unhold" | "abort" | "clear"
+                if !willing.load(Ordering::SeqCst) =>
+            {
+                Err(texts::Message::new("refusal", "run_ended"))
+            }
+            _other => Ok(None),
         };
         asked.answer(answer);
     }

@@ -3,17 +3,19 @@
 //! `last` is the number of messages of each line, 1 to [`MOST`]; 100 when absent. The array is empty until a run has
 //! opened its lines.
 
-use super::error::{ApiError, JsonResult, Members};
+use super::asked::{Asked, members};
+use super::error::{ApiError, JsonResult};
 use super::router::App;
 use axum::Json;
-use axum::extract::{Query, State};
+use axum::extract::State;
 use machine::view::LineTraffic;
 use serde::Deserialize;
 use std::fmt;
 use std::sync::Arc;
+use utoipa::IntoParams;
 
 /// Greatest `last`: the number of messages that each line keeps.
-const MOST: usize = 1000;
+const MOST: u64 = 1000;
 
 /// Function that returns the last messages of every line; its argument is the largest number of messages per line.
 type ReadTraffic = dyn Fn(usize) -> Vec<LineTraffic> + Send + Sync;
@@ -35,17 +37,20 @@ impl fmt::Debug for Traffic {
     }
 }
 
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Deserialize, IntoParams)]
 pub(super) struct TraceQuery {
-    last: Option<usize>,
+    /// Largest number of messages of each line, 1 to 1000; 100 when absent.
+    #[param(minimum = 1, maximum = 1000, example = 10)]
+    last: Option<u64>,
 }
+
+members!(TraceQuery);
 
 pub(super) async fn trace(
     State(app): App,
-    asked: Members<TraceQuery>,
+    Asked(TraceQuery { last }): Asked<TraceQuery>,
 ) -> JsonResult<Vec<LineTraffic>> {
-    let Query(TraceQuery { last }) = asked?;
     let last = ApiError::ranged("last", last, 100, MOST)?;
+    let last = usize::try_from(last).unwrap_or(usize::MAX);
     Ok(Json((app.shared.traffic.0)(last)))
 }

@@ -5,21 +5,25 @@
 //!   are copied, mailed and backed up, and hashes of passwords must not be.
 //! - The file holds each password as an Argon2id string (RFC 9106) with its salt and parameters. A session token has
 //!   256 random bits; the file holds only its SHA-256, so that a copy of the file opens no session.
-//! - A file without people gets one engineer with a random password, which the program prints once.
-//! - `limiter.rs` counts wrong passwords. A login takes the same time for known and unknown names.
+//! - While the file holds no engineer, the program prints a [`SetupCode`] at each start; this code adds one engineer.
+//! - The file counts wrong passwords (`register/failures.rs`). A login takes the same time for known and unknown names.
+//! - `change.rs` changes people and notes it in the audit of orders, for the page and for the command line.
 //!
-//! This module does not depend on HTTP; `login.rs` does.
+//! This module does not depend on HTTP; `login.rs` and `people.rs` do.
 
+mod change;
 mod error;
-mod limiter;
 mod password;
 mod register;
 mod role;
+mod setup;
 
+pub(crate) use change::note;
+pub use change::{PersonChange, audited};
 pub use error::AccessError;
-pub(crate) use limiter::Limiter;
-pub use register::{Person, Register, access_path};
+pub use register::{Entry, Login, Person, Register, access_path};
 pub use role::Role;
+pub use setup::SetupCode;
 
 /// Time after which a session ends, seconds: a shift with its overlaps.
 pub const SESSION_S: i64 = 12 * 3600;

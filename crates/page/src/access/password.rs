@@ -40,11 +40,16 @@ pub(super) fn matches(password: &str, kept: &str) -> Result<bool> {
         .is_ok())
 }
 
-/// Returns `bytes` random bytes in hexadecimal.
-pub(super) fn random(bytes: usize) -> Result<String> {
+/// Returns `bytes` random bytes.
+pub(super) fn random(bytes: usize) -> Result<Vec<u8>> {
     let mut drawn = vec![0_u8; bytes];
     getrandom::fill(&mut drawn).map_err(|error| trouble("drawing a random number", &error))?;
-    Ok(HEXLOWER.encode(&drawn))
+    Ok(drawn)
+}
+
+/// Returns `bytes` random bytes in hexadecimal.
+pub(super) fn random_hex(bytes: usize) -> Result<String> {
+    Ok(HEXLOWER.encode(&random(bytes)?))
 }
 
 fn trouble(doing: &'static str, error: &dyn std::fmt::Display) -> AccessError {

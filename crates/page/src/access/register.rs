@@ -2,33 +2,54 @@
 //!
 //! Callers pass the time, microseconds since 1970 UTC. Names are case-sensitive.
 
+mod failures;
+mod sessions;
+
+pub use sessions::Login;
+
 use super::error::{AccessError, Doing, Result};
 use super::role::NoRole;
-use super::{Role, SESSION_S, password};
+use super::{Role, SetupCode, password};
 use data_encoding::HEXLOWER;
-use rusqlite::{Connection, OptionalExtension, params};
+use history::Moment;
+use rusqlite::{Connection, OpenFlags, params};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::fs::OpenOptions;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use utoipa::ToSchema;
 
 /// Application id in the header of the file: `RRac` in ASCII.
 const APPLICATION_ID: i64 = 0x5252_6163;
-const SCHEMA: i64 = 1;
-/// Name of the engineer whom the first start adds.
-const FIRST: &str = "engineer";
-/// Hash that no password matches: checking it costs an unknown name the time of a known one.
-const NOBODY: &str = "$argon2id$v=19$m=19456,t=2,p=1$c29tZSBzYWx0IGhlcmU$\
-                      zY2ZxH5hG1m3pV0Q3mCkGd5dTn0l2yq0hXo1m3u9m6E";
+const SCHEMA: i64 = 2;
+/// Tables of schema 1.
+const PEOPLE: &str = include_str!("people.sql");
+/// Table that schema 2 adds.
+const FAILURES: &str = include_str!("failures.sql");
+
+/// Name of the failed step in errors.
+const OPENING: &str = "opening the list of people";
 
 /// A person of the file.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Person {
     /// Name for the login, 1 to 40 characters.
     pub name: String,
     /// Role, which decides what the person may order and change.
     pub role: Role,
+}
+
+/// A person as engineers see it in the list.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Entry {
+    /// Name and role.
+    #[serde(flatten)]
+    pub person: Person,
+    /// Time at which the person was added.
+    pub since: Moment,
+    /// Time until which wrong passwords keep the person from logging in; `None` when they do not.
+    pub locked_until: Option<Moment>,
 }
 
 /// The open file of people and sessions. Every call blocks; a login computes for about 20 ms.
@@ -45,38 +66,54 @@ pub fn access_path(history: &Path) -> PathBuf {
 }
 
 impl Register {
-    /// Opens the file, or creates it.
+    /// Opens the file, or creates it; migrates an older schema.
     ///
     /// # Errors
     /// Fails for a file of another program or of a later version, which stays unchanged, and when SQLite fails.
     pub fn open(path: &Path) -> Result<Self> {
-        const DOING: &str = "opening the list of people";
         own(path);
-        let connection = Connection::open(path).doing(DOING)?;
+        let (register, schema) = Self::connect(path, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
+        match schema {
+            0 => make(&register.connection, PEOPLE).doing("making the list of people")?,
+            1 => make(&register.connection, "").doing("updating the list of people")?,
+            _ => {}
+        }
+        let keys = register
+            .connection
+            .pragma_update(None, "foreign_keys", true);
+        keys.doing(OPENING)?;
+        Ok(register)
+    }
+
+    /// Opens an existing file for reading; changes neither the file nor its schema.
+    ///
+    /// # Errors
+    /// Fails for a missing or empty file, for one of another program or of a later version, and when SQLite fails.
+    pub fn open_unchanged(path: &Path) -> Result<Self> {
+        match Self::connect(path, OpenFlags::SQLITE_OPEN_READ_ONLY)? {
+            (_, 0) => Err(foreign(path, 0, 0)),
+            (register, _) => Ok(register),
+        }
+    }
+
+    /// Returns the open file with its schema, 0 for an empty file.
+    fn connect(path: &Path, access: OpenFlags) -> Result<(Self, i64)> {
+        let connection = Connection::open_with_flags(path, access).doing(OPENING)?;
         connection
             .busy_timeout(Duration::from_secs(5))
-            .doing(DOING)?;
+            .doing(OPENING)?;
         let pragma = |name| connection.pragma_query_value(None, name, |row| row.get::<_, i64>(0));
         let tables =
             connection.query_row("SELECT count(*) FROM sqlite_schema", [], |row| row.get(0));
         let (id, schema, tables): (i64, i64, i64) = (
-            pragma("application_id").doing(DOING)?,
-            pragma("user_version").doing(DOING)?,
-            tables.doing(DOING)?,
+            pragma("application_id").doing(OPENING)?,
+            pragma("user_version").doing(OPENING)?,
+            tables.doing(OPENING)?,
         );
         match (id, schema, tables) {
-            (0, 0, 0) => make(&connection).doing("making the list of people")?,
-            (APPLICATION_ID, SCHEMA, _) => {}
-            _ => {
-                let found = format!("application id {id:#x}, schema {schema}");
-                let path = path.to_owned();
-                return Err(AccessError::Foreign { path, found });
-            }
+            (0, 0, 0) | (APPLICATION_ID, 1..=SCHEMA, _) => Ok((Self { connection }, schema)),
+            _ => Err(foreign(path, id, schema)),
         }
-        connection
-            .pragma_update(None, "foreign_keys", true)
-            .doing(DOING)?;
-        Ok(Self { connection })
     }
 
     /// Copies the file to `target`, which must not exist and gets the same access rights.
@@ -91,23 +128,35 @@ impl Register {
         Ok(())
     }
 
-    /// Adds an engineer to a file without people; returns name and password, of which the file holds only the hash.
-    pub fn first_engineer(&mut self, now_us: i64) -> Result<Option<(String, String)>> {
-        if !self.people()?.is_empty() {
-            return Ok(None);
+    /// Checks the whole file; returns all people in order of their names.
+    ///
+    /// # Errors
+    /// Fails when the file is damaged.
+    pub fn checked_people(&self) -> Result<Vec<Person>> {
+        const DOING: &str = "checking the list of people";
+        let pragma = "PRAGMA integrity_check(1)";
+        let found: String = (self.connection)
+            .query_row(pragma, [], |row| row.get(0))
+            .doing(DOING)?;
+        match found.as_str() {
+            "ok" => self.people(),
+            _ => Err(AccessError::Damaged { found }),
         }
-        let drawn = Self::random_password()?;
-        self.add(FIRST, Role::Engineer, &drawn, now_us)?;
-        Ok(Some((FIRST.to_owned(), drawn)))
     }
 
-    /// Returns a password of 64 random bits in hexadecimal.
-    pub fn random_password() -> Result<String> {
-        password::random(8)
+    /// Returns a code for adding the first engineer; `None` when there is an engineer.
+    pub fn setup_code(&self) -> Result<Option<SetupCode>> {
+        (!self.has_engineer()?).then(SetupCode::draw).transpose()
+    }
+
+    /// Returns true when a person has the role engineer.
+    pub fn has_engineer(&self) -> Result<bool> {
+        let engineers = self.people()?;
+        Ok(engineers.iter().any(|it| it.role == Role::Engineer))
     }
 
     /// Returns all people in order of their names.
-    pub fn people(&self) -> Result<Vec<Person>> {
+    fn people(&self) -> Result<Vec<Person>> {
         const DOING: &str = "listing people";
         let mut rows = self
             .connection
@@ -115,6 +164,29 @@ impl Register {
             .doing(DOING)?;
         let people = rows.query_map([], person).doing(DOING)?;
         people.collect::<rusqlite::Result<_>>().doing(DOING)
+    }
+
+    /// Returns all people in order of their names, each with the end of a lock that holds at `now_us`.
+    pub fn entries(&self, now_us: i64) -> Result<Vec<Entry>> {
+        const DOING: &str = "listing people";
+        let mut rows = self
+            .connection
+            .prepare("SELECT name, role, since_us FROM person ORDER BY name")
+            .doing(DOING)?;
+        let found = rows
+            .query_map([], |row| Ok((person(row)?, row.get(2)?)))
+            .doing(DOING)?;
+        found
+            .map(|row| {
+                let (person, since_us) = row.doing(DOING)?;
+                let locked_until = self.locked_until_us(&person.name, now_us)?.map(Moment);
+                Ok(Entry {
+                    person,
+                    since: Moment(since_us),
+                    locked_until,
+                })
+            })
+            .collect()
     }
 
     /// Adds a person. Fails when the name is taken or malformed or the password has a wrong length.
@@ -149,76 +221,40 @@ impl Register {
         require_found(found, name)
     }
 
+    /// Gives a person another role. Fails for an unknown name, and for the last engineer.
+    pub fn set_role(&mut self, name: &str, role: Role) -> Result<()> {
+        if role != Role::Engineer {
+            self.spare_last_engineer(name)?;
+        }
+        let sql = "UPDATE person SET role = ?2 WHERE name = ?1";
+        let found = self.connection.execute(sql, [name, role.word()]);
+        require_found(found.doing("changing a role")?, name)
+    }
+
+    /// Forgets the wrong passwords of a person. Fails for an unknown name.
+    pub fn unlock(&mut self, name: &str) -> Result<()> {
+        let people = self.people()?;
+        require_found(people.iter().filter(|it| it.name == name).count(), name)?;
+        self.forgive(name)
+    }
+
     /// Removes a person with all sessions. Fails for an unknown name and for the last engineer.
     pub fn remove(&mut self, name: &str) -> Result<()> {
+        self.spare_last_engineer(name)?;
+        let sql = "DELETE FROM person WHERE name = ?1";
+        let found = self.connection.execute(sql, [name]);
+        require_found(found.doing("removing a person")?, name)
+    }
+
+    fn spare_last_engineer(&self, name: &str) -> Result<()> {
         let mut engineers = self.people()?;
         engineers.retain(|it| it.role == Role::Engineer);
-        if let [last] = &engineers[..]
-            && last.name == name
-        {
-            return Err(AccessError::LastEngineer {
+        match &engineers[..] {
+            [last] if last.name == name => Err(AccessError::LastEngineer {
                 name: name.to_owned(),
-            });
+            }),
+            _ => Ok(()),
         }
-        let sql = "DELETE FROM person WHERE name = ?1";
-        let found = self
-            .connection
-            .execute(sql, [name])
-            .doing("removing a person")?;
-        require_found(found, name)
-    }
-
-    /// Opens a session; returns the person and the token, `None` when name or password is wrong.
-    pub fn log_in(
-        &mut self,
-        name: &str,
-        password: &str,
-        now_us: i64,
-    ) -> Result<Option<(Person, String)>> {
-        const DOING: &str = "logging in";
-        let sql = "SELECT name, role, password FROM person WHERE name = ?1";
-        let found = self
-            .connection
-            .query_row(sql, [name], |row| {
-                Ok((person(row)?, row.get::<_, String>(2)?))
-            })
-            .optional()
-            .doing(DOING)?;
-        let kept = found.as_ref().map_or(NOBODY, |(_, hash)| hash.as_str());
-        let fits = password::matches(password, kept)?;
-        let Some((person, _)) = found.filter(|_| fits) else {
-            return Ok(None);
-        };
-        let token = password::random(32)?;
-        let until_us = now_us + SESSION_S * 1_000_000;
-        let begin = self.connection.transaction().doing(DOING)?;
-        begin
-            .execute("DELETE FROM session WHERE until_us <= ?1", [now_us])
-            .doing(DOING)?;
-        let row = params![digest(&token), person.name, until_us];
-        begin
-            .execute("INSERT INTO session VALUES (?1, ?2, ?3)", row)
-            .doing(DOING)?;
-        begin.commit().doing(DOING)?;
-        Ok(Some((person, token)))
-    }
-
-    /// Returns the person who holds the session `token`; `None` for an unknown or expired one.
-    pub fn holder(&self, token: &str, now_us: i64) -> Result<Option<Person>> {
-        let sql = "SELECT name, role FROM session JOIN person ON person = name
-                   WHERE token_sha256 = ?1 AND until_us > ?2";
-        let row = params![digest(token), now_us];
-        let found = self.connection.query_row(sql, row, person).optional();
-        found.doing("looking up a session")
-    }
-
-    /// Ends a session; ignores an unknown token.
-    pub fn log_out(&mut self, token: &str) -> Result<()> {
-        let sql = "DELETE FROM session WHERE token_sha256 = ?1";
-        self.connection
-            .execute(sql, [digest(token)])
-            .doing("logging out")?;
-        Ok(())
     }
 }
 
@@ -232,10 +268,11 @@ fn own(path: &Path) {
     let _ = options.open(path);
 }
 
-fn make(connection: &Connection) -> rusqlite::Result<()> {
+/// Runs `first`, then brings the file from schema 1 to the present one.
+fn make(connection: &Connection, first: &str) -> rusqlite::Result<()> {
     connection.execute_batch(&format!(
-        "BEGIN IMMEDIATE; {} PRAGMA user_version = {SCHEMA}; PRAGMA application_id = {APPLICATION_ID}; COMMIT;",
-        include_str!("people.sql")
+        "BEGIN IMMEDIATE; {first} {FAILURES} PRAGMA user_version = {SCHEMA}; \
+         PRAGMA application_id = {APPLICATION_ID}; COMMIT;"
     ))
 }
 
@@ -246,6 +283,12 @@ fn person(row: &rusqlite::Row<'_>) -> rusqlite::Result<Person> {
     })?;
     let name = row.get(0)?;
     Ok(Person { name, role })
+}
+
+fn foreign(path: &Path, id: i64, schema: i64) -> AccessError {
+    let found = format!("application id {id:#x}, schema {schema}");
+    let path = path.to_owned();
+    AccessError::Foreign { path, found }
 }
 
 fn require_found(rows: usize, name: &str) -> Result<()> {

@@ -6,11 +6,13 @@
 use super::super::error::{ApiError, blocking};
 use super::super::router::App;
 use super::feed;
-use super::members::{ReportMembers, language, split};
+use super::members::{Printed, filter, language};
+use crate::answers::{As, Csv, Sheet};
+use crate::asked::Asked;
 use axum::extract::State;
+use axum::http::HeaderName;
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
-use axum::http::{HeaderName, Uri};
-use axum::response::{IntoResponse, Response};
+use axum::response::IntoResponse;
 use history::csv::BYTE_ORDER_MARK;
 use history::inquiry::{InquiryError, checks, export, paper};
 use std::io::{self, Write};
@@ -41,9 +43,9 @@ const XLSX: Saved = [
 /// `GET /api/history/export.csv`.
 pub(crate) async fn csv(
     State(app): App,
-    filter: super::Members<history::Filter>,
-) -> Result<Response, ApiError> {
-    let filter = filter?.0;
+    Asked(asked): Asked<super::Filtered>,
+) -> Result<As<Csv>, ApiError> {
+    let filter = filter(asked);
     checks::validate(&filter)?;
     let (archive, place) = app.readers.open().await?;
     let asked = filter.clone();
@@ -56,15 +58,16 @@ pub(crate) async fn csv(
         out.write_all(BYTE_ORDER_MARK.as_bytes())?;
         export::csv_lines(archive, &filter, &keys, out).map_err(io::Error::other)
     });
-    Ok((CSV, lines).into_response())
+    Ok(As::new((CSV, lines).into_response()))
 }
 
 /// `GET /api/history/export.xlsx`.
-pub(crate) async fn xlsx(State(app): App, uri: Uri) -> Result<(Saved, Vec<u8>), ApiError> {
-    let (filter, own) = split::<ReportMembers>(&uri)?;
+pub(crate) async fn xlsx(
+    State(app): App,
+    Asked((asked, printed)): Asked<(super::Filtered, Printed)>,
+) -> Result<As<Sheet, (Saved, Vec<u8>)>, ApiError> {
+    let filter = filter(asked);
     checks::validate(&filter)?;
-    super::paper::refuse("seq", own.seq.is_some())?;
-    super::paper::refuse("ideal_cycle_s", own.ideal_cycle_s.is_some())?;
     let made = move |archive: &history::Archive| {
         checks::known_runs(archive, &filter)?;
         let keys = checks::parameters(archive, filter.param.as_deref())?;
@@ -76,9 +79,9 @@ pub(crate) async fn xlsx(State(app): App, uri: Uri) -> Result<(Saved, Vec<u8>), 
             );
             return Err(InquiryError::member("limit", reason).into());
         }
-        let paper = paper::paper_of(archive, &filter, language(own.lang))?;
+        let paper = paper::paper_of(archive, &filter, language(printed.lang))?;
         let mut book = export::spreadsheet(archive, &filter, &keys, &paper, || {})?;
         Ok(book.save_to_buffer().map_err(InquiryError::from)?)
     };
-    Ok((XLSX, app.readers.read(made).await?))
+    Ok(As::new((XLSX, app.readers.read(made).await?)))
 }

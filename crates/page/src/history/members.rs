@@ -1,96 +1,247 @@
-//! Splits a query string into the filter of the history and the members of one route.
+//! Parts of the query strings of the history, and the filter that they make.
 
 use super::super::error::ApiError;
-use axum::extract::Query;
-use axum::http::Uri;
-use history::Filter;
+use crate::asked::members;
+use history::inquiry::checks::{KINDS, VERDICTS};
 use history::report::Lang;
+use history::{Filter, Moment};
+use machine::dut::Characteristic;
 use quality::rules::Rules;
 use serde::Deserialize;
-use serde::de::DeserializeOwned;
+use utoipa::IntoParams;
+use utoipa::openapi::schema::Type;
+use utoipa::openapi::{Object, ObjectBuilder};
 
 /// Default of `last`, the number of points of a control chart.
-const SHOWN: usize = 200;
+const SHOWN: u64 = 200;
 /// Greatest `last`.
-const MOST_SHOWN: usize = 10_000;
+const MOST_SHOWN: u64 = 10_000;
 
-/// Members that a route takes besides the filter.
-pub(super) trait RouteMembers: DeserializeOwned {
-    /// Names of the members.
-    const MEMBERS: &'static [&'static str];
+/// Runs of lots.
+#[derive(Debug, Deserialize, IntoParams)]
+pub(crate) struct Runs {
+    /// Name of the lot.
+    #[param(example = "L-1122")]
+    lot: Option<String>,
+    /// Number of the run within its lot.
+    #[param(example = 1)]
+    run: Option<u32>,
+    /// Name of the recipe.
+    #[param(example = "jzc-22f-012")]
+    recipe: Option<String>,
 }
 
-/// Members of a control chart.
-#[derive(Debug, Deserialize)]
-pub(super) struct ChartMembers {
-    /// Parts in a subgroup, 1 to 10; 1 when absent.
+/// Runs of one lot.
+#[derive(Debug, Deserialize, IntoParams)]
+pub(crate) struct OneLot {
+    /// Name of the lot.
+    #[param(example = "L-1122")]
+    lot: String,
+    /// Number of the run within its lot; all runs without it.
+    #[param(example = 1)]
+    run: Option<u32>,
+    /// Name of the recipe.
+    #[param(example = "jzc-22f-012")]
+    recipe: Option<String>,
+}
+
+/// A span of time.
+#[derive(Debug, Deserialize, IntoParams)]
+pub(crate) struct TimeSpan {
+    /// Earliest time: RFC 3339, or local as `2026-11-22`, `today`, `-8h`.
+    #[param(value_type = Option<String>, example = "2026-11-22T00:00:00Z")]
+    pub since: Option<Moment>,
+    /// Time before which the entries lie, in the forms of `since`.
+    #[param(value_type = Option<String>, example = "2026-11-23T00:00:00Z")]
+    pub until: Option<Moment>,
+}
+
+/// Page of a long answer.
+#[derive(Debug, Deserialize, IntoParams)]
+pub(crate) struct Paging {
+    /// Largest number of entries in the answer.
+    #[param(example = 100)]
+    limit: Option<u64>,
+    /// Number of entries to skip.
+    #[param(example = 0)]
+    offset: Option<u64>,
+}
+
+/// Properties of parts.
+#[derive(Debug, Deserialize, IntoParams)]
+pub(crate) struct OfParts {
+    /// Verdict.
+    #[param(schema_with = verdicts)]
+    verdict: Option<String>,
+    /// Bin of the verdict.
+    #[param(example = "pass")]
+    bin: Option<String>,
+    /// Serial number.
+    #[param(example = "L-1122-000017")]
+    serial: Option<String>,
+    /// `lot` (when absent), `golden` for reference parts, `all`.
+    #[param(schema_with = kinds)]
+    kind: Option<String>,
+    /// True: only parts between a passed reference check and a failed one.
+    #[param(example = false)]
+    suspect: Option<bool>,
+}
+
+/// Parts with a value in a range.
+#[derive(Debug, Deserialize, IntoParams)]
+pub(crate) struct ValueRange {
+    /// Parameter key with its unit, as in an export.
+    #[param(example = some_parameter)]
+    param: Option<String>,
+    /// Least value of `param`.
+    #[param(example = 1.0)]
+    min: Option<f64>,
+    /// Largest value of `param`.
+    #[param(example = 20.0)]
+    max: Option<f64>,
+}
+
+/// One parameter.
+#[derive(Debug, Deserialize, IntoParams)]
+pub(crate) struct OneParameter {
+    /// Parameter key with its unit, as in an export.
+    #[param(example = some_parameter)]
+    pub param: String,
+}
+
+/// A control chart.
+#[derive(Debug, Deserialize, IntoParams)]
+pub(crate) struct Charting {
+    /// Parameter key with its unit; without it the share of each bin.
+    #[param(example = some_parameter)]
+    pub param: Option<String>,
+    /// Parts of a subgroup, 1 to 10; 1 when absent.
+    #[param(minimum = 1, maximum = 10, example = 1)]
     pub subgroup: Option<u8>,
     /// `nelson` (when absent) or `western-electric`.
+    #[param(inline)]
     pub rules: Option<Rules>,
-    /// Number of points, counted from the last; [`SHOWN`] when absent.
-    last: Option<usize>,
-    /// Language of a printed chart: `zh` (when absent) or `en`.
+    /// Number of points, counted from the last; 200 when absent.
+    #[param(minimum = 1, maximum = 10000, example = 100)]
+    last: Option<u64>,
+}
+
+/// A printed page or a spreadsheet.
+#[derive(Debug, Deserialize, IntoParams)]
+pub(crate) struct Printed {
+    /// Language, `zh` (when absent) or `en`.
+    #[param(inline)]
     pub lang: Option<Lang>,
 }
 
-impl RouteMembers for ChartMembers {
-    const MEMBERS: &'static [&'static str] = &["subgroup", "rules", "last", "lang"];
+members!(
+    Runs,
+    OneLot,
+    TimeSpan,
+    Paging,
+    OfParts,
+    ValueRange,
+    OneParameter,
+    Charting,
+    Printed
+);
+
+fn words(words: &[&'static str], about: &str) -> Object {
+    ObjectBuilder::new()
+        .schema_type(Type::String)
+        .enum_values(Some(words.iter().copied()))
+        .description(Some(about))
+        .build()
 }
 
-impl ChartMembers {
-    /// Returns the number of points to send. Fails when it is not from 1 to [`MOST_SHOWN`].
-    pub fn last(&self) -> Result<usize, ApiError> {
-        ApiError::ranged("last", self.last, SHOWN, MOST_SHOWN)
+/// Returns the key of some parameter, for the examples of the document.
+fn some_parameter() -> &'static str {
+    Characteristic::all().next().map_or("", Characteristic::key)
+}
+
+fn verdicts() -> Object {
+    words(&VERDICTS, "Verdict.")
+}
+
+fn kinds() -> Object {
+    words(
+        &KINDS,
+        "`lot` (without it), `golden` for reference parts, `all`.",
+    )
+}
+
+/// Part of a query string that restricts the filter.
+pub(crate) trait Selects {
+    fn select(self, filter: &mut Filter);
+}
+
+/// Returns the filter that all parts make together.
+pub(crate) fn filter(parts: impl Selects) -> Filter {
+    let mut filter = Filter::default();
+    parts.select(&mut filter);
+    filter
+}
+
+impl Selects for Runs {
+    fn select(self, filter: &mut Filter) {
+        (filter.lot, filter.run, filter.recipe) = (self.lot, self.run, self.recipe);
     }
 }
 
-/// Members of a printed report.
-#[derive(Debug, Deserialize)]
-pub(super) struct ReportMembers {
-    /// `zh` (when absent) or `en`.
-    pub lang: Option<Lang>,
-    /// Number of the part that the certificate is for; only `report/certificate` takes it.
-    pub seq: Option<u64>,
-    /// Shortest possible cycle of the line, s, for the OEE; only `report/lot` takes it.
-    pub ideal_cycle_s: Option<f64>,
+impl Selects for OneLot {
+    fn select(self, filter: &mut Filter) {
+        (filter.lot, filter.run, filter.recipe) = (Some(self.lot), self.run, self.recipe);
+    }
 }
 
-impl RouteMembers for ReportMembers {
-    const MEMBERS: &'static [&'static str] = &["lang", "seq", "ideal_cycle_s"];
+impl Selects for TimeSpan {
+    fn select(self, filter: &mut Filter) {
+        (filter.since, filter.until) = (self.since, self.until);
+    }
 }
 
-/// Members of `orders`, the audit of orders.
-#[derive(Debug, Deserialize)]
-pub(super) struct AuditMembers {
-    /// Name of the person whose orders to list; all when absent.
-    pub who: Option<String>,
+impl Selects for Paging {
+    fn select(self, filter: &mut Filter) {
+        (filter.limit, filter.offset) = (self.limit, self.offset);
+    }
 }
 
-impl RouteMembers for AuditMembers {
-    const MEMBERS: &'static [&'static str] = &["who"];
+impl Selects for OfParts {
+    fn select(self, filter: &mut Filter) {
+        (filter.verdict, filter.bin, filter.kind) = (self.verdict, self.bin, self.kind);
+        filter.serial = self.serial;
+        filter.suspect = self.suspect.unwrap_or(false);
+    }
+}
+
+impl Selects for ValueRange {
+    fn select(self, filter: &mut Filter) {
+        (filter.param, filter.min, filter.max) = (self.param, self.min, self.max);
+    }
+}
+
+macro_rules! tuples {
+    ($($($kind:ident)+;)+) => {$(
+        #[expect(non_snake_case, reason = "a variable per type parameter")]
+        impl<$($kind: Selects),+> Selects for ($($kind,)+) {
+            fn select(self, filter: &mut Filter) {
+                let ($($kind,)+) = self;
+                $($kind.select(filter);)+
+            }
+        }
+    )+};
+}
+tuples! { A B; A B C; A B C D; A B C D E; }
+
+impl Charting {
+    /// Returns the number of points to send. Fails when it is not from 1 to [`MOST_SHOWN`].
+    pub fn last(&self) -> Result<usize, ApiError> {
+        let last = ApiError::ranged("last", self.last, SHOWN, MOST_SHOWN)?;
+        Ok(usize::try_from(last).unwrap_or(usize::MAX))
+    }
 }
 
 /// Returns the language of a printed report, Chinese by default.
 pub(crate) fn language(asked: Option<Lang>) -> Lang {
     asked.unwrap_or(Lang::Zh)
-}
-
-/// Returns the filter and the members of the route. Fails on an unknown or malformed member.
-pub(super) fn split<T: RouteMembers>(uri: &Uri) -> Result<(Filter, T), ApiError> {
-    let own = |pair: &&str| {
-        let name = pair.split('=').next().unwrap_or_default();
-        T::MEMBERS.contains(&name)
-    };
-    let pairs = uri.query().unwrap_or_default().split('&');
-    let (own, filter): (Vec<&str>, Vec<&str>) = pairs.partition(own);
-    Ok((parsed(&filter)?, parsed(&own)?))
-}
-
-fn parsed<T: DeserializeOwned>(pairs: &[&str]) -> Result<T, ApiError> {
-    let uri = format!("/?{}", pairs.join("&"));
-    let uri: Uri = uri.parse().map_err(|_| ApiError::Query {
-        reason: "found a malformed query string".to_owned(),
-    })?;
-    let Query(parsed) = Query::try_from_uri(&uri)?;
-    Ok(parsed)
 }

@@ -1,42 +1,62 @@
 //! `/api/history/rejudge`: judges the stored values of a lot by a recipe, as `history rejudge --json` does; writes
 //! nothing.
 
-use super::super::error::{ApiError, Members, blocking};
+use super::super::error::{ApiError, blocking};
 use super::super::router::App;
 use super::feed::{self, Pieces};
-use axum::extract::{Query, State};
-use axum::http::header::CONTENT_TYPE;
-use axum::response::{IntoResponse, Response};
+use crate::answers::{As, Stream};
+use crate::asked::{Asked, members};
+use axum::extract::State;
 use config::load_recipe;
 use history::Archive;
-use history::inquiry::rejudge::{RejudgedPart, Rejudging};
+use history::inquiry::rejudge::{Changes, RejudgedPart, Rejudging};
 use serde::Deserialize;
 use std::io::{self, Write};
+use utoipa::{IntoParams, ToSchema};
 
 /// Members of the route, which select lot and recipe.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Deserialize, IntoParams)]
 pub(crate) struct RejudgeQuery {
+    /// Name of the lot.
+    #[param(example = "L-1122")]
     lot: String,
+    /// Name of a recipe of the plant.
+    #[param(example = "jzc-22f-012")]
     recipe: String,
-    /// Number of the run; all runs when absent.
+    /// Number of the run; all runs without it.
+    #[param(example = 1)]
     run: Option<u32>,
-    /// True to return only parts whose verdict changes.
-    #[serde(default)]
-    changed: bool,
+    /// True: only parts whose verdict changes.
+    #[param(example = true)]
+    changed: Option<bool>,
+}
+
+members!(RejudgeQuery);
+
+/// A part, or the summary as the last element.
+#[derive(ToSchema)]
+#[serde(untagged)]
+#[expect(
+    dead_code,
+    reason = "describes the two objects that are written one by one"
+)]
+pub(crate) enum Rejudged {
+    Part(RejudgedPart),
+    Summary(Changes),
 }
 
 /// `GET /api/history/rejudge`: returns an array of parts with the summary as its last element.
 pub(crate) async fn rejudge(
     State(app): App,
-    asked: Members<RejudgeQuery>,
-) -> Result<Response, ApiError> {
-    let Query(RejudgeQuery {
+    Asked(asked): Asked<RejudgeQuery>,
+) -> Result<As<Stream<Rejudged>>, ApiError> {
+    let RejudgeQuery {
         lot,
         recipe,
         run,
         changed,
-    }) = asked?;
+    } = asked;
+    let changed = changed.unwrap_or(false);
     let (archive, place) = app.readers.open().await?;
     let folder = app.shared.config.clone();
     let prepared = blocking(move || -> Result<(Archive, Rejudging), ApiError> {
@@ -48,7 +68,7 @@ pub(crate) async fn rejudge(
     let parts = feed::streamed((archive, place), move |archive, out| {
         written(&question, archive, changed, out)
     });
-    Ok(([(CONTENT_TYPE, "application/json")], parts).into_response())
+    Ok(super::json_stream(parts))
 }
 
 fn written(

@@ -7,19 +7,34 @@ use texts::Lang;
 
 /// Families of texts that the answer to `GET /` omits: they reach the page inside alarms, reasons and refusals, or
 /// appear in print only.
-const ELSEWHERE: [&str; 13] = [
+const ELSEWHERE: [&str; 28] = [
     "alarm",
     "card",
+    "cause",
     "characteristic",
+    "column",
+    "detail",
+    "exchange",
     "fault",
+    "instrument",
     "interruption",
+    "member",
+    "next",
     "paper",
     "paper_verdict",
+    "part_kind",
+    "pin",
     "place",
     "promise",
     "reason",
     "refusal",
+    "rejection",
+    "remark",
+    "reply",
+    "request",
     "side",
+    "step",
+    "transaction",
     "wears",
 ];
 

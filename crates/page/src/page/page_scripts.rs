@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 /// Name, markup and code of each script.
-pub(super) const SOURCES: [[&str; 3]; 9] = {
+pub(super) const SOURCES: [[&str; 3]; 10] = {
     macro_rules! source {
         ($name:literal, $($code:literal),+) => {
             [
@@ -23,6 +23,7 @@ pub(super) const SOURCES: [[&str; 3]; 9] = {
         source!("calibration", "calibration"),
         source!("history", "history"),
         source!("lots", "lots"),
+        source!("people", "people"),
         source!("quality", "quality"),
         source!("recipes", "recipe_sheet", "recipes"),
         source!("rejudge", "rejudge"),

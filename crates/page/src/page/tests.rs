@@ -63,6 +63,7 @@ fn every_used_text_is_in_the_catalogue() {
         (&MARKUP, "data-label=\""),
         (&CODE, "word(\""),
         (&CODE, "word(missing ? \""),
+        (&CODE, "word(needed ? \""),
     ] {
         used.extend(quoted(text, before));
     }
@@ -82,7 +83,9 @@ fn every_used_text_is_in_the_catalogue() {
 #[test]
 fn every_text_of_the_pages_is_used() {
     let families = [
+        "line",
         "link",
+        "module",
         "order",
         "state",
         "stage",
@@ -104,6 +107,7 @@ fn every_text_of_the_pages_is_used() {
         "role",
         "factor",
         "body",
+        "people",
     ];
     for key in table().keys() {
         let family = key.split('-').next().unwrap();

@@ -2,6 +2,7 @@
 
 use super::*;
 use ::history::{AlarmRecord, LotRecord, MeasurementRecord, OrderRecord, PartRecord, Row, Store};
+use texts::Message;
 
 const KEY: &str = "operate_voltage_v";
 
@@ -239,32 +240,32 @@ async fn a_malformed_filter_is_refused_with_the_member() {
         ("query?lto=A", "lto"),
         ("query?limit=-1", "limit"),
         ("query?limit=x", "limit"),
-        ("query?since=yesterday", "RFC 3339"),
+        ("query?since=soon", "RFC 3339"),
         ("query?verdict=good", "pass, fail, void, unjudged"),
         ("query?kind=x", "lot, golden, all"),
         ("query?min=1", "needs param"),
         ("query?param=operate_voltage_v&min=NaN", "finite"),
         ("query?param=operate_voltage_v&min=2&max=1", "above max"),
         ("query?param=nothing", KEY),
-        ("list?verdict=pass", "lot, run, recipe only"),
-        ("count?limit=1", "all pages"),
+        ("list?verdict=pass", "lot, run, recipe"),
+        ("count?limit=1", "unknown member"),
         ("count?param=nothing", KEY),
-        ("yield?lot=A", "since, until only"),
+        ("yield?lot=A", "since, until"),
         ("alarms?verdict=fail", "verdict"),
         ("alarms?since=x", "RFC 3339"),
         ("stats", "param"),
         ("histogram", "param"),
-        ("histogram?param=operate_voltage_v&min=1", "range"),
+        ("histogram?param=operate_voltage_v&min=1", "min"),
         ("spc?param=nothing", KEY),
         ("spc?param=operate_voltage_v&subgroup=11", "1 to 10"),
         ("spc?param=operate_voltage_v&rules=mine", "nelson"),
         ("spc?param=operate_voltage_v&last=0", "1 to 10000"),
-        ("spc?param=operate_voltage_v&max=7", "range"),
-        ("spc?lang=en", "report/chart"),
+        ("spc?param=operate_voltage_v&max=7", "max"),
+        ("spc?lang=en", "lang"),
         ("spc?sigma=3", "sigma"),
         ("report/lot", "lot"),
         ("report/lot?lot=A&lang=fr", "en"),
-        ("report/lot?lot=A&verdict=pass", "lot, run, recipe only"),
+        ("report/lot?lot=A&verdict=pass", "verdict"),
         ("report/lot?lot=A&ideal_cycle_s=0", "more than 0"),
         ("report/lot?lot=A&seq=1", "seq"),
         ("report/certificate?lot=A", "seq"),
@@ -277,7 +278,7 @@ async fn a_malformed_filter_is_refused_with_the_member() {
         ("export.xlsx?kind=x", "lot, golden, all"),
         ("export.xlsx?seq=1", "seq"),
         ("stats?param=nothing", KEY),
-        ("stats?param=operate_voltage_v&max=1", "range"),
+        ("stats?param=operate_voltage_v&max=1", "max"),
         ("show?lot=A", "seq"),
         ("show?lot=A&seq=1&kind=all", "lot, golden"),
         ("show?lot=A&seq=1&run=x", "run"),
@@ -373,7 +374,10 @@ async fn a_file_of_another_program_is_refused_unchanged() {
 async fn the_audit_lists_orders_with_their_persons() {
     let fixture = with_parts(1);
     let mut store = Store::open(&fixture.db).unwrap();
-    for (at_us, who, refused) in [(1, "li", None), (2, "wang", Some("not now".to_owned()))] {
+    for (at_us, who, refused) in [
+        (1, "li", None),
+        (2, "wang", Some(Message::new("refusal", "between_lots"))),
+    ] {
         let row = OrderRecord {
             at_us,
             who: who.into(),
@@ -391,10 +395,63 @@ async fn the_audit_lists_orders_with_their_persons() {
         .await
         .json();
     assert_eq!(one.as_array().unwrap().len(), 1);
-    assert_eq!(one[0]["refused"], "not now");
+    assert_eq!(one[0]["refused_zh"], "设备正在切换批次；请重试");
     let why = fixture
         .get("/api/history/orders?verdict=pass")
         .await
         .refused(400);
     assert!(why.contains("verdict"), "{why}");
+}
+
+#[tokio::test]
+async fn lots_compare_and_rejects_are_ranked() {
+    let fixture = with_parts(20);
+    let rejects = fixture.get("/api/history/rejects?lot=A").await.json();
+    assert_eq!(
+        (&rejects["rejects"], &rejects["parts"]),
+        (&4.into(), &20.into())
+    );
+    let counts = fixture.get("/api/history/alarm-counts?since=today").await;
+    assert_eq!(counts.json(), serde_json::json!([]));
+    let both = "param=operate_voltage_v&lots=%5B%22A%22,%22A%22%5D";
+    let compared = fixture.get(&format!("/api/history/compare?{both}")).await;
+    let compared = compared.json();
+    assert_eq!(compared["lots"][1]["n"], 20);
+    assert_eq!(compared["means"]["f"], 0.0);
+    let page = fixture
+        .get(&format!("/api/history/report/comparison?{both}&lang=en"))
+        .await;
+    assert!(page.text().contains("Comparison of lots"));
+    for (query, said) in [
+        ("compare?param=operate_voltage_v&lots=A", "JSON array"),
+        (
+            "compare?param=operate_voltage_v&lots=%5B%22A%22%5D",
+            "2 to 8",
+        ),
+        ("rejects?verdict=fail", "verdict"),
+    ] {
+        let answer = fixture.get(&format!("/api/history/{query}")).await;
+        let reason = answer.refused(400);
+        assert!(reason.contains(said), "{query}: {reason}");
+    }
+}
+
+#[tokio::test]
+async fn a_gauge_study_is_evaluated_from_csv() {
+    let fixture = Fixture::new();
+    let rows = (0..18).map(|n| {
+        let (part, operator, trial) = (n / 6, n / 3 % 2, n % 3);
+        let value = f64::from(part) + 0.1 * f64::from(operator) + 0.01 * f64::from(trial);
+        format!("\n{part},{operator},{trial},{value}")
+    });
+    let csv = format!("part,operator,trial,value{}", rows.collect::<String>());
+    let body = serde_json::json!({ "csv": csv }).to_string();
+    let post = |body: &str| {
+        let request = Request::post("/api/quality/grr").header("content-type", "application/json");
+        fixture.ask(request.body(Body::from(body.to_owned())).unwrap())
+    };
+    let found = post(&body).await.json();
+    assert!(found["pct_grr"].as_f64().unwrap() < 20.0, "{found}");
+    let reason = post(r#"{"csv":"part,value\n1,2"}"#).await.refused(400);
+    assert!(reason.contains("column operator is missing"), "{reason}");
 }

@@ -54,7 +54,12 @@ async fn every_lot_has_its_allowed_orders_and_reasons() {
     assert_eq!(live(answer[1]), ["close_lot", "release_lot"]);
     assert_eq!(live(answer[2]), ["hold_lot", "reopen_lot", "start"]);
     let why = &answer[1]["why_not"]["start"];
-    assert!(why["en"].as_str().unwrap().contains("release it first"));
+    assert!(
+        why["en"]
+            .as_str()
+            .unwrap()
+            .contains("release the lot first")
+    );
     assert!(why["zh"].as_str().unwrap().contains("放行"));
 }
 

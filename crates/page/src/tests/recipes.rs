@@ -5,16 +5,6 @@ use ::history::{Archive, Filter, OrderEntry};
 use serde_json::{Value, json};
 
 impl Fixture {
-    /// Opens a session with this role.
-    fn session(&self, role: Role) -> String {
-        let mut register = Register::open(&self.db.with_file_name("people.db")).unwrap();
-        let now_us = jiff::Timestamp::now().as_microsecond();
-        // Fails without harm when an earlier call has added the person.
-        let _ = register.add(role.word(), role, PASSWORD, 0);
-        let session = register.log_in(role.word(), PASSWORD, now_us).unwrap();
-        session.unwrap().1
-    }
-
     async fn revise(&self, token: Option<&str>, body: impl Into<Body>) -> Answer {
         let mut request =
             Request::post("/api/recipes/revise").header("content-type", "application/json");
@@ -32,7 +22,7 @@ impl Fixture {
 
     /// Returns a change of the newest revision as a page sends it.
     async fn change(&self, values: Value) -> String {
-        json!({"name": "jzc-22f-012", "from": self.newest().await["hash"], "values": values})
+        json!({"name": "jzc-22f-012", "from": self.newest().await["hash"], "reason": "tighter", "values": values})
             .to_string()
     }
 
@@ -47,7 +37,7 @@ impl Fixture {
 
     fn audit(&self) -> Vec<OrderEntry> {
         let archive = Archive::open(&self.db).unwrap();
-        archive.orders(&Filter::default(), None).unwrap()
+        archive.orders(&Filter::default(), None, None).unwrap()
     }
 }
 
@@ -263,7 +253,7 @@ async fn an_empty_change_is_refused_before_reading_files() {
     let fixture = Fixture::new();
     let engineer = fixture.session(Role::Engineer);
     let before = fixture.recipe_text();
-    let large = format!("{{\"name\":\"{}\"}}", "x".repeat(router::BODY_LIMIT));
+    let large = format!("{{\"name\":\"{}\"}}", "x".repeat(asked::BODY_LIMIT));
     let hash = fixture.newest().await["hash"].clone();
     for (body, status) in [
         (large, 413),
@@ -271,35 +261,37 @@ async fn an_empty_change_is_refused_before_reading_files() {
         ("[]".into(), 400),
         ("{}".into(), 400),
         (
-            json!({"name": "jzc-22f-012", "from": hash, "values": {}, "why": "x"}).to_string(),
+            json!({"name": "jzc-22f-012", "from": hash, "reason": "x", "values": {}, "why": "x"})
+                .to_string(),
             400,
         ),
         (
             format!(
-                "{{\"name\":\"jzc-22f-012\",\"from\":{hash},\"values\":{{\"part.nominal_v\":NaN}}}}"
+                "{{\"name\":\"jzc-22f-012\",\"from\":{hash},\"reason\":\"x\",\"values\":{{\"part.nominal_v\":NaN}}}}"
             ),
             400,
         ),
         (
             format!(
-                "{{\"name\":\"jzc-22f-012\",\"from\":{hash},\"values\":{{\"part.nominal_v\":1e999}}}}"
+                "{{\"name\":\"jzc-22f-012\",\"from\":{hash},\"reason\":\"x\",\"values\":{{\"part.nominal_v\":1e999}}}}"
             ),
             400,
         ),
         (
-            json!({"name": "jzc-22f-012", "from": hash, "values": {}}).to_string(),
+            json!({"name": "jzc-22f-012", "from": hash, "reason": "x", "values": {}}).to_string(),
             400,
         ),
         (
-            json!({"name": "../rig", "from": hash, "values": {}}).to_string(),
+            json!({"name": "../rig", "from": hash, "reason": "x", "values": {}}).to_string(),
             404,
         ),
         (
-            json!({"name": "revisions/jzc-22f-012/1", "from": hash, "values": {}}).to_string(),
+            json!({"name": "revisions/jzc-22f-012/1", "from": hash, "reason": "x", "values": {}})
+                .to_string(),
             404,
         ),
         (
-            json!({"name": "jzc-22f-012", "from": "", "values": {}}).to_string(),
+            json!({"name": "jzc-22f-012", "from": "", "reason": "x", "values": {}}).to_string(),
             409,
         ),
     ] {
@@ -362,4 +354,65 @@ async fn an_unknown_recipe_or_revision_is_404() {
             .await
             .refused(400);
     }
+}
+
+#[tokio::test]
+async fn a_revision_shows_who_changed_what_and_why() {
+    let fixture = Fixture::new();
+    let engineer = fixture.session(Role::Engineer);
+    let change = fixture
+        .change(
+            json!({"limits.operate_voltage_v.high": 8.75, "limits.coil_resistance_ohm.high": null}),
+        )
+        .await;
+    assert_eq!(fixture.revise(Some(&engineer), change).await.status, 200);
+    let path = "/api/recipes/revisions?name=jzc-22f-012";
+    let shown = fixture.get(path).await.json();
+    let [revision] = &shown.as_array().unwrap()[..] else {
+        panic!("one revision")
+    };
+    assert_eq!(
+        (
+            &revision["revision"],
+            &revision["who"],
+            &revision["role"],
+            &revision["reason"]
+        ),
+        (
+            &json!(2),
+            &json!("engineer"),
+            &json!("engineer"),
+            &json!("tighter")
+        )
+    );
+    assert_eq!(
+        revision["lines"],
+        json!([
+            "limits.coil_resistance_ohm.high: 440.0 ohm -> -",
+            "limits.operate_voltage_v.high: 9.0 V -> 8.75 V"
+        ])
+    );
+    assert_eq!(revision["changes"][1]["old"], 9.0);
+    let wrong = "/api/recipes/revisions?name=jzc-22f-013";
+    fixture.get(wrong).await.refused(404);
+}
+
+#[tokio::test]
+async fn a_revision_without_reason_is_refused() {
+    let fixture = Fixture::new();
+    let engineer = fixture.session(Role::Engineer);
+    let before = fixture.recipe_text();
+    let change = fixture.change(json!({"decision.slow_repeats": 4})).await;
+    let mut change: Value = serde_json::from_str(&change).unwrap();
+    change["reason"] = " ".into();
+    let blank = fixture.revise(Some(&engineer), change.to_string()).await;
+    assert!(blank.refused(400).contains("why the values change"));
+    assert!(blank.json()["reason_zh"].as_str().unwrap().contains("原因"));
+    change.as_object_mut().unwrap().remove("reason");
+    let absent = fixture.revise(Some(&engineer), change.to_string()).await;
+    assert_eq!(
+        absent.refused(400),
+        "reason: found nothing, expected a value"
+    );
+    assert_eq!(fixture.recipe_text(), before);
 }

@@ -118,7 +118,7 @@ async fn malformed_questions_get_400_and_unknown_things_404() {
         (
             "lot=A&recipe=jzc-22f-012&changed=perhaps",
             400,
-            "`true` or `false`",
+            "true or false",
         ),
         ("lot=A&recipe=jzc-22f-012&verdict=pass", 400, "verdict"),
     ] {

@@ -5,7 +5,7 @@ use super::*;
 const HOUR_US: i64 = 3_600_000_000;
 
 /// Returns a new register with the guard that removes its folder.
-fn fresh() -> (Register, tempfile::TempDir) {
+pub(super) fn fresh() -> (Register, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
     let register = Register::open(&folder.path().join("people.db")).unwrap();
     (register, folder)
@@ -21,33 +21,68 @@ fn only_the_owner_may_read_the_file() {
 }
 
 #[test]
-fn the_first_start_adds_one_engineer_once() {
-    let (mut register, folder) = fresh();
-    let (name, password) = register.first_engineer(0).unwrap().unwrap();
-    assert!(register.first_engineer(0).unwrap().is_none());
-    let (person, _) = register.log_in(&name, &password, 0).unwrap().unwrap();
-    assert_eq!(person.role, Role::Engineer);
-    let bytes = std::fs::read(folder.path().join("people.db")).unwrap();
-    let leaked = bytes
-        .windows(password.len())
-        .any(|it| it == password.as_bytes());
-    assert!(!leaked, "the file holds the password in plain text");
+fn a_setup_code_is_wrong_once_there_is_an_engineer() {
+    let (mut register, _folder) = fresh();
+    register.add("li", Role::Operator, "secret-12", 0).unwrap();
+    let code = register.setup_code().unwrap().unwrap();
+    let typed = code.to_string();
+    let proved = |register: &mut Register| register.prove_code(Some(&code), &typed, 0).unwrap();
+    assert_eq!(proved(&mut register), Login::Right(()));
+    register.set_role("li", Role::Engineer).unwrap();
+    assert_eq!(register.setup_code().unwrap(), None);
+    assert_eq!(proved(&mut register), Login::Wrong { known: false });
 }
 
 #[test]
-fn wrong_name_and_wrong_password_get_the_same_answer() {
+fn the_file_holds_no_password_in_plain_text() {
+    let (mut register, folder) = fresh();
+    register.add("li", Role::Operator, "secret-12", 0).unwrap();
+    let bytes = std::fs::read(folder.path().join("people.db")).unwrap();
+    assert!(!bytes.windows(9).any(|it| it == b"secret-12"));
+}
+
+#[test]
+fn a_file_of_schema_1_keeps_its_people() {
+    let (mut register, folder) = fresh();
+    register.add("li", Role::Operator, "secret-12", 0).unwrap();
+    let earlier = "DROP TABLE failure; PRAGMA user_version = 1";
+    register.connection.execute_batch(earlier).unwrap();
+    let path = folder.path().join("people.db");
+    let (unchanged, schema) = (Register::open_unchanged(&path).unwrap(), "user_version");
+    assert_eq!(unchanged.checked_people().unwrap().len(), 1);
+    let schema = unchanged
+        .connection
+        .pragma_query_value(None, schema, |row| row.get::<_, i64>(0));
+    assert_eq!(schema.unwrap(), 1);
+    let mut register = Register::open(&path).unwrap();
+    for _ in 0..5 {
+        register.log_in("li", "secret-13", 0).unwrap();
+    }
+    assert_eq!(
+        register.entries(0).unwrap()[0].locked_until,
+        Some(Moment(300_000_000))
+    );
+}
+
+#[test]
+fn wrong_names_and_wrong_passwords_are_wrong() {
     let (mut register, _folder) = fresh();
     register.add("li", Role::Operator, "secret-12", 0).unwrap();
-    assert_eq!(register.log_in("li", "secret-13", 0).unwrap(), None);
-    assert_eq!(register.log_in("nobody", "secret-12", 0).unwrap(), None);
-    assert!(register.log_in("li", "secret-12", 0).unwrap().is_some());
+    let wrong = |known| Login::Wrong { known };
+    assert_eq!(register.log_in("li", "secret-13", 0).unwrap(), wrong(true));
+    assert_eq!(
+        register.log_in("nobody", "secret-12", 0).unwrap(),
+        wrong(false)
+    );
+    let right = register.log_in("li", "secret-12", 0).unwrap();
+    assert!(matches!(right, Login::Right(_)));
 }
 
 #[test]
 fn a_session_ends_by_time_logout_and_new_password() {
     let (mut register, _folder) = fresh();
     register.add("li", Role::Operator, "secret-12", 0).unwrap();
-    let enter = |register: &mut Register| register.log_in("li", "secret-12", 0).unwrap().unwrap().1;
+    let enter = |register: &mut Register| register.open_session("li", 0).unwrap();
     let first = enter(&mut register);
     assert_eq!(
         register.holder(&first, 11 * HOUR_US).unwrap().unwrap().name,
@@ -65,21 +100,23 @@ fn a_session_ends_by_time_logout_and_new_password() {
 #[test]
 fn removal_ends_sessions_and_spares_the_last_engineer() {
     let (mut register, _folder) = fresh();
-    register.first_engineer(0).unwrap();
-    register
-        .add("zhao", Role::Maintainer, "secret-12", 0)
-        .unwrap();
-    let (_, token) = register.log_in("zhao", "secret-12", 0).unwrap().unwrap();
+    let mut add = |name, role| register.add(name, role, "secret-12", 0).unwrap();
+    add("engineer", Role::Engineer);
+    add("zhao", Role::Maintainer);
+    let token = register.open_session("zhao", 0).unwrap();
     register.remove("zhao").unwrap();
     assert_eq!(register.holder(&token, 0).unwrap(), None);
     assert!(matches!(
         register.remove("zhao"),
         Err(AccessError::Unknown { .. })
     ));
-    assert!(matches!(
+    for refused in [
         register.remove("engineer"),
-        Err(AccessError::LastEngineer { .. })
-    ));
+        register.set_role("engineer", Role::Operator),
+    ] {
+        assert!(matches!(refused, Err(AccessError::LastEngineer { .. })));
+    }
+    register.set_role("engineer", Role::Engineer).unwrap();
 }
 
 #[test]

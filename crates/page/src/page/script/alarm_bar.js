@@ -6,7 +6,7 @@ function showAlarmBar(alarms) {
     const line = make("p");
     line.append(make("b", "▲ " + alarm.code));
     line.append(make("span", language === "zh" ? alarm.text_zh : alarm.text_en));
-    if (place === 0 && shown.length > 1) line.append(make("b", "(" + word("first_out") + ")"));
+    if (place === 0 && shown.length > 1) line.append(make("b", bracketed(word("first_out"))));
     return line;
   });
   if (shown.length > 2) lines.push(make("p", "+ " + (shown.length - 2) + " " + word("more_alarms")));

@@ -65,6 +65,7 @@ let past = [];
 async function readPast() {
   const members = {since: rfc3339(at("alarm_since").value), limit: 500};
   at("alarm_print").href = "/api/history/report/alarms" + query({since: members.since, lang: language});
+  showRanked(members.since);
   try {
     past = (await (await ask("/api/history/alarms" + query(members))).json()).reverse();
     at("alarm_trouble").textContent = "";
@@ -74,10 +75,24 @@ async function readPast() {
   showPast();
 }
 
+// Lists the most frequent alarms with their counts and the time for which they were active.
+async function showRanked(since) {
+  const ranked = await ask("/api/history/alarm-counts" + query({since})).then((it) => it.json(), () => []);
+  at("ranked").replaceChildren(...ranked.slice(0, 10).map((it) => {
+    const bar = make("meter");
+    bar.max = ranked[0].n;
+    bar.value = it.n;
+    const cells = row(integerText(it.n), (it.active_s / 60).toFixed(1), (100 * it.cumulative).toFixed(0) + "\u202f%", it[language]);
+    cells.firstElementChild.prepend(bar, " ");
+    return cells;
+  }));
+}
+
 // Rows of older versions have an English text only; Chinese then shows the cause from the catalogue.
 function pastText(it) {
   const text = make("span", (language === "zh" && (it.text_zh || it.cause_zh)) || it.text);
-  text.title = it.text;
+  // Hovering shows the whole text in the language of the page, where a narrow column cuts it off.
+  text.title = text.textContent;
   return text;
 }
 

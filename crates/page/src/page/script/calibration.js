@@ -14,7 +14,7 @@ async function enterCalibration() {
   at("c_factors").replaceChildren(...instruments.calibrations.flatMap(calibrationTables));
   const {check} = instruments;
   at("c_check").textContent = check === null ? word("c-unchecked")
-    : (check.passed ? word("c-agreed") : "▲ " + word("c-disagreed")) + " " + clock(check.at) + " · " + check.text;
+    : (check.passed ? word("c-agreed") : "▲ " + word("c-disagreed")) + " " + clock(check.at) + " · " + (check.text === "calibration" ? word("c-at_calibration") : said(check, "text"));
   at("c_check").className = check !== null && !check.passed ? "due bad" : "due";
   at("c_golden").replaceChildren(...instruments.golden.flatMap(goldenRows));
 }

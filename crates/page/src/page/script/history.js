@@ -1,7 +1,7 @@
 // The history: the filter of `history query`, pages of parts, and one part down to its raw replies.
 
 const PAGE = 100;
-const FIELDS = ["lot", "recipe", "verdict", "bin", "param", "min", "max"];
+const FIELDS = ["lot", "recipe", "serial", "verdict", "bin", "param", "min", "max"];
 let offset = 0;
 
 function filter() {
@@ -53,7 +53,7 @@ function showParts(parts, count) {
   at("h_next").disabled = offset + parts.length >= count;
   at("parts").replaceChildren(...parts.map((part) => row(partLink(part), clock(part.time), part.recipe,
     verdictCell(part.verdict), wordOr("bin-" + (part.landed_bin || part.bin), NONE),
-    reasonTexts(part).join("; "), key ? measured(part.values[key], part.uncertainty[key]).join(" ± ") : "")));
+    reasonTexts(part).join(semicolon()), key ? measured(part.values[key], part.uncertainty[key]).join(" ± ") : "")));
 }
 
 at("h_filter").addEventListener("submit", (event) => {
@@ -106,12 +106,12 @@ function showTestBars(part) {
 }
 
 function showPart(part) {
-  const facts = [["h-time", clock(part.time)], ["recipe", part.recipe],
+  const facts = [["h-time", clock(part.time)], ["recipe", part.recipe], ["h-serial", part.serial || NONE],
     ["verdict", wordOr("verdict-" + part.verdict, part.verdict)],
     ["h-bin", wordOr("bin-" + (part.landed_bin || part.bin), NONE)],
     ["h-test_s", part.test_s === null ? NONE : part.test_s.toFixed(2) + " s"],
     ["h-cycle_s", part.cycle_s === null ? NONE : part.cycle_s.toFixed(2) + " s"],
-    ["h-reasons", reasonTexts(part).join("; ") || NONE]];
+    ["h-reasons", reasonTexts(part).join(semicolon()) || NONE]];
   at("part_facts").replaceChildren(...facts.map(([key, text]) => {
     const pair = make("div");
     pair.append(make("dt", word(key)), make("dd", text));
@@ -124,8 +124,8 @@ function showPart(part) {
   }));
   showTestBars(part);
   at("part_replies").replaceChildren(...part.measurements.flatMap((it) => it.samples.map((sample) =>
-    row(nameOf(it.parameter), sample.line, sample.module, sample.channel,
-      sample.command, sample.raw, sample.at.slice(11)))));
+    row(nameOf(it.parameter), wordOr("line-" + sample.line, sample.line), wordOr("module-" + sample.module, sample.module), sample.channel,
+      sample.command, sample.raw, clock(sample.at).slice(11) + sample.at.slice(19, -1)))));
 }
 
 PAGES.part = {enter: readPart};

@@ -34,7 +34,7 @@ function whyNotLot(order, line) {
 async function readRecipes() {
   try {
     const recipes = await (await ask("/api/recipes")).json();
-    const usable = recipes.filter((it) => !it.trouble).map((it) => [it.name, it.name]);
+    const usable = recipes.filter((it) => !it.trouble).map((it) => [it.name, it.name + (it.approved ? "" : bracketed(word("r-not_approved")))]);
     fillSelect(at("l_recipe"), [["", NONE], ...usable]);
   } catch (error) {
     lotAnswer(error.message);
@@ -63,14 +63,14 @@ at("l_form").addEventListener("submit", (event) => {
 
 function lotRow(line) {
   const state = make("span", word("lot_state-" + line.state), "lot_state " + line.state);
-  if (line.why) state.append(make("small", line.why));
-  if (line.cause && !underWay(line.lot)) state.append(make("small", line.cause + ": " + line.cause_text));
-  for (const it of line.reopenings) state.append(make("small", word("lots-reopened") + ": " + it.why + " (" + it.who + ")"));
+  if (line.why) state.append(make("small", said(line, "why")));
+  if (line.cause && !underWay(line.lot)) state.append(make("small", line.cause + colon() + said(line, "cause_text")));
+  for (const it of line.reopenings) state.append(make("small", word("lots-reopened") + colon() + it.why + bracketed(it.who)));
   const orders = make("div", undefined, "row");
   orders.append(lotButton("start", line, () => choose(line)),
     ...DECISIONS.map((order) => lotButton(order, line, () => askDecision(order, line.lot))));
   const final = line.first_pass + line.retest_pass;
-  const passed = share(line.first_pass, line.parts) + (line.retest_pass ? " (" + share(final, line.parts) + ")" : "");
+  const passed = share(line.first_pass, line.parts) + (line.retest_pass ? bracketed(share(final, line.parts)) : "");
   return row(make("b", line.lot), state, line.recipe, clock(line.opened), integerText(line.runs), integerText(line.parts), passed,
     integerText(line.suspect), orders);
 }
@@ -144,7 +144,7 @@ function showWear(counters) {
   at("l_wear").replaceChildren(...counters.map((it) => {
     const item = make("li"), replaced = it.replaced ? clock(it.replaced) + " · " + it.replaced_by : NONE;
     item.append(make("span", wordOr("counter-" + it.name, it.name)), make("b", integerText(it.count)),
-      make("span", word("lots-replaced_at") + ": " + replaced),
+      make("span", word("lots-replaced_at") + colon() + replaced),
       button(word("order-replaced"), () => orderLot({order: "replaced", counter: it.name})));
     return item;
   }));
@@ -153,17 +153,10 @@ function showWear(counters) {
 // Start of the audit shown: 24 hours cover this shift and the one before.
 const dayAgo = () => new Date(Date.now() - 24 * 3600 * 1000).toISOString();
 
-// Writes an order with lot, recipe and count first, then its other members.
-function orderedText(what) {
-  const {order, lot, recipe, count, ...others} = what;
-  const members = [lot, recipe, count, ...Object.values(others)].filter((it) => ["string", "number"].includes(typeof it));
-  return [wordOr("order-" + order, order), ...members.filter((it) => it !== "")].join(" · ");
-}
-
 function showAudit(orders) {
   const last = orders.slice(-AUDIT).reverse();
-  at("l_audit").replaceChildren(...last.map((it) => row(clock(it.at), it.lot || NONE,
-    it.who + (it.role ? " (" + wordOr("role-" + it.role, it.role) + ")" : ""), orderedText(it.what), it.refused || word("order-taken"))));
+  at("l_audit").replaceChildren(...last.map((it) =>
+    row(clock(it.at), it.lot || NONE, whoText(it), orderedText(it.what), outcomeText(it))));
 }
 
 function showLots() {

@@ -10,13 +10,18 @@ async function fetchMimic() {
   try {
     const text = await (await fetch("/mimic.svg")).text();
     const svg = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
-    svg.dataset.label = "mimic";
-    svg.setAttribute("aria-label", word("mimic"));
     at("mimic").replaceChildren(document.importNode(svg, true));
     bodies = Array.from(at("mimic").querySelectorAll("[data-rides]"),
       (body) => ({body, rides: JSON.parse(body.dataset.rides)}));
+    nameBodies();
     showMimic();
   } catch { /* the page works without its picture */ }
+}
+
+// Names the picture and its bodies in the language of the page, for tooltips and screen readers.
+function nameBodies() {
+  at("mimic").firstElementChild.setAttribute("aria-label", word("mimic"));
+  for (const body of at("mimic").querySelectorAll("[data-body]")) body.querySelector("title").textContent = bodyText(body.dataset.body);
 }
 
 // Draws a moving actuator at its target: CSS makes the transition.
@@ -52,12 +57,16 @@ function showMimic() {
 // Returns the text of a body, or its id: a plant's own scene may have bodies without a text.
 const bodyText = (id) => wordOr("body-" + id, id.replaceAll("_", " "));
 
-const bodiesText = ({mover, blocker, text}) => (mover === "" ? text : bodyText(mover) + " → " + bodyText(blocker));
+const bodiesText = (refused) => (refused.mover === "" ? said(refused, "text") : bodyText(refused.mover) + " → " + bodyText(refused.blocker));
 
-const refusedText = ({mover, blocker, distance_mm: distance, margin_mm: margin, at: place, last_clear_mm: clear, text}) => (mover === "" ? text
-  : bodiesText({mover, blocker}) + " (" + place.map((it) => it.toFixed(1)).join(", ") + " mm), " +
-    word("collision-distance") + " " + distance.toFixed(2) + " mm, " + word("collision-needed") + " > " + margin.toFixed(2) + " mm" +
-    (clear === null ? "" : ", " + word("collision-clear") + " " + clear.toFixed(2) + " mm"));
+const refusedText = (refused) => {
+  const {mover, distance_mm: distance, margin_mm: margin, at: place, last_clear_mm: clear} = refused;
+  if (mover === "") return bodiesText(refused);
+  const mm = (key, value) => word(key) + " " + value.toFixed(2) + " mm";
+  const parts = [bodiesText(refused) + bracketed(place.map((it) => it.toFixed(1)).join(", ") + " mm"), mm("collision-distance", distance),
+    word("collision-needed") + " > " + margin.toFixed(2) + " mm", ...(clear === null ? [] : [mm("collision-clear", clear)])];
+  return parts.join(comma());
+};
 
 // Returns the corners of the convex hull of `points`, each [x, y] (Andrew's monotone chain).
 function hull(points) {
@@ -99,6 +108,6 @@ function showRefused(refused) {
     if (body.dataset.body === mover) body.parentNode.append(...swept(body, rides, refused.strokes));
   }
   at("refused").hidden = !refused;
-  at("refused").replaceChildren(...(refused ? [make("b", "◆ " + word("collision") + ": " +
+  at("refused").replaceChildren(...(refused ? [make("b", "◆ " + word("collision") + colon() +
     wordOr("motion-" + refused.motion, refused.motion)), make("span", refusedText(refused.refused))] : []));
 }

@@ -41,18 +41,20 @@ function valueRow(key, last) {
 // upper limit it ends at 1.5 times the greatest number.
 function bandCell(key, last) {
   const cell = make("td"), limits = view.limits[key], value = last ? last.values[key] : undefined;
-  if (!limits || !Number.isFinite(value)) return cell;
+  if (!limits) return cell;
+  cell.append(make("small", rangeOf(...limits)));
+  if (!Number.isFinite(value)) return cell;
   const [low, high] = limits, all = [low, high, value].filter(Number.isFinite);
   const from = low ?? Math.min(0, value), to = high ?? Math.max(value, ...all) * 1.5;
   const place = (it) => 12 + 60 * Math.min(1.2, Math.max(-.2, (it - from) / (to - from || 1)));
-  const svg = drawn("svg", {class: "band", viewBox: "0 0 84 16", role: "img"});
-  const title = drawn("title", {});
-  title.textContent = (low ?? "–") + " … " + (high ?? "–");
-  svg.append(title, drawn("rect", {x: 12, y: 4, width: 60, height: 8}),
+  const svg = drawn("svg", {class: "band", viewBox: "0 0 84 16", "aria-hidden": true});
+  svg.append(drawn("rect", {x: 12, y: 4, width: 60, height: 8}),
     drawn("path", {d: "M" + place(value) + " 0V16"}));
-  cell.append(svg);
+  cell.prepend(svg);
   return cell;
 }
+
+const rangeOf = (low, high) => (low === null && high === null ? "" : low === null ? "≤ " + high : high === null ? "≥ " + low : low + " … " + high);
 
 function drawn(tag, attributes) {
   const element = document.createElementNS(at("mimic").firstElementChild.namespaceURI, tag);
@@ -92,6 +94,33 @@ function showVerdicts(verdicts) {
   }));
 }
 
+// Shows the field for a scanner that types as a keyboard, in a lot whose parts a person scans.
+function showScans() {
+  const scans = view.machine ? view.machine.scans : null;
+  at("scan").hidden = scans === null;
+  if (scans === null) return;
+  const first = scans.slice(0, 3).join(", ") + (scans.length > 3 ? " + " + (scans.length - 3) : "");
+  at("scan_waiting").textContent = scans.length ? word("scan-waiting") + " " + first : word("scan-none");
+  at("scan_undo").disabled = scans.length === 0;
+}
+
+const answerScan = (text) => { at("scan_answer").textContent = text; };
+
+at("scan").addEventListener("submit", async (event) => {
+  event.preventDefault();
+  const field = at("scan_serial"), serial = field.value.trim();
+  field.value = "";
+  if (serial && !await giveOrder({order: "scan", serial}, answerScan)) field.focus();
+});
+at("scan_undo").addEventListener("click", () => giveOrder({order: "unscan"}, answerScan));
+
+// The scanner types wherever the focus is; on the operator's page its text belongs into the field.
+document.addEventListener("keydown", (event) => {
+  const typed = event.key.length === 1 && !event.ctrlKey && !event.altKey && !event.metaKey;
+  const free = !document.querySelector("dialog[open]") && !/^(input|select|textarea)$/i.test(document.activeElement.tagName);
+  if (typed && free && !at("scan").hidden && at("scan").checkVisibility()) at("scan_serial").focus();
+});
+
 function showOperator() {
   at("state").replaceChildren(...stateTexts(view).map((text, place) => make(place ? "small" : "span", text)));
   for (const id of ["came_in", "inside", "went_out"]) at(id).textContent = integerText(view[id]);
@@ -99,7 +128,7 @@ function showOperator() {
   const judged = Object.values(view.verdicts).reduce((sum, it) => sum + it, 0);
   at("yield").textContent = share(view.verdicts.pass || 0, judged);
   showMimic();
-  showOrders();
+  showScans();
   showProgress();
   showLast(view.last);
   showBins(view.bins);

@@ -3,29 +3,24 @@
 // Stop is last and apart, so that a finger does not hit another button.
 const ORDERS = ["reset", "start", "hold", "unhold", "abort", "clear", "stop"];
 
-// Sends an order; returns the reason of a refusal, empty when the rig took it.
+// Sends an order; returns `why`, the reason of a refusal or empty, and `said`, the words for an accepted order.
 async function sendOrder(order) {
   try {
     const reply = await post("/api/orders", order);
     const body = await reply.json();
-    return reply.ok ? "" : (language === "zh" && refusedJog(order)) || whyRefused(body);
+    if (reply.ok) return {why: "", said: body.remark ? body.remark[language] : word(order.order === "jog" ? "order-done" : "order-taken")};
+    return {why: said(body, "reason")};
   } catch {
-    return word("stop-lost");
+    return {why: word("stop-lost")};
   }
 }
 
 // Sends an order if a person is logged in; passes the answer, or the refusal, to `show`; returns whether the rig took
 // it.
 async function giveOrder(order, show) {
-  const why = me === null ? word("stop-login") : await sendOrder(order);
-  show(why || word("order-" + order.order) + ": " + word("order-taken"));
+  const {why, said: outcome} = me === null ? {why: word("stop-login")} : await sendOrder(order);
+  show(why || word("order-" + order.order) + colon() + outcome);
   return why === "";
-}
-
-// Returns why the guard refuses a jog, with the page's names of both bodies; empty for any other order.
-function refusedJog({order, motion}) {
-  const jog = order === "jog" && view.machine.jogs.find((it) => it.motion === motion);
-  return jog && jog.refused && jog.refused.mover ? word("collision") + ": " + refusedText(jog.refused) : "";
 }
 
 function whyNot(order, withWhat = "") {
@@ -40,8 +35,9 @@ function whyNot(order, withWhat = "") {
 // Makes a button of an order. While the rig would refuse the order it looks disabled, and a press shows the reason.
 function orderButton(order, withWhat, body, name, answer) {
   const element = button("", async () => {
-    const why = element.title;
-    answer(why || await sendOrder(body) || element.textContent + ": " + word("order-taken"));
+    const {title, textContent: label} = element;
+    const {why, said: outcome} = title ? {why: title} : await sendOrder(body);
+    answer(why || label + colon() + outcome);
   }, name);
   element.dataset.order = order;
   element.dataset.with = withWhat;
@@ -60,9 +56,25 @@ function showButtons(within, label) {
 
 // Makes the buttons once: replacing a button between press and release would lose the click.
 function makeOrders() {
-  const answer = (text) => { at("order_answer").textContent = text; };
-  at("orders").replaceChildren(...ORDERS.map((order) =>
-    orderButton(order, "", {order}, order === "stop" ? "stop" : "", answer)));
+  const made = (order, id) => orderButton(order, "", {order}, order === "stop" ? "stop" : "", (text) => { at(id).textContent = text; });
+  at("orders").replaceChildren(...ORDERS.map((order) => made(order, "order_answer")));
+  // A narrow screen has Stop below every page.
+  at("stop_bar").replaceChildren(made("stop", "stop_answer"));
 }
 
-const showOrders = () => showButtons(at("orders"), (order) => word("order-" + order));
+function showOrders() {
+  for (const id of ["orders", "stop_bar"]) showButtons(at(id), (order) => word("order-" + order));
+}
+
+// --- audit ---
+
+// Writes an order with lot, recipe and count first, then its other members.
+function orderedText(what) {
+  const {order, change, name, role, lot, recipe, count, ...others} = what;
+  const named = change ? [wordOr("people-" + (change === "role" ? "change_role" : change), change), name, role && wordOr("role-" + role, role)] : [];
+  const members = [...named, lot, recipe, count, ...Object.values(others)].filter((it) => ["string", "number"].includes(typeof it));
+  return [wordOr("order-" + order, order), ...members.filter((it) => it !== "")].join(" · ");
+}
+
+const whoText = ({who, role}) => (who || NONE) + (role ? " (" + wordOr("role-" + role, role) + ")" : "");
+const outcomeText = (it) => (language === "zh" && it.refused_zh) || it.refused || word("order-taken");

@@ -40,7 +40,7 @@ function timeBars(rows, label) {
       const bar = drawn("rect", {x: x(it.from), y: place * high + 4, width: Math.max(2, x(it.to) - x(it.from)), height: high - 8,
         class: "busy " + (it.kind || "")});
       const title = drawn("title", {});
-      title.textContent = it.name + ": " + ((it.to - it.from) * 1000).toFixed(0) + " ms";
+      title.textContent = it.name + colon() + ((it.to - it.from) * 1000).toFixed(0) + " ms";
       bar.append(title);
       svg.append(bar);
     }

@@ -6,20 +6,24 @@ async function enterQuality() {
   fillSelect(at("q_param"), keyOptions());
   try {
     lotsSeen = await readLots();
-    fillSelect(at("q_lot"), [...new Set(lotsSeen.map((it) => it.lot))].reverse().map((it) => [it, it]));
+    const names = [...new Set(lotsSeen.map((it) => it.lot))].reverse().map((it) => [it, it]);
+    fillSelect(at("q_lot"), names);
+    fillSelect(at("q_others"), names);
     await readQuality();
   } catch (error) {
     at("q_trouble").textContent = error.message;
   }
 }
 
-// Returns the drawings of a printed report that match the selector `which`, without the style of the report.
+// Returns the drawings and tables of a printed report that match the selector `which`, without the style of the report.
 async function figures(path, which) {
   const text = (await (await ask(path)).text()).replace(/<style[^]*?<\/style>/g, "").replace(/ style="[^"]*"/g, "");
   const page = new DOMParser().parseFromString(text, "text/html");
   return Array.from(page.querySelectorAll(which), (it) => {
     const figure = document.importNode(it, true);
-    figure.querySelector("svg").setAttribute("aria-label", figure.querySelector("figcaption").textContent);
+    const caption = figure.querySelector("figcaption");
+    if (caption) figure.querySelector("svg").setAttribute("aria-label", caption.textContent);
+    else figure.className = "list";
     return figure;
   });
 }
@@ -33,11 +37,14 @@ async function readQuality() {
   }
   const read = [
     figures("/api/history/report/chart" + query({lot, param, last: 100, lang: language}), "main figure"),
-    figures("/api/history/report/lot" + query({lot, lang: language}), ".figures figure"),
+    figures("/api/history/report/lot" + query({lot, lang: language}), "figure.pareto, .figures figure"),
     ask("/api/history/stats" + query({lot, param})).then((it) => it.json()), showStoredCycles(lot)];
   const [charts, histograms, stats, cycles] = await Promise.allSettled(read);
   at("q_charts").replaceChildren(...(charts.value || []));
-  at("q_histograms").replaceChildren(...(histograms.value || []));
+  const [paretos, classes] = [true, false].map((is) => (histograms.value || []).filter((it) => it.matches(".pareto") === is));
+  at("q_paretos").replaceChildren(...paretos);
+  at("q_histograms").replaceChildren(...classes);
+  readComparison();
   showCapability(stats.value, unitOf(param));
   const trouble = [charts, histograms, stats, cycles].find((it) => it.status === "rejected");
   at("q_trouble").textContent = trouble ? trouble.reason.message : "";
@@ -50,6 +57,44 @@ function showCapability(stats, unit) {
   at("q_stats").replaceChildren(...(stats ? rows : []).map(([key, of]) => row(word("q-" + key), figure(stats[key]), of)));
 }
 
+// --- lots side by side, and a gauge study from a file ---
+
+async function readComparison() {
+  const others = Array.from(at("q_others").selectedOptions, (it) => it.value);
+  const lots = [...new Set([at("q_lot").value, ...others])];
+  at("q_compare_print").hidden = lots.length < 2;
+  at("q_compare_trouble").textContent = lots.length < 2 ? word("q-choose") : "";
+  at("q_compared").replaceChildren();
+  if (lots.length < 2) return;
+  const path = "/api/history/report/comparison" + query({param: at("q_param").value, lots: JSON.stringify(lots), lang: language});
+  at("q_compare_print").href = path;
+  try {
+    at("q_compared").replaceChildren(...await figures(path, "figure, table.compared"));
+  } catch (error) {
+    at("q_compare_trouble").textContent = error.message;
+  }
+}
+
+const GAUGE = ["repeatability", "reproducibility", "interaction", "grr", "part", "total", "pct_grr", "ndc", "interaction_p"];
+
+async function readGauge() {
+  const [file] = at("q_gauge_file").files;
+  at("q_gauge").replaceChildren();
+  at("q_gauge_trouble").textContent = "";
+  if (!file) return;
+  try {
+    const reply = await post("/api/quality/grr", {csv: await file.text()});
+    const found = await reply.json();
+    if (!reply.ok) throw new Error(said(found, "reason"));
+    const figure = (value) => (Number.isFinite(value) ? String(Number(value.toPrecision(4))) : NONE);
+    at("q_gauge").replaceChildren(...GAUGE.map((key) => row(word("q-gauge-" + key), figure(found[key]))));
+  } catch (error) {
+    at("q_gauge_trouble").textContent = error.message;
+  }
+}
+
+at("q_others").addEventListener("change", readComparison);
+at("q_gauge_file").addEventListener("change", readGauge);
 at("q_lot").addEventListener("change", readQuality);
 at("q_param").addEventListener("change", readQuality);
 

@@ -1,10 +1,10 @@
 // A revision of a recipe as a sheet: every key in words with its unit; for an engineer with range and input.
 
-// Sections of the sheet, in three columns.
-const RECIPE_SECTIONS = [["about", "part", "decision"], ["limits"], ["test", "strategy"]];
-let recipe = null, drawnRecipe = "";
-// Texts typed into the newest revision, by path of the key. Below: the last refusal of a value, and a function that
-// returns the last message in the present language.
+// Sections of the sheet, in order.
+const RECIPE_SECTIONS = ["about", "part", "decision", "limits", "test", "strategy"];
+let recipe = null, revisions = [], drawnRecipe = "";
+// `typed`: texts typed into the newest revision, by path of the key. `refusedField`: the last refusal of a value.
+// `recipeMessage` returns the last message in the present language.
 const typed = new Map();
 let refusedField = null, recipeMessage = () => ["", false];
 

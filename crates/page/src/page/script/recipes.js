@@ -1,16 +1,14 @@
-// Recipes: shows revisions and saves the next one.
+// Recipes: shows revisions; saves the next one or a new recipe; approves.
 
 function drawRecipe() {
-  at("r_fields").replaceChildren(...(recipe ? RECIPE_SECTIONS : []).map((sections) => {
-    const column = make("div");
-    column.append(...sections.map(fieldTable));
-    return column;
-  }));
-  at("r_save").hidden = at("r_discard").hidden = !mayRevise();
+  at("r_fields").replaceChildren(...(recipe ? RECIPE_SECTIONS : []).map(fieldTable));
+  for (const id of ["r_why", "r_save", "r_save_as", "r_discard"]) at(id).hidden = !mayRevise();
+  showApproval();
+  showRevisions();
   at("r_note").hidden = mayRevise();
   at("r_kept").hidden = !recipe || recipe.kept;
   const numbers = recipe ? Array.from({length: recipe.newest}, (_, place) => String(recipe.newest - place)) : [];
-  fillSelect(at("r_revision"), numbers.map((it, place) => [it, place === 0 ? it + " (" + word("r-newest") + ")" : it]));
+  fillSelect(at("r_revision"), numbers.map((it, place) => [it, place === 0 ? it + bracketed(word("r-newest")) : it]));
   if (recipe) at("r_revision").value = String(recipe.number);
   at("r_saved").textContent = recipe && recipe.saved_at_us ? word("r-saved_at") + " " + clock(recipe.saved_at_us) : "";
   at("r_card").href = "/api/recipes/card" + query({name: at("r_name").value, lang: language});
@@ -22,10 +20,35 @@ function drawRecipe() {
 }
 
 function showRecipe() {
-  const now = JSON.stringify([recipe && recipe.hash, recipe && recipe.number, language, mayRevise(), refusedField, recipeMessage()]);
+  const now = JSON.stringify([recipe && [recipe.hash, recipe.number, recipe.approval], language, me, mayRevise(), refusedField, recipeMessage()]);
   if (now === drawnRecipe) return;
   drawnRecipe = now;
   drawRecipe();
+}
+
+// Shows the engineers who answer for the revision; only one who has not signed may approve it.
+function showApproval() {
+  const {approved, signatures} = recipe?.approval ?? {approved: true, signatures: []};
+  const names = signatures.map((it) => it.who + " " + clock(it.at)).join(comma());
+  at("r_approval").textContent = !approved ? word(names ? "r-waits" : "r-unsigned") + " " + names
+    : names ? word("r-approved") + " " + names : "";
+  at("r_approval").className = approved ? "" : "trouble";
+  at("r_approve").hidden = approved || !mayRevise();
+  const signed = signatures.some((it) => it.who === me?.name);
+  at("r_approve").setAttribute("aria-disabled", signed);
+  at("r_approve").title = signed ? word("r-signed") : "";
+}
+
+// Shows who changed what and why; the lines are those of the command `config revisions`.
+function showRevisions() {
+  at("r_history").replaceChildren(...revisions.map((it) => {
+    const item = make("li"), lines = make("ul");
+    const who = it.who + (it.role ? " (" + wordOr("role-" + it.role, it.role) + ")" : "");
+    lines.append(...it.lines.map((line) => make("li", line)));
+    item.value = it.revision;
+    item.append(clock(it.at) + " · " + who + " · " + (it.reason || NONE), lines);
+    return item;
+  }));
 }
 
 // --- reading and saving ---
@@ -35,6 +58,8 @@ async function readRecipe(revision = "") {
   [refusedField, drawnRecipe, recipeMessage] = [null, "", () => ["", false]];
   try {
     recipe = await (await ask("/api/recipes/show" + query({name: at("r_name").value, revision}))).json();
+    // Without a history there are no revisions yet.
+    revisions = await ask("/api/recipes/revisions" + query({name: recipe.name})).then((it) => it.json()).catch(() => []);
   } catch (error) {
     recipe = null;
     recipeMessage = () => [error.message, true];
@@ -42,7 +67,7 @@ async function readRecipe(revision = "") {
   showRecipe();
 }
 
-async function enterRecipes() {
+async function enterRecipes(chosen = "") {
   const first = at("r_name").value === "";
   let all;
   try {
@@ -51,35 +76,37 @@ async function enterRecipes() {
     recipeMessage = () => [error.message, true];
     return showRecipe();
   }
-  fillSelect(at("r_name"), all.map((it) => [it.name, it.name + (it.trouble ? " ▲" : "")]));
+  fillSelect(at("r_name"), all.map((it) => [it.name, it.name + (it.trouble ? " ▲" : it.approved ? "" : bracketed(word("r-not_approved")))]));
+  if (chosen) at("r_name").value = chosen;
   if (first && view && all.some((it) => it.name === view.recipe)) at("r_name").value = view.recipe;
   // Typed text survives a change of language or page.
   if (recipe === null || typed.size === 0) await readRecipe();
   showRecipe();
 }
 
-// Writes found and expected in the language of the page; expected stays English where the page has no words for it.
+// Writes found and expected in the language of the page; an English page shows what the rig expects where it has no words.
 function refusedValue(answer) {
   const field = recipe.fields.find((it) => (answer.key + ".").startsWith(it.path + "."));
   const {code, value} = answer.requirement;
   const ranged = code === "form" && field && field.low !== undefined;
   const expected = code === "at_most_high" ? word("r-at_most_high") + " " + value : code === "below" ? "< " + value
-    : ranged ? word(field.form === "whole" ? "r-whole" : "r-number") + ", " + rangeText(field) + " " + unitText(field.unit)
-      : answer.expected;
+    : ranged ? word(field.form === "whole" ? "r-whole" : "r-number") + comma() + rangeText(field) + " " + unitText(field.unit)
+      : language === "zh" ? word("r-other") : answer.expected;
   return "▲ " + word("r-found") + " " + answer.found + word("r-expected") + " " + expected;
 }
 
-const refusal = (answer) => () => [answer.key ? word("r-refused") : whyRefused(answer), true];
+const refusal = (answer) => () => [answer.key ? word("r-refused") : said(answer, "reason"), true];
 
-async function saveRecipe() {
-  const values = changedValues();
-  if (!mayRevise() || Object.keys(values).length === 0) return () => [word("r-nothing"), false];
+// Sends a change; returns the message for its outcome, which `saved` makes of the answer to a change that was taken.
+async function change(path, body, saved) {
+  refusedField = null;
   try {
-    const reply = await post("/api/recipes/revise", {name: recipe.name, from: recipe.hash, values});
+    const reply = await post("/api/recipes/" + path, body);
     const answer = await reply.json();
     if (reply.ok) {
-      await readRecipe();
-      return () => [word("r-saved") + " " + answer.number + ". " + word("r-applies"), false];
+      typed.clear();
+      await enterRecipes(answer.name);
+      return () => [saved(answer), false];
     }
     if (answer.key) refusedField = answer;
     return refusal(answer);
@@ -88,14 +115,40 @@ async function saveRecipe() {
   }
 }
 
+async function revise(reason, members, saved) {
+  const values = changedValues();
+  recipeMessage = mayRevise() && (members.save_as || Object.keys(values).length)
+    ? await change("revise", {name: recipe.name, from: recipe.hash, reason: reason.value.trim(), values, ...members}, saved)
+    : () => [word("r-nothing"), false];
+  showRecipe();
+}
+
 at("r_fields").addEventListener("submit", async (event) => {
   event.preventDefault();
-  refusedField = null;
-  recipeMessage = await saveRecipe();
+  await revise(at("r_reason"), {}, (answer) => {
+    at("r_reason").value = "";
+    return word("r-saved") + " " + answer.number + semicolon() + word("r-applies");
+  });
+});
+at("r_save_as").addEventListener("click", () => {
+  at("r_new_name").value = recipe.name;
+  at("r_new_reason").value = at("r_reason").value;
+  at("r_new").showModal();
+});
+at("r_new_cancel").addEventListener("click", () => at("r_new").close());
+at("r_new").addEventListener("submit", async (event) => {
+  event.preventDefault();
+  at("r_new").close();
+  await revise(at("r_new_reason"), {save_as: at("r_new_name").value.trim()}, (answer) => word("r-created") + " " + answer.name);
+});
+at("r_approve").addEventListener("click", async () => {
+  const {title} = at("r_approve");
+  recipeMessage = title ? () => [title, false]
+    : await change("approve", {name: recipe.name, hash: recipe.hash}, (answer) => word(answer.approval?.approved === false ? "r-waits" : "r-approved") + " " + me.name);
   showRecipe();
 });
 at("r_discard").addEventListener("click", () => readRecipe());
 at("r_name").addEventListener("change", () => readRecipe());
 at("r_revision").addEventListener("change", () => readRecipe(at("r_revision").value));
 
-PAGES.recipes = {show: showRecipe, enter: enterRecipes};
+PAGES.recipes = {show: showRecipe, enter: () => enterRecipes()};

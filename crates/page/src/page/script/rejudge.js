@@ -50,7 +50,7 @@ function showRejudged() {
   at("j_more").textContent = parts.length > MOST_ROWS ? word("j-first") + " " + MOST_ROWS
     : judgedAgain && parts.length === 0 ? word("j-none") : "";
   at("j_parts").replaceChildren(...parts.slice(0, MOST_ROWS).map((it) => row(partLink({...it, kind: "lot"}),
-    verdictCell(it.verdict_was), verdictCell(it.verdict), wordOr("bin-" + it.bin, it.bin), reasonTexts(it).join("; "))));
+    verdictCell(it.verdict_was), verdictCell(it.verdict), wordOr("bin-" + it.bin, it.bin), reasonTexts(it).join(semicolon()))));
 }
 
 at("j_form").addEventListener("submit", (event) => {

@@ -5,7 +5,7 @@ const shareText = (bad, all) => (all ? (100 * bad / all).toFixed(3) + "\u202f%" 
 function showBus() {
   at("bus").replaceChildren(...view.lines.flatMap((line) => line.modules.map((it) => {
     const bad = it.time_outs + it.checksum_errors + it.other_errors;
-    const element = row(line.name, it.address, integerText(it.transactions), it.p50_ms === null ? NONE : it.p50_ms.toFixed(2),
+    const element = row(wordOr("line-" + line.name, line.name), it.address, integerText(it.transactions), it.p50_ms === null ? NONE : it.p50_ms.toFixed(2),
       it.p99_ms === null ? NONE : it.p99_ms.toFixed(2), integerText(it.time_outs), integerText(it.checksum_errors),
       integerText(it.other_errors), integerText(it.refusals), integerText(it.resets), shareText(bad, it.transactions));
     if (bad * 1000 > it.transactions) element.className = "bad";
@@ -19,8 +19,11 @@ function showBus() {
 // Shows what the system grants the program, and a histogram of how late this computer wakes the cycle.
 function showHost() {
   const {fifo_priority: priority, memory_locked: locked, refused, lateness} = view.host;
-  const rights = [priority === null ? "" : "SCHED_FIFO " + priority, locked ? word("host-locked") : "", ...refused.map((it) =>
-    word("host-refused") + " " + it)].filter(Boolean);
+  // What the system says about a refusal is English.
+  const missing = language === "zh" ? [priority === null ? word("host-no_priority") : "", locked ? "" : word("host-not_locked")]
+    : refused.map((it) => word("host-refused") + " " + it);
+  const rights = [priority === null ? "" : "SCHED_FIFO " + priority, locked ? word("host-locked") : "",
+    ...(refused.length ? missing : [])].filter(Boolean);
   const ms = (key, value) => word(key) + " " + value.toFixed(2) + " ms";
   const figures = lateness.waits ? [ms("host-p50", lateness.p50_ms), ms("host-p999", lateness.p999_ms),
     ms("host-worst", lateness.worst_ms), ms("host-recent", lateness.recent_ms)] : [word("host-virtual")];

@@ -25,6 +25,13 @@ const PAGES = {};
 const at = (id) => document.getElementById(id);
 const word = (key) => WORDS[key][language];
 const wordOr = (key, text) => (Object.hasOwn(WORDS, key) ? word(key) : text);
+// Marks of punctuation, with the blank that follows them in English.
+const colon = () => (language === "zh" ? "\uff1a" : ": ");
+const semicolon = () => (language === "zh" ? "\uff1b" : "; ");
+const comma = () => (language === "zh" ? "\uff0c" : ", ");
+const bracketed = (text) => (language === "zh" ? "\uff08" + text + "\uff09" : " (" + text + ")");
+// Returns the Chinese or the English member of an answer; rows of older versions may have the English one only.
+const said = (answer, key) => (language === "zh" && answer[key + "_zh"]) || answer[key];
 const unitText = (unit) => UNITS[unit] || unit || "";
 
 // --- characteristics ---
@@ -71,6 +78,16 @@ function fillSelect(element, options) {
   if (options.some(([value]) => value === had)) element.value = had;
 }
 
+// Labels each cell of a list with the heading of its column: narrow screens show a row as a block.
+new MutationObserver((changes) => {
+  for (const {target} of changes) {
+    for (const table of target.tagName === "TBODY" ? [target.parentElement] : target.querySelectorAll("table.list")) {
+      const heads = table.tHead?.rows[0].cells ?? [];
+      for (const it of table.tBodies[0].rows) Array.from(heads, (head, place) => { if (it.cells[place]) it.cells[place].dataset.head = head.textContent; });
+    }
+  }
+}).observe(document.body, {childList: true, subtree: true});
+
 // --- times ---
 
 const two = (number) => String(number).padStart(2, "0");
@@ -110,13 +127,11 @@ function query(members) {
 
 // Requests `path`; throws the reason of a refusal.
 async function ask(path) {
-  const reply = await fetch(path, {signal: AbortSignal.timeout(20000)});
+  const lost = () => { throw new Error(word("link-lost")); };
+  const reply = await fetch(path, {signal: AbortSignal.timeout(20000)}).catch(lost);
   if (reply.ok) return reply;
-  throw new Error(whyRefused(await reply.json()));
+  throw new Error(said(await reply.json(), "reason"));
 }
-
-// Returns the reason of a refusal, Chinese only where the rig has it.
-const whyRefused = (answer) => (language === "zh" && answer.reason_zh) || answer.reason;
 
 async function post(path, body) {
   const headers = {"Content-Type": "application/json"};

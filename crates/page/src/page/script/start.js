@@ -12,9 +12,16 @@ function openPage() {
     tab.toggleAttribute("aria-current", open);
     if (open) tab.setAttribute("aria-current", "page");
   }
+  showMenu(false);
   showFetching();
   PAGES[current]?.enter?.();
   showView();
+}
+
+// Shows or hides the menu of a narrow screen; wide screens show it always.
+function showMenu(open) {
+  document.body.classList.toggle("menu", open);
+  at("menu").setAttribute("aria-expanded", open);
 }
 
 function showView() {
@@ -26,8 +33,10 @@ function showView() {
     at(id).title = view[id];
   }
   showAlarmBar(view.alarms);
+  showPrompt();
   sound(view.alarms);
   recordActivity();
+  showOrders();
   PAGES[current]?.show?.();
 }
 
@@ -41,10 +50,12 @@ function showAll() {
   document.documentElement.lang = language === "zh" ? "zh-CN" : "en";
   document.documentElement.dataset.theme = theme;
   translate();
+  nameBodies();
   showWho();
   openPage();
 }
 
+at("menu").addEventListener("click", () => showMenu(!document.body.classList.contains("menu")));
 at("language").addEventListener("click", () => {
   language = language === "zh" ? "en" : "zh";
   // Clear the answers, which are in the other language.

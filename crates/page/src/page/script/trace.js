@@ -2,16 +2,28 @@
 
 let frozen = false;
 
+// Returns the signals that a reply reads or confirms: the names of those that are present.
+function signalsText(signals) {
+  const present = Object.keys(signals).filter((name) => signals[name]);
+  return present.length ? word("trace-present") + colon() + present.map((name) => wordOr("signal-" + name, name)).join(comma())
+    : word("trace-none_present");
+}
+
+const meaningText = (it) => (Object.keys(it.signals).length ? signalsText(it.signals)
+  : language === "zh" ? it.meaning_zh ?? NONE : it.meaning);
+
+const lineText = (name) => wordOr("line-" + name, name);
+
 async function readTrace() {
   if (frozen || current !== "trace") return;
   try {
     const lines = await (await ask("/api/trace?last=200")).json();
     const only = at("trace_line").value;
-    fillSelect(at("trace_line"), [["", word("any")], ...lines.map((it) => [it.line, it.line])]);
+    fillSelect(at("trace_line"), [["", word("any")], ...lines.map((it) => [it.line, lineText(it.line)])]);
     const rows = lines.filter((it) => !only || it.line === only).flatMap((it) => it.entries.map((entry) => [it.line, entry]));
     rows.sort((a, b) => b[1].at_us - a[1].at_us);
     at("trace").replaceChildren(...rows.slice(0, 200).map(([line, it]) =>
-      row((it.at_us / 1e6).toFixed(6), line, it.way, it.text, it.meaning)));
+      row((it.at_us / 1e6).toFixed(6), lineText(line), it.way, it.text, meaningText(it))));
     at("trace_trouble").textContent = "";
   } catch (error) {
     at("trace_trouble").textContent = error.message;

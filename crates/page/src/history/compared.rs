@@ -1,0 +1,77 @@
+//! `/api/history/compare` and `report/comparison`: lots side by side; `rejects`, `alarm-counts`: most frequent first.
+
+use super::super::error::{ApiError, JsonResult};
+use super::super::router::App;
+use super::members::{OneParameter, Printed, Runs, TimeSpan, filter, language};
+use super::paper::{Page, page};
+use crate::asked::{Asked, members};
+use axum::Json;
+use axum::extract::State;
+use history::inquiry::comparison::{Comparison, compare};
+use history::inquiry::pareto::{Ranked, Rejects, alarms, rejects};
+use history::inquiry::{InquiryError, checks, paper};
+use history::report::comparison::comparison;
+use history::{Archive, Filter};
+use serde::Deserialize;
+use utoipa::IntoParams;
+
+/// Own member of a comparison.
+#[derive(Debug, Deserialize, IntoParams)]
+pub(crate) struct OfLots {
+    /// Two to eight names of lots, as a JSON array.
+    #[param(example = r#"["L-1122","L-1122"]"#)]
+    lots: String,
+}
+
+members!(OfLots);
+
+fn compared(archive: &Archive, of: &OneParameter, lots: &OfLots) -> Result<Comparison, ApiError> {
+    let names: Vec<String> = serde_json::from_str(&lots.lots).map_err(|_| {
+        let reason = format!("found {:?}, expected a JSON array of names", lots.lots);
+        InquiryError::member("lots", reason)
+    })?;
+    Ok(compare(archive, &of.param, &names)?)
+}
+
+/// `GET /api/history/compare`.
+pub(crate) async fn lots(
+    State(app): App,
+    Asked((of, lots)): Asked<(OneParameter, OfLots)>,
+) -> JsonResult<Comparison> {
+    let read = move |archive: &Archive| compared(archive, &of, &lots);
+    app.readers.read(read).await.map(Json)
+}
+
+/// `GET /api/history/report/comparison`.
+pub(crate) async fn printed(
+    State(app): App,
+    Asked((of, lots, printed)): Asked<(OneParameter, OfLots, Printed)>,
+) -> Result<Page, ApiError> {
+    page(app, move |archive| {
+        let on = paper::paper_of(archive, &Filter::default(), language(printed.lang))?;
+        Ok(comparison(&on, &compared(archive, &of, &lots)?))
+    })
+    .await
+}
+
+/// `GET /api/history/rejects`.
+pub(crate) async fn reasons(
+    State(app): App,
+    Asked(asked): Asked<(Runs, TimeSpan)>,
+) -> JsonResult<Rejects> {
+    let read = move |archive: &Archive| Ok(rejects(archive, &filter(asked), 0)?);
+    app.readers.read(read).await.map(Json)
+}
+
+/// `GET /api/history/alarm-counts`.
+pub(crate) async fn alarm_counts(
+    State(app): App,
+    Asked(asked): Asked<(Runs, TimeSpan)>,
+) -> JsonResult<Vec<Ranked>> {
+    let filter = filter(asked);
+    let read = move |archive: &Archive| {
+        checks::known_runs(archive, &filter)?;
+        Ok(alarms(&archive.alarms(&filter)?))
+    };
+    app.readers.read(read).await.map(Json)
+}

@@ -1,0 +1,48 @@
+//! `GET /api/people`, `POST /api/people/change`: an engineer reads and changes people.
+//!
+//! The audit of orders gets every change that a logged-in person tries, with its outcome, and no password.
+
+use super::access::{Entry, PersonChange, Role, audited};
+use super::asked::{Author, Body};
+use super::error::{ApiError, JsonResult};
+use super::router::App;
+use super::sessions::{now_us, require_role};
+use axum::Json;
+use axum::extract::State;
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// Answer to a change.
+#[derive(Debug, Serialize, ToSchema)]
+pub(super) struct Changed {
+    /// The password, if the request gave none and the rig drew one.
+    password: Option<String>,
+}
+
+/// `GET /api/people`.
+pub(super) async fn list(State(app): App, Author { person, .. }: Author) -> JsonResult<Vec<Entry>> {
+    require_role(&person, Role::Engineer)?;
+    let entries = app
+        .shared
+        .sessions
+        .with(|register, _| register.entries(now_us()));
+    entries.await.map(Json)
+}
+
+/// `POST /api/people/change`.
+pub(super) async fn change(
+    State(app): App,
+    author: Author,
+    Body(change): Body<PersonChange>,
+) -> JsonResult<Changed> {
+    let sessions = &app.shared.sessions;
+    let done = sessions.with(move |register, history| {
+        let (by, what) = (author.by(), |_: Option<&_>| change.what());
+        audited(history, by, what, ApiError::message, || {
+            require_role(&author.person, Role::Engineer)?;
+            Ok(change.apply(register, now_us())?)
+        })?
+    });
+    let password = done.await?;
+    Ok(Json(Changed { password }))
+}
