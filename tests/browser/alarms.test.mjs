@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { SIZES, leave, looks, open, picture, shown, visit } from "./browser.mjs";
+import { SIZES, leave, looks, open, picture, press, shown, visit } from "./browser.mjs";
 import { start } from "./rig.mjs";
 
 let rig, browser;
@@ -38,7 +38,7 @@ for (const size of SIZES) {
   test(`at ${size.width}x${size.height} the alarm page and the operator's page with an alarm fit and can be read`, async () => {
     const page = await visit(browser, rig, { size, role: "operator" });
     await looks(page, `alarm-bar-${size.width}`);
-    await page.click('nav a[href="#alarms"]');
+    await press(page, 'nav a[href="#alarms"]');
     await page.waitForSelector("#past tr");
     await looks(page, `alarms-${size.width}`);
     await leave(page);

@@ -16,6 +16,9 @@ after(async () => {
 
 const lotRow = (page, lot) => page.locator("#l_book tr", { has: page.locator("b", { hasText: new RegExp(`^${lot}$`) }) });
 
+/** Waits until the row of `lot` shows `state`; the page draws the row anew at every change. */
+const lotIs = (page, lot, state) => lotRow(page, lot).locator(".lot_state." + state, { hasText: new RegExp("^" + WORDS["lot_state-" + state].en) }).waitFor();
+
 async function startLot(page, lot, count) {
   await page.waitForSelector('#l_start[aria-disabled="false"]');
   await page.fill("#l_lot", lot);
@@ -36,7 +39,7 @@ test("start without a lot points to the page Lots", async () => {
   await page.click('#orders [data-order="reset"]');
   await rig.until("idle", (view) => view.machine.state === "Idle");
   await page.click('#orders [data-order="start"]', { force: true });
-  await shown(page, "#order_answer", "choose one on the page of lots");
+  await shown(page, "#order_answer", WORDS["refusal-no_lot"].en);
   await looks(page, "operator-no-lot");
   await leave(page);
 });
@@ -53,13 +56,13 @@ test("one lot starts, holds and closes, another starts", async () => {
   await page.click('nav a[href="#lots"]');
   await lotRow(page, "A").waitFor();
   await page.click("#l_start", { force: true });
-  assert.match(await page.textContent("#l_answer"), /stop it first/);
+  assert.equal(await page.textContent("#l_answer"), WORDS["next-stop"].en);
   await decide(page, "A", "close_lot", "rest of the reel returned");
   await rig.until("closed", (view) => !view.under_way);
-  await lotRow(page, "A").getByText(WORDS["lot_state-complete"].en).waitFor();
+  await lotIs(page, "A", "complete");
   await startLot(page, "B", 2);
   await rig.until("complete", (view) => view.lot === "B" && !view.under_way && view.judged === 2);
-  await lotRow(page, "B").getByText(WORDS["lot_state-complete"].en).waitFor();
+  await lotIs(page, "B", "complete");
   await page.click('nav a[href="#operator"]');
   await shown(page, "#state", WORDS["state-complete"].en);
   await picture(page, "operator-complete");
@@ -74,7 +77,7 @@ test("a held lot waits until a maintainer releases it", async () => {
   await decide(operator, "A", "hold_lot", "wrong label");
   await lotRow(operator, "A").getByText("wrong label (li)").waitFor();
   await lotRow(operator, "A").locator('[data-lot-order="start"]').click({ force: true });
-  await shown(operator, "#l_answer", "release it first");
+  await shown(operator, "#l_answer", WORDS["refusal-release_first"].en);
   await startLot(operator, "A", 1);
   await shown(operator, "#l_answer", "lot A is held: wrong label (li)");
   await decide(operator, "A", "release_lot", "");
@@ -83,7 +86,7 @@ test("a held lot waits until a maintainer releases it", async () => {
   const maintainer = await visit(browser, rig, { role: "maintainer", path: "/#lots" });
   await lotRow(maintainer, "A").waitFor();
   await decide(maintainer, "A", "release_lot", "label was corrected");
-  await lotRow(maintainer, "A").getByText(WORDS["lot_state-complete"].en).waitFor();
+  await lotIs(maintainer, "A", "complete");
   await leave(maintainer);
 });
 
@@ -97,7 +100,7 @@ test("an engineer reopens a complete lot with a reason", async () => {
   const engineer = await visit(browser, rig, { role: "engineer", path: "/#lots" });
   await lotRow(engineer, "A").waitFor();
   await decide(engineer, "A", "reopen_lot", "late parts");
-  await lotRow(engineer, "A").getByText(WORDS["lot_state-open"].en).waitFor();
+  await lotIs(engineer, "A", "open");
   await lotRow(engineer, "A").getByText("late parts (zhao)").waitFor();
   await leave(engineer);
 });

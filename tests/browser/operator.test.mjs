@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { SIZES, forgive, leave, logIn, looks, open, picture, shown, visit } from "./browser.mjs";
+import { SIZES, forgive, leave, logIn, looks, open, picture, press, shown, visit } from "./browser.mjs";
 import { WORDS, start } from "./rig.mjs";
 
 let rig, browser;
@@ -58,6 +58,7 @@ test("login takes the right password and logout ends it", async () => {
   await page.reload();
   await shown(page, "#who", rig.who("operator"));
   await page.click("#who");
+  await page.click("#account_logout");
   await shown(page, "#who", WORDS.login.en);
   assert.equal(await page.evaluate(async () => (await fetch("/api/me")).json()), null);
   await leave(page);
@@ -78,7 +79,7 @@ test("a held lot continues; disabled buttons give their reason", async () => {
   const page = await visit(browser, rig, { role: "operator" });
   await rig.until("the lot runs", (view) => view.machine.state === "Execute");
   await page.click('#orders [data-order="unhold"]', { force: true });
-  await shown(page, "#order_answer", "unhold is possible in");
+  await shown(page, "#order_answer", WORDS["next-already"].en);
   await page.click('#orders [data-order="hold"]');
   await rig.until("held", (view) => view.machine.state === "Held");
   await picture(page, "operator-held");
@@ -109,6 +110,47 @@ for (const size of SIZES) {
     await leave(page);
   });
 }
+
+test("a panel shows verdict, limits and orders without scrolling", async () => {
+  const page = await visit(browser, rig, { size: SIZES[1], role: "operator" });
+  await rig.until("a part is judged", (view) => view.last !== null);
+  await page.waitForSelector("#values tr");
+  // In one step: between the two steps of `$$eval` the page may replace what the first one found.
+  const outOfView = (selector) => page.evaluate((selector) => {
+    const all = Array.from(document.querySelectorAll(selector), (it) => it.getBoundingClientRect());
+    if (all.length === 0) return "no element";
+    const out = all.find((box) => box.width === 0 || box.left < 0 || box.right > innerWidth || box.top < 0 || box.bottom > innerHeight);
+    return out && JSON.stringify(out);
+  }, selector);
+  for (const selector of ["#verdict", "#values tr", "#values small", ...["start", "stop", "clear"].map((it) => `#orders [data-order="${it}"]`)]) {
+    assert.equal(await outOfView(selector), undefined, selector);
+  }
+  assert.match(await text(page, "#values"), /≤ 9/);
+  await leave(page);
+});
+
+test("a phone has Stop in view on every page", async () => {
+  const page = await visit(browser, rig, { size: SIZES[3], role: "operator" });
+  const stop = '#stop_bar [data-order="stop"]';
+  for (const name of ["operator", "lots", "alarms", "history", "quality", "recipes", "calibration", "bus", "io", "trace"]) {
+    await press(page, `nav a[href="#${name}"]`);
+    await page.waitForSelector(`main[data-page="${name}"]:not([hidden])`);
+    await page.$eval(`main[data-page="${name}"]`, (it) => { it.scrollTop = it.scrollHeight; });
+    const box = await page.$eval(stop, (it) => it.getBoundingClientRect().toJSON());
+    assert.ok(box.height >= 44 && box.top > 600 && box.bottom <= 844, `${name}: ${JSON.stringify(box)}`);
+  }
+  await rig.until("the lot runs", (view) => view.machine.state === "Execute");
+  await page.click(stop);
+  await rig.until("stopped", (view) => view.machine.state === "Stopped");
+  await shown(page, "#stop_answer", WORDS["order-stop"].en);
+  for (const [order, state] of [["reset", "Idle"], ["start", "Execute"]]) {
+    await press(page, 'nav a[href="#operator"]');
+    await page.waitForSelector(`#orders [data-order="${order}"][aria-disabled="false"]`);
+    await page.click(`#orders [data-order="${order}"]`);
+    await rig.until(state, (view) => view.machine.state === state);
+  }
+  await leave(page);
+});
 
 test("no state or stage overlaps the figures below it", async () => {
   const page = await visit(browser, rig, { role: "operator" });

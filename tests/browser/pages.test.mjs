@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { SIZES, leave, looks, open, shown, visit } from "./browser.mjs";
+import { SIZES, leave, looks, open, press, shown, visit } from "./browser.mjs";
 import { WORDS, start } from "./rig.mjs";
 
 let rig, browser;
@@ -114,6 +114,7 @@ test("bus shows the health of modules, trace their traffic", async () => {
   await page.waitForSelector("#trace tr");
   await page.selectOption("#trace_line", "motion");
   await page.waitForFunction(() => Array.from(document.querySelectorAll("#trace tr"), (it) => it.children[1].textContent).every((it) => it === "motion"));
+  await shown(page, "#trace", WORDS["signal-door_closed"].en);
   await page.click("#trace_freeze");
   await leave(page);
 });
@@ -132,7 +133,7 @@ for (const size of SIZES) {
     await page.waitForSelector("#j_changes dd");
     await looks(page, `rejudge-${size.width}`);
     for (const [name, ready] of [["quality", "#q_histograms svg"], ["calibration", "#c_golden td"], ["bus", "#bus tr"], ["trace", "#trace tr"], ["io", "#inputs li"]]) {
-      await page.click(`nav a[href="#${name}"]`);
+      await press(page, `nav a[href="#${name}"]`);
       await page.waitForSelector(ready);
       await looks(page, `${name}-${size.width}`);
     }

@@ -62,6 +62,9 @@ test("fields refuse bad values and save good ones", async () => {
   const { number } = await newest();
   await page.fill(HIGH, "44");
   await page.click("#r_save");
+  await shown(page, "#r_answer", "why the values change");
+  await page.fill("#r_reason", "order 4711");
+  await page.click("#r_save");
   await shown(page, "#r_fields tr:has(" + HIGH.slice(10) + ") + tr .trouble", "5.50");
   assert.equal((await newest()).number, number);
   await page.click("#language");
@@ -75,6 +78,10 @@ test("fields refuse bad values and save good ones", async () => {
   await shown(page, "#r_answer", WORDS["r-saved"].en + " " + (number + 1));
   const saved = await newest();
   assert.equal(saved.number, number + 1);
+  await page.click("summary:has(+ #r_history)");
+  await shown(page, "#r_history li", "order 4711");
+  await shown(page, "#r_history li li", "limits.operate_voltage_v.high: 4.5 V -> 4.4 V");
+  await looks(page, "recipes-revisions-1280");
   assert.equal(saved.fields.find((it) => it.path === "limits.operate_voltage_v.high").value, 4.4);
   await page.selectOption("#r_revision", String(number));
   await shown(page, "#r_fields", "4.5");
@@ -88,6 +95,7 @@ test("a second revision is refused and keeps its text", async () => {
     const page = await visit(browser, rig, { role: "engineer", path: "/#recipes" });
     await choose(page);
     await page.fill('[data-path="limits.release_voltage_v.low"]', value);
+    await page.fill("#r_reason", "order 4711");
     pages.push(page);
   }
   await pages[0].click("#r_save");

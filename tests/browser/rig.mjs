@@ -18,6 +18,9 @@ export const start = (name, ...words) => begin(name, ["demo", ...words]);
 /** Does the same with `relayrig serve --sim`, which starts no lot. */
 export const serve = (name, ...words) => begin(name, ["serve", "--sim", ...words]);
 
+/** Does the same over the configuration in the folder `config`. */
+export const serveIn = (config, name, ...words) => begin(name, ["serve", "--sim", ...words], config);
+
 /** Starts `relayrig demo` with nothing but the program: in an empty folder, which goes when the program is killed. */
 export async function startAlone() {
   const rig = new Rig(["--log", "warn", "demo", "--listen", "127.0.0.1:0"], mkdtempSync(join(tmpdir(), "relayrig-")));
@@ -25,14 +28,16 @@ export async function startAlone() {
   return rig;
 }
 
-async function begin(name, words) {
-  const db = name + ".db";
+/** Adds a person to the people of the rig with the files `name`. */
+export function addPerson(name, user, role) {
+  const added = spawnSync(PROGRAM, ["--db", name + ".db", "user", "add", user, "--role", role, "--stdin"], { input: PASSWORD + "\n" });
+  if (added.status !== 0) throw new Error(String(added.stderr));
+}
+
+async function begin(name, words, config = "config") {
   for (const end of [".db", ".db-wal", ".db-shm", "-access.db"]) rmSync(name + end, { force: true });
-  for (const [role, user] of Object.entries(PEOPLE)) {
-    const added = spawnSync(PROGRAM, ["--db", db, "user", "add", user, "--role", role, "--stdin"], { input: PASSWORD + "\n" });
-    if (added.status !== 0) throw new Error(String(added.stderr));
-  }
-  const rig = new Rig(["--config", "config", "--log", "warn", "--db", db, ...words, "--listen", "127.0.0.1:0"]);
+  for (const [role, user] of Object.entries(PEOPLE)) addPerson(name, user, role);
+  const rig = new Rig(["--config", config, "--log", "warn", "--db", name + ".db", ...words, "--listen", "127.0.0.1:0"]);
   await rig.listening;
   return rig;
 }
@@ -60,9 +65,9 @@ class Rig {
     this.listening.catch(() => {});
   }
 
-  /** Name of the person with this role. */
+  /** Name of the person with this role; a name that is no role stays. */
   who(role) {
-    return PEOPLE[role];
+    return PEOPLE[role] ?? role;
   }
 
   async view() {
@@ -74,7 +79,7 @@ class Rig {
     const end = Date.now() + seconds * 1000;
     for (;;) {
       const view = await this.view();
-      if (test(view)) return view;
+      if (await test(view)) return view;
       if (Date.now() > end) throw new Error(`not within ${seconds} s: ${what}; state ${view.state}, ${JSON.stringify(view.alarms)}`);
       await new Promise((resolve) => setTimeout(resolve, 50));
     }

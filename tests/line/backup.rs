@@ -2,7 +2,7 @@
 
 use crate::program::Workshop;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Returns the only backup inside `backups`.
 fn only_backup(workshop: &Workshop) -> PathBuf {
@@ -23,14 +23,6 @@ fn answers(workshop: &Workshop) -> Vec<String> {
     ]
     .map(ask)
     .into()
-}
-
-fn copy(from: &Path, to: &Path) {
-    let copied = std::process::Command::new("cp")
-        .arg("-a")
-        .args([from, to])
-        .status();
-    assert!(copied.unwrap().success());
 }
 
 #[test]
@@ -60,17 +52,84 @@ fn a_restored_backup_gives_the_same_answers() {
     }
     fs::remove_dir_all(workshop.folder.join("config")).unwrap();
 
-    let backup = only_backup(&workshop);
-    let db = backup.join("relayrig.db");
-    let check = format!("--db {} history check", db.display());
-    workshop.run(&check).with_status(0);
-    for name in ["relayrig.db", "relayrig-access.db", "config"] {
-        copy(&backup.join(name), &workshop.folder.join(name));
-    }
+    let said = workshop.run("history restore backups").with_status(0);
+    assert!(said.stdout.contains("3 parts; whole"), "{said}");
+    assert!(
+        said.stdout.contains("people: 1, of them engineers 0"),
+        "{said}"
+    );
     workshop.run("history check").with_status(0);
     assert_eq!(answers(&workshop), expected);
     assert!(workshop.read("config/lot.toml").contains("# ours"));
     workshop.run(&lot.replace("lot A", "lot B")).with_status(0);
+}
+
+#[test]
+fn a_restored_rig_keeps_what_was_replaced() {
+    let workshop = Workshop::new("replaced");
+    let lot = "run --sim --lot A --recipe jzc-22f-012 --count 1 --seed 1";
+    workshop.run(lot).with_status(0);
+    workshop.run("history backup --into backups").with_status(0);
+    workshop.run(&lot.replace("lot A", "lot B")).with_status(0);
+    let said = workshop.run("history restore backups").with_status(2);
+    assert!(said.stderr.contains("--replace"), "{said}");
+    workshop
+        .run("history restore backups --replace")
+        .with_status(0);
+    assert_eq!(workshop.count("SELECT count(*) FROM run"), 1);
+    let files = fs::read_dir(&workshop.folder).unwrap();
+    let kept = files
+        .map(|it| it.unwrap().file_name().into_string().unwrap())
+        .filter(|name| name.contains(".before-"));
+    let mut kept: Vec<String> = kept.collect();
+    kept.sort();
+    let [config, db] = kept.as_slice() else {
+        panic!("{kept:?}")
+    };
+    assert!(config.starts_with("config.") && db.starts_with("relayrig.db."));
+    let list = workshop.run(&format!("--db {db} history list"));
+    assert!(list.with_status(0).stdout.contains("B  "));
+}
+
+#[test]
+fn a_damaged_backup_is_not_restored() {
+    let workshop = Workshop::new("damaged-backup");
+    let lot = "run --sim --lot A --recipe jzc-22f-012 --count 1 --seed 1";
+    workshop.run(lot).with_status(0);
+    workshop.run("history backup --into backups").with_status(0);
+    let backup = only_backup(&workshop);
+    let recipe = backup.join("config/recipes/jzc-22f-012.toml");
+    let text = fs::read_to_string(&recipe).unwrap();
+    fs::write(&recipe, format!("{text}\nnonsense = 1\n")).unwrap();
+    let history = backup.join("relayrig.db");
+    let mut bytes = fs::read(&history).unwrap();
+    bytes.truncate(bytes.len() / 2);
+    fs::write(&history, bytes).unwrap();
+    let said = workshop
+        .run("history restore backups --replace")
+        .with_status(1);
+    for fault in ["history: FAULT", "configuration: FAULT", "nonsense"] {
+        assert!(said.stdout.contains(fault), "{fault}: {said}");
+    }
+    assert!(!workshop.has("relayrig.db.restoring"));
+    workshop.run("history check").with_status(0);
+}
+
+/// An open connection to the history file takes the place of a running rig.
+#[test]
+fn a_history_in_use_is_not_replaced() {
+    let workshop = Workshop::new("in-use");
+    let lot = "run --sim --lot A --recipe jzc-22f-012 --count 1 --seed 1";
+    workshop.run(lot).with_status(0);
+    workshop.run("history backup --into backups").with_status(0);
+    let open = rusqlite::Connection::open(workshop.folder.join("relayrig.db")).unwrap();
+    let runs = || open.query_row("SELECT count(*) FROM run", [], |row| row.get::<_, i64>(0));
+    assert_eq!(runs().unwrap(), 1);
+    let said = workshop
+        .run("history restore backups --replace")
+        .with_status(2);
+    assert!(said.stderr.contains("in use"), "{said}");
+    assert_eq!(runs().unwrap(), 1);
 }
 
 #[test]

@@ -138,13 +138,25 @@ fn a_closed_pipe_ends_a_tool_silently() {
 fn send_decodes_replies_and_refuses_factory_commands() {
     let bench = Bench::new("bus_send");
     let (status, out, _) = bench.bus("send --allowance 900 --checksum #010 --model 7017");
-    assert!(status == 0 && out.contains("ReadOne"), "{out}");
+    assert!(
+        status == 0 && out.contains("module 01, read analog input 0: "),
+        "{out}"
+    );
     assert!(
         out.contains("> #010B4\\r") && out.contains("< >+0"),
         "{out}"
     );
     let (status, out, _) = bench.bus("send --allowance 900 --checksum @12BEEF");
-    assert!(status == 0 && out.contains("accepted"), "{out}");
+    assert!(
+        status == 0
+            && out.contains("module 12, switch on the outputs 0 1 2 3 5 6 7 9 10 11 12 13 15, all others off: done"),
+        "{out}"
+    );
+    let (status, out, _) = bench.bus("send --checksum #**");
+    assert!(
+        status == 0 && out.contains("all modules: sample all inputs now; no module answers"),
+        "{out}"
+    );
     let (status, out, _) = bench.bus("send --allowance 900 --checksum $015FF --model 7017");
     assert!(status == 0 && out.contains("not written again"), "{out}");
     let (status, out, _) = bench.bus("send --allowance 900 --checksum $552");
@@ -178,7 +190,11 @@ fn an_alarm_leaves_a_trace_named_in_the_log() {
             bytes.stdout.contains(" > ") && bytes.stdout.contains(" 0D"),
             "{path}"
         );
-        assert!(meaning.stdout.contains("ReadConfig"), "{}", meaning.stdout);
+        assert!(
+            meaning.stdout.contains("read the configuration: address "),
+            "{}",
+            meaning.stdout
+        );
     }
     let missing = shop.run("bus monitor --trace nothing.trace");
     assert!(missing.status == 2 && missing.stderr.contains("nothing.trace"));
@@ -211,7 +227,7 @@ fn another_shell_monitors_a_running_controller() {
         rows.any(|row| row.is_ok_and(|row| row.contains(line) && row.contains(what)))
     };
     assert!(told(" measure > ", "$"));
-    assert!(told(" motion < ", "ReadPort = "));
+    assert!(told(" motion < ", "read the digital channels: first byte"));
     let wrong = shop.run("bus monitor --from http://127.0.0.1:1 --seconds 5");
     assert!(
         wrong.status == 2 && wrong.stderr.contains("127.0.0.1:1"),

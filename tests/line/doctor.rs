@@ -64,6 +64,8 @@ fn a_fresh_folder_has_no_fault_and_stays_unchanged() {
     let (status, history) = examined(&workshop, PORTS, "history");
     assert_eq!(status, 0);
     assert_eq!(history[0]["found"], "none yet; the first run makes it");
+    let (_, configuration) = examined(&workshop, PORTS, "configuration");
+    assert_eq!(configuration[0]["subject"], "config");
     assert!(!workshop.has("relayrig.db"));
     let said = workshop.run(&format!("doctor {PORTS}")).with_status(0);
     let ports = said
@@ -80,6 +82,14 @@ fn a_calibrated_rig_is_healthy() {
     let (status, found) = examined(&workshop, PORTS, "calibration");
     assert_eq!((status, found.len()), (0, 1), "{found:?}");
     assert_eq!(found[0]["subject"], "12 V");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_closed_pipe_keeps_the_exit_status() {
+    let workshop = workshop("doctor-unread");
+    let missing = "doctor --line measure=ports/none --line motion=ports/motion";
+    workshop.run_unread(missing).with_status(1);
 }
 
 #[test]

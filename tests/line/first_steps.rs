@@ -34,7 +34,7 @@ fn a_demo_in_an_empty_directory_tests_by_revised_recipes() {
     demo.until_state("Complete");
     let shown = demo.get("/api/recipes/show?name=jzc-22f-012");
     let values = json!({"limits.operate_voltage_v.high": 8.875});
-    let change = json!({"name": "jzc-22f-012", "from": shown["hash"], "values": values});
+    let change = json!({"name": "jzc-22f-012", "from": shown["hash"], "reason": "order 4711", "values": values});
     let (status, saved) = demo.post("/api/recipes/revise", &change);
     assert_eq!((status, &saved["kept"]), (200, &json!(false)), "{saved}");
     demo.start_lot("revised", 1);

@@ -302,6 +302,70 @@ fn an_alarm_that_ended_a_run_waits_for_acknowledgement() {
     assert_eq!(orders[0]["what"]["reason"], "hinge");
 }
 
+#[test]
+fn a_revision_shows_who_changed_what_and_why() {
+    let workshop = Workshop::new("revisions");
+    let revise = "config revise jzc-22f-012 limits.operate_voltage_v.high=8.75 --by zhao --reason";
+    workshop.run(&format!("{revise} tighter")).with_status(0);
+    let shown = workshop.run("config revisions jzc-22f-012").with_status(0);
+    assert!(shown.stdout.starts_with("revision 2, "), "{}", shown.stdout);
+    let said = "zhao: tighter\n  limits.operate_voltage_v.high: 9.0 V -> 8.75 V\n";
+    assert!(shown.stdout.ends_with(said), "{}", shown.stdout);
+    let typed = revise.replace("voltage_v", "voltge_v");
+    let typo = workshop.run(&format!("{typed} tighter")).with_status(2);
+    assert!(typo.stderr.contains("\"limits.operate_voltage_v.high\"?"));
+}
+
+#[test]
+fn a_lot_waits_until_two_engineers_approve() {
+    let workshop = Workshop::new("approval");
+    let said = |line: &str, typed: &str| {
+        workshop.write("typed", typed);
+        let stdin = std::fs::File::open(workshop.folder.join("typed")).unwrap();
+        let done = workshop.command(line).stdin(stdin).output().unwrap();
+        let stderr = String::from_utf8(done.stderr).unwrap();
+        (done.status.code().unwrap(), stderr)
+    };
+    for (name, role) in [
+        ("zhao", "engineer"),
+        ("chen", "engineer"),
+        ("li", "operator"),
+    ] {
+        let add = format!("user add {name} --role {role} --stdin");
+        assert_eq!(said(&add, "open sesame\n").0, 0);
+    }
+    let rig = workshop.read("config/rig.toml") + "\n[recipes]\napproval = \"second_person\"\n";
+    workshop.write("config/rig.toml", &rig);
+    let new = "config revise jzc-22f-012 --save-as new --by zhao --reason order";
+    workshop.run(new).with_status(0);
+    let lot = "run --sim --lot A --recipe new --count 1";
+    let refused = workshop.run(lot).with_status(2);
+    let expected = "found new with 0 of 2 engineers who saved or approved it";
+    assert!(refused.stderr.contains(expected), "{}", refused.stderr);
+    for (by, password, status, expected) in [
+        ("zhao", "guessed wrong", 2, "password is wrong"),
+        ("li", "open sesame", 2, "role engineer"),
+        ("zhao", "open sesame", 0, ""),
+        ("zhao", "open sesame", 2, "another engineer approves it"),
+        ("chen", "open sesame", 0, ""),
+    ] {
+        assert_eq!(workshop.run(lot).with_status(2).stdout, "");
+        let answer = said(
+            &format!("config approve new --by {by}"),
+            &format!("{password}\n"),
+        );
+        assert_eq!(answer.0, status, "{by}: {}", answer.1);
+        assert!(answer.1.contains(expected), "{by}: {}", answer.1);
+    }
+    workshop.run(lot).with_status(0);
+    let audit = workshop
+        .run("history orders --order approve --json")
+        .objects();
+    let accepted = audit.iter().filter(|it| it["refused"].is_null());
+    let names: Vec<_> = accepted.map(|it| it["who"].clone()).collect();
+    assert_eq!(names, ["zhao", "chen"]);
+}
+
 #[cfg(unix)]
 #[test]
 fn a_revised_recipe_applies_to_the_next_lot_only() {

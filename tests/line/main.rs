@@ -10,6 +10,7 @@
 //! - `full_disk`: a history file that reaches its size limit.
 //! - `gates`: reference checks, suspect parts, reject-rate limit, first articles, retests, wear.
 //! - `history_taken`: histories of other or newer programs, and one that another process locks.
+//! - `instruments`: links to SCPI instruments against the simulated ones, under faults and by the commands.
 //! - `interruptions`: rows of stopped and killed lots.
 //! - `killed`: outputs become safe in time after a kill.
 //! - [`lots`]: whole lots on the simulated rig in virtual time, compared with the truth of its world.
@@ -17,12 +18,14 @@
 //! - `packaging`: units, scripts and contents of the Debian package.
 //! - `paper`: printing, export, rejudging, retention.
 //! - [`picture`]: the drawing in README.md matches `config/scene.toml`.
+//! - `prompts`: prompts of a recipe, with answers given in advance.
 //! - `protocol`: every command of every module, written, answered and read; settings, INIT*.
 //! - `stories`: scripts of troubles and orders with their expected course.
 //! - `storm`: random transactions under all faults of a line; the fingerprint of each value names its origin.
 //! - `tempest`: the whole program under faults, orders and kills, judged by the simulated rig.
 //! - `unplugged`: a port that vanishes while a lot runs.
 //! - [`rows`]: recorded rows of six recipes, five seeds, forty parts each.
+//! - `serials`: serial numbers of parts, and paper and searches with them.
 //! - `serve`: lots started, refused and continued at the page.
 //! - [`troubles`]: faults of the rig by name, with the alarm of each.
 
@@ -46,6 +49,8 @@ mod gates;
 #[cfg(all(feature = "sim", unix))]
 mod history_taken;
 #[cfg(all(feature = "sim", unix))]
+mod instruments;
+#[cfg(all(feature = "sim", unix))]
 mod interruptions;
 #[cfg(all(feature = "sim", unix))]
 mod killed;
@@ -60,9 +65,13 @@ mod paper;
 mod picture;
 mod program;
 #[cfg(feature = "sim")]
+mod prompts;
+#[cfg(feature = "sim")]
 mod protocol;
 #[cfg(feature = "sim")]
 mod rows;
+#[cfg(feature = "sim")]
+mod serials;
 #[cfg(all(feature = "sim", unix))]
 mod serve;
 #[cfg(feature = "sim")]

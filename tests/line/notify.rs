@@ -7,7 +7,7 @@ use std::process::{Child, Stdio};
 use std::time::Duration;
 
 /// Longest wait for a message; far more than a busy computer needs.
-const PATIENCE: Duration = Duration::from_secs(120);
+const MESSAGE_TIMEOUT: Duration = Duration::from_secs(120);
 
 /// A service with the end of the socket that systemd would hold; dropping kills the service.
 struct Notified {
@@ -29,7 +29,7 @@ impl Notified {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("notify");
         let socket = UnixDatagram::bind(&path).unwrap();
-        socket.set_read_timeout(Some(PATIENCE)).unwrap();
+        socket.set_read_timeout(Some(MESSAGE_TIMEOUT)).unwrap();
         let mut command = workshop.command("serve --listen 127.0.0.1:0 --sim --speed 5");
         let process = command
             .env("NOTIFY_SOCKET", &path)

@@ -33,6 +33,43 @@ fn every_page_of_a_lot_exists_in_both_languages() {
 }
 
 #[test]
+fn lots_compare_and_rejects_are_ranked() {
+    let workshop = Workshop::new("compared");
+    let lots = "history generate --parts 40000 --until 2026-01-01T00:00:00Z";
+    workshop.run(lots).with_status(0);
+    let compare = "history compare G1-00001 G1-00002 --param operate_voltage_v";
+    let said = workshop.run(&format!("{compare} --json")).with_status(0);
+    let compared = &said.objects()[0];
+    for test in ["means", "spreads"] {
+        let p = compared[test]["p"].as_f64().unwrap();
+        assert!((0.0..=1.0).contains(&p), "{said}");
+    }
+    let shares = compared["lots"][1]["shares"].as_array().unwrap();
+    let all: f64 = shares.iter().map(|it| it.as_f64().unwrap()).sum();
+    assert!((all - 1.0).abs() < 1e-9, "{said}");
+    assert!(workshop.run(compare).stdout.contains("Welch"));
+    workshop
+        .run(&format!("{compare} --page --out compared.html"))
+        .with_status(0);
+    assert_eq!(
+        workshop.read("compared.html").matches("<polyline").count(),
+        2
+    );
+    let nothing = compare.replace("G1-00002", "nothing");
+    workshop.run(&nothing).with_status(2);
+    let ranked = workshop.run("history pareto --json").with_status(0);
+    let ranked = ranked.objects();
+    assert!(ranked.len() > 1 && ranked[0]["n"].as_u64() >= ranked[1]["n"].as_u64());
+    assert_eq!(ranked.last().unwrap()["cumulative"], 1.0);
+    workshop
+        .run("history pareto --alarms --since -8h")
+        .with_status(0);
+    workshop
+        .run("history query --since tomorrow")
+        .with_status(2);
+}
+
+#[test]
 fn only_parts_that_did_not_pass_keep_curves() {
     let workshop = Workshop::new("curves");
     workshop.run(LOT).with_status(0);

@@ -1,16 +1,35 @@
 //! The protocol on both sides, command by command. Controller and simulated modules implement the same manuals
 //! independently.
 
-use bus::{Answer, LineSettings, Pace, Request};
+use bus::{Answer, Failure, LineError, LineSettings, Pace, Request};
 use dcon::{
-    Address, AnalogIn, BaudCode, Command, Common, Config, Counter, Family, FormatByte, ModuleName,
+    Address, AnalogIn, BaudCode, Command, Common, Config, Counter, FormatByte, Model, ModuleName,
     Reply, ReplyError, TypeCode, UpTo, decode_request, factory_command,
 };
 use rigsim::{SharedRig, bench, wire};
 use std::collections::BTreeSet;
+use texts::{Lang, Message};
 use tokio::sync::mpsc;
 
 const TABLE: &str = include_str!("protocol.txt");
+
+/// Families of commands, each with the text of the file that declares it.
+const FAMILIES: [(&str, &str); 5] = [
+    (
+        "Common",
+        include_str!("../../crates/dcon/src/every_module.rs"),
+    ),
+    (
+        "AnalogIn",
+        include_str!("../../crates/dcon/src/analog_in.rs"),
+    ),
+    (
+        "AnalogOut",
+        include_str!("../../crates/dcon/src/analog_out.rs"),
+    ),
+    ("Digital", include_str!("../../crates/dcon/src/digital.rs")),
+    ("Counter", include_str!("../../crates/dcon/src/counter.rs")),
+];
 
 /// Mark of a command that no rig may send, instead of a model.
 const NEVER: &str = "never";
@@ -33,9 +52,9 @@ fn models() -> BTreeSet<&'static str> {
 
 /// Returns the commands that `request` may be for this model.
 fn meant(model: &str, request: &str) -> Vec<Command> {
-    let family = Family::of_name(model).unwrap();
+    let model = Model::of_name(model).unwrap();
     let mut meant = decode_request(request.as_bytes());
-    meant.retain(|command| family.has_command(command));
+    meant.retain(|command| model.has_command(command));
     meant
 }
 
@@ -82,22 +101,7 @@ fn the_table_holds_every_command_that_can_be_written() {
         let name = ask.split(|letter: char| !letter.is_alphanumeric()).next();
         named.insert(format!("{family} {}", name.unwrap()));
     }
-    for (family, source) in [
-        (
-            "Common",
-            include_str!("../../crates/dcon/src/every_module.rs"),
-        ),
-        (
-            "AnalogIn",
-            include_str!("../../crates/dcon/src/analog_in.rs"),
-        ),
-        (
-            "AnalogOut",
-            include_str!("../../crates/dcon/src/analog_out.rs"),
-        ),
-        ("Digital", include_str!("../../crates/dcon/src/digital.rs")),
-        ("Counter", include_str!("../../crates/dcon/src/counter.rs")),
-    ] {
+    for (family, source) in FAMILIES {
         let (_, body) = source
             .split_once(&format!("pub enum {family} {{\n"))
             .unwrap();
@@ -113,6 +117,52 @@ fn the_table_holds_every_command_that_can_be_written() {
         }
         assert!(count > 8, "{family}: only {count} commands found");
     }
+}
+
+#[test]
+fn the_document_lists_every_request() {
+    let document = include_str!("../../docs/bus.md");
+    let mut count = 0;
+    for line in FAMILIES.iter().flat_map(|(_, source)| source.lines()) {
+        let comment = line.trim_start().strip_prefix("/// `");
+        let quoted = comment.into_iter().flat_map(|it| it.split('`').step_by(2));
+        for request in quoted.filter(|it| it.starts_with(['#', '$', '%', '@', '~'])) {
+            count += 1;
+            assert!(document.contains(&format!("`{request}`")), "{request}");
+        }
+    }
+    assert!(count > 60, "only {count} requests found");
+}
+
+#[test]
+fn every_request_and_reply_has_words_in_both_languages() {
+    let mut broken = BTreeSet::new();
+    let mut check = |message: Message| {
+        for lang in Lang::ALL {
+            let wanted = texts::arguments(lang, &message.id(), None);
+            if !wanted.is_some_and(|it| it.into_iter().eq(message.args().names())) {
+                broken.insert(format!("{lang:?} {} {:?}", message.id(), message.args()));
+            }
+        }
+    };
+    for (request, _) in table() {
+        for command in decode_request(request.as_bytes()) {
+            check(bus::request(&command));
+        }
+    }
+    for row in include_str!("../../crates/dcon/src/tests/vectors.txt").lines() {
+        let cells: Vec<&str> = row.split('\t').collect();
+        let [model, request, reply, _] = cells[..] else {
+            continue;
+        };
+        for model in [None, Model::of_name(model)] {
+            let frames = [request, reply].map(|it| format!("{it}\r").into_bytes());
+            for (command, said) in dcon::interpret(&frames[0], &frames[1], false, model) {
+                check(bus::reply(&command, &said, model));
+            }
+        }
+    }
+    assert!(broken.is_empty(), "{broken:#?}");
 }
 
 #[test]
@@ -226,7 +276,7 @@ fn a_silent_module_is_never_configured() {
     );
     let (answer, writes) = &results[0];
     let text = answer.outcome.as_ref().unwrap_err().to_string();
-    assert!(text.contains("ReadMask"), "{text}");
+    assert!(text.contains("read the enabled inputs"), "{text}");
     assert_eq!((*writes, answer.command), (0, mask));
 }
 
@@ -290,8 +340,11 @@ fn rate_and_checksum_change_with_init_grounded_only() {
     ];
     let results = exchanged(open, false, &changes);
     for (answer, writes) in &results[..2] {
-        let text = answer.outcome.as_ref().unwrap_err().to_string();
-        assert!(text.contains(&ReplyError::Refused.to_string()), "{text}");
+        let reason = ReplyError::Refused;
+        assert!(
+            matches!(&answer.outcome, Err(LineError { failure: Failure::Reply(it), .. }) if *it == reason),
+            "{answer:?}"
+        );
         assert_eq!(*writes, 0);
     }
     assert_eq!(

@@ -47,14 +47,14 @@ impl Served {
             }
         };
         std::thread::spawn(move || std::io::copy(&mut told, &mut std::io::sink()));
-        let password = after(&text, "log in as engineer with ", ' ').unwrap();
+        let code = after(&text, "set-up code ", ',').unwrap();
         let mut served = Self {
             process,
             address,
             token: String::new(),
         };
-        let login = json!({"user": "engineer", "password": password});
-        let (status, session) = served.post("/api/login", &login);
+        let engineer = json!({"code": code, "user": "engineer", "password": "of these tests"});
+        let (status, session) = served.post("/api/setup", &engineer);
         assert_eq!(status, 200, "{session}");
         served.token = session["token"].as_str().unwrap().to_owned();
         served
@@ -132,7 +132,7 @@ impl Served {
         assert_eq!(landed, parts, "{view}");
     }
 
-    /// Waits until the history cannot be written; the machine is safe and a clear is refused with the reason.
+    /// Waits until the history cannot be written: the alarm names `reason`, and a clear is refused with the next step.
     pub fn until_history_lost(&self, reason: &str) {
         let lost = |view: &Value| {
             let alarms = view["alarms"].as_array().unwrap();
@@ -146,7 +146,7 @@ impl Served {
             "{text}"
         );
         let why = self.refused(&json!({"order": "clear"}));
-        assert!(why.contains(reason), "{why}");
+        assert!(why.contains("history file writable"), "{why}");
     }
 
     /// Clears, resets and starts once the history is written again.
@@ -186,11 +186,11 @@ fn the_page_starts_one_lot_after_another() {
         (&json!(false), &json!(true))
     );
     let why = served.refused(&json!({"order": "start"}));
-    assert!(why.contains("start is possible in Idle"), "{why}");
+    assert!(why.contains("reset first"), "{why}");
     served.order(&json!({"order": "reset"}));
     served.until_state("Idle");
     let why = served.refused(&json!({"order": "start"}));
-    assert!(why.contains("no lot is under way"), "{why}");
+    assert!(why.contains("choose a lot on the page Lots first"), "{why}");
 
     served.start_lot("A", 2);
     served.until("under way", |view| {
@@ -198,7 +198,7 @@ fn the_page_starts_one_lot_after_another() {
     });
     served.until_state("Execute");
     let why = served.refused(&json!({"order": "start", "lot": "B", "recipe": RECIPE}));
-    assert!(why.contains("stop it first"), "{why}");
+    assert!(why.contains("stop first"), "{why}");
     served.until_complete("A", 2);
     served.until_state("Complete");
     served.start_lot("B", 1);
@@ -273,7 +273,7 @@ fn after_an_alarm_the_lot_continues_and_closes() {
     assert_eq!(view["alarms"][0]["code"], "part_dropped", "{view}");
     let other = json!({"order": "start", "lot": "B", "recipe": RECIPE, "count": 1});
     let why = served.refused(&other);
-    assert!(why.contains("clear it first"), "{why}");
+    assert!(why.contains("clear the alarm first"), "{why}");
     served.order(&json!({"order": "clear"}));
     served.until_state("Stopped");
     served.order(&json!({"order": "reset"}));

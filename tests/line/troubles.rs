@@ -138,9 +138,23 @@ fn a_silent_module_is_named_with_its_command() {
         said.with_status(3);
         let alarms = workshop.texts("SELECT text FROM alarm");
         assert_eq!(alarms.len(), 1, "{alarms:?}");
-        for part in [line, address, "ReadPort"] {
+        for part in [line, address, "read the digital channels"] {
             assert!(alarms[0].contains(part), "{part} is not named: {alarms:?}");
         }
+    }
+}
+
+#[test]
+fn a_tripped_board_is_named_whenever_it_trips() {
+    for second in [23, 29, 31] {
+        let fault = format!("watchdog_trip=board_do@{second}");
+        let (workshop, said) = strike(&format!("tripped-{second}"), &fault);
+        said.with_status(3);
+        let alarms = workshop.texts("SELECT text FROM alarm");
+        assert!(
+            alarms[0].contains("its host watchdog has tripped"),
+            "{alarms:?}"
+        );
     }
 }
 
@@ -168,10 +182,10 @@ fn a_fault_that_is_none_is_refused() {
 
 #[test]
 fn the_fault_table_matches_the_list_of_the_rig() {
-    let listed = Workshop::new("fault-list")
-        .run("sim --faults")
-        .with_status(0)
-        .stdout;
+    let workshop = Workshop::empty("fault-list");
+    // An empty folder `config`: the list of faults needs no configuration.
+    std::fs::create_dir(workshop.folder.join("config")).unwrap();
+    let listed = workshop.run("sim --faults").with_status(0).stdout;
     for fault in table().iter().flat_map(|trouble| each(trouble.fault)) {
         let name = fault.split('=').next().unwrap_or_default();
         assert!(

@@ -13,11 +13,16 @@ const BOUNDED: &[(&str, usize)] = &[
     ("docs/operating.md", 8192),
     ("docs/operating.zh.md", 8192),
     ("docs/commissioning.md", 8192),
+    ("docs/bus.md", 8192),
     ("docs/installing.md", 8192),
+    ("docs/bench.md", 6144),
+    ("docs/instruments.md", 6144),
     ("docs/measuring.md", 12_288),
     ("docs/integrating.md", 8192),
     ("docs/extending.md", 6144),
     ("docs/limits.md", 6144),
+    ("docs/prompts.md", 4096),
+    ("docs/serials.md", 6144),
 ];
 
 /// Documents without a length limit.

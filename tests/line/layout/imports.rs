@@ -6,11 +6,12 @@ use super::tree::{Source, assert_none, files, has_word, rust_files};
 const PURE: &[(&str, &[&str])] = &[
     ("units", &["serde"]),
     ("dcon", &["thiserror"]),
+    ("scpi", &["serde", "thiserror", "units"]),
     (
         "lpm",
         &["serde", "serde_json", "thiserror", "toml", "units"],
     ),
-    ("quality", &["serde", "statrs", "thiserror"]),
+    ("quality", &["serde", "statrs", "thiserror", "utoipa"]),
     (
         "machine",
         &[
@@ -23,11 +24,18 @@ const PURE: &[(&str, &[&str])] = &[
             "thiserror",
             "toml",
             "units",
+            "utoipa",
         ],
     ),
     (
         "texts",
-        &["fluent-bundle", "fluent-syntax", "serde", "unic-langid"],
+        &[
+            "fluent-bundle",
+            "fluent-syntax",
+            "serde",
+            "unic-langid",
+            "utoipa",
+        ],
     ),
 ];
 
@@ -38,6 +46,8 @@ const REAL_TIME: &[(&str, &[&str])] = &[
         &[
             "dcon",
             "rustix",
+            "scpi",
+            "texts",
             "thiserror",
             "tokio",
             "tokio-serial",
@@ -64,7 +74,7 @@ const MACHINE: &[(&str, &[&str])] = &[
         "station",
         &["dut", "guard", "handling", "instrument", "rig"],
     ),
-    ("view", &["dut"]),
+    ("view", &["dut", "handling", "station"]),
 ];
 
 #[test]

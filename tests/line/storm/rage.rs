@@ -9,7 +9,7 @@
 //! - a failure must name line, address and command (else *nameless*);
 //! - every request must be answered within [`ANSWER_TIMEOUT`] of rig time (else it *hangs*).
 
-use bus::{Answer, LineError, LineSettings, Pace, Request};
+use bus::{Answer, Failure, LineError, LineSettings, Pace, Request};
 use dcon::{
     Address, AnalogIn, AnalogOut, Channel, Command, Common, Counter, DataFormat, Digital,
     InputForm, Level, OutputForm, OutputWord, Reply, ReplyError, TypeCode, UpTo, Value,
@@ -229,8 +229,8 @@ impl Host {
     /// Clears the tripped watchdog of a module.
     fn heed(&mut self, answer: &Answer) {
         if let (
-            Err(LineError::Reply {
-                reason: ReplyError::Ignored,
+            Err(LineError {
+                failure: Failure::Reply(ReplyError::Ignored),
                 ..
             }),
             Some(address),
@@ -272,31 +272,31 @@ fn judge(answer: &Answer, ticket: u64, line: &FingerprintLine, weather: &mut Wea
 }
 
 fn kind(error: &LineError) -> &'static str {
-    match error {
-        LineError::TimeOut { .. } => "no whole reply in time",
-        LineError::Reply {
-            reason: ReplyError::Ignored,
-            ..
-        } => "ignored: watchdog tripped",
-        LineError::Reply {
-            reason: ReplyError::Refused,
-            ..
-        } => "refused",
-        LineError::Reply { .. } => "damaged reply",
-        LineError::Echo { .. } => "echo",
-        LineError::SecondReply { .. } => "more behind the reply",
-        LineError::NeverSilent { .. } => "line never silent",
-        LineError::PortLost { .. } => "port lost",
-        LineError::OutOfStep { .. } => "reply of unknown origin",
-        LineError::Contradicted { .. } => "another value at the second read",
+    match &error.failure {
+        Failure::TimeOut(_) => "no whole reply in time",
+        Failure::Reply(ReplyError::Ignored) => "ignored: watchdog tripped",
+        Failure::Reply(ReplyError::Refused) => "refused",
+        Failure::Reply(_) => "damaged reply",
+        Failure::Echo => "echo",
+        Failure::SecondReply => "more behind the reply",
+        Failure::NeverSilent => "line never silent",
+        Failure::PortLost(_) => "port lost",
+        Failure::OutOfStep => "reply of unknown origin",
+        Failure::Contradicted => "another value at the second read",
     }
 }
 
 fn names_itself(error: &LineError, command: &Command) -> bool {
-    let text = error.to_string();
+    let message = error.message();
+    let names = |name, value: &str| message.args().get(name) == Some(value);
+    let address = command
+        .address()
+        .map_or("**".to_owned(), |it| it.to_string());
     // A command that writes a setting reads it first, and the reading may fail.
     let mut asked = [Some(*command), command.setting()].into_iter().flatten();
-    text.contains(fingerprint::LINE) && asked.any(|it| text.contains(&it.to_string()))
+    names("line", fingerprint::LINE)
+        && names("address", &address)
+        && asked.any(|it| names("request", it.describe().code))
 }
 
 enum Found {

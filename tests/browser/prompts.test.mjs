@@ -1,0 +1,69 @@
+// Prompts and scans: a person answers, scans a part as a keyboard types, and finds it again.
+
+import assert from "node:assert/strict";
+import { appendFileSync, cpSync, mkdirSync, rmSync } from "node:fs";
+import { after, before, test } from "node:test";
+import { leave, looks, open, picture, shown, visit } from "./browser.mjs";
+import { serveIn } from "./rig.mjs";
+
+const CONFIG = "config-prompts";
+const PROMPT = `
+[[prompt]]
+name = "nest"
+when = "lot_start"
+text_en = "Change the nest"
+text_zh = "更换测试位"
+picture = "nest.png"
+choices = [
+  { name = "changed", text_en = "Changed", text_zh = "已更换" },
+  { name = "stop", text_en = "Stop the lot", text_zh = "停止批次", stops = true },
+]
+`;
+const PANEL = { width: 1024, height: 768 };
+
+let rig, browser;
+before(async () => {
+  rmSync(CONFIG, { recursive: true, force: true });
+  cpSync("config", CONFIG, { recursive: true });
+  mkdirSync(CONFIG + "/pictures");
+  cpSync(new URL("../../docs/operator.png", import.meta.url), CONFIG + "/pictures/nest.png");
+  appendFileSync(CONFIG + "/lot.toml", '\n[serial]\nsource = "wedge"\n' + PROMPT);
+  [rig, browser] = await Promise.all([serveIn(CONFIG, "prompts", "--speed", "20"), open()]);
+});
+after(async () => {
+  await browser?.close();
+  await rig?.kill();
+});
+
+test("a lot waits for an answer, then for scans", async () => {
+  const page = await visit(browser, rig, { role: "operator" });
+  const start = { order: "start", lot: "P", recipe: "resistor-390", count: 1 };
+  const status = await page.evaluate(async (order) => (await fetch("/api/orders", { method: "POST",
+    headers: { "Content-Type": "application/json" }, body: JSON.stringify(order) })).status, start);
+  assert.equal(status, 200);
+  await shown(page, "#prompt_text", "Change the nest");
+  await page.waitForFunction(() => document.getElementById("prompt_picture").naturalWidth > 0);
+  await looks(page, "prompt");
+  await page.setViewportSize(PANEL);
+  const reached = await page.evaluate(() => {
+    const box = document.querySelector("#orders .stop").getBoundingClientRect();
+    const hit = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
+    return hit?.className === "stop" && box.bottom <= innerHeight;
+  });
+  assert.ok(reached, "the prompt hides Stop");
+  await page.click("#language");
+  await shown(page, "#prompt_text", "更换测试位");
+  await page.click("#language");
+  await page.click("#prompt_choices button");
+  await page.waitForSelector("#prompt", { state: "hidden" });
+  await rig.until("the line waits for a scan", (view) => view.machine.state === "Execute" && view.machine.scans?.length === 0);
+  await page.locator("body").click({ position: { x: 5, y: 5 } });
+  await page.keyboard.type("S-17\n");
+  await picture(page, "scan");
+  await rig.until("the part is judged", (view) => view.judged === 1);
+  await page.goto(rig.url + "/#history");
+  await page.fill("#h_serial", "S-17");
+  await page.click("#h_go");
+  await shown(page, "#h_count", "1 – 1");
+  await leave(page);
+});

@@ -1,0 +1,55 @@
+//! The full storm on links to instruments: `cargo bench --bench link_storm [-- QUERIES [SEED]]`.
+//!
+//! Counts the values that reach another query, the programs that hang and the failures without a name; ends with status 1
+//! when there is one. Every fault has a probability of 1 % together, then 3 % alone.
+
+mod storm;
+
+use std::process::ExitCode;
+use storm::{WAYS, Weather, alone, every_fault, storm};
+
+/// Queries of all faults together, over all ways.
+const QUERIES: u64 = 100_000;
+
+fn main() -> ExitCode {
+    let words = std::env::args().skip(1);
+    let numbers: Vec<u64> = words.filter_map(|word| word.parse().ok()).collect();
+    let queries = numbers.first().copied().unwrap_or(QUERIES);
+    let seed = numbers.get(1).copied().unwrap_or(1);
+    let mut honest = true;
+    for way in WAYS {
+        let each = queries / WAYS.len() as u64;
+        let weather = in_virtual_time(storm(way, seed, each, &every_fault(0.01)));
+        honest &= print(&format!("all faults, {way:?}"), &weather);
+    }
+    for (way, faults) in alone(0.03) {
+        let weather = in_virtual_time(storm(way, seed, queries / 100, &faults));
+        honest &= print(&faults.join(" "), &weather);
+    }
+    ExitCode::from(u8::from(!honest))
+}
+
+fn in_virtual_time<F: Future>(what: F) -> F::Output {
+    tokio::runtime::Builder::new_current_thread()
+        .enable_time()
+        .start_paused(true)
+        .build()
+        .expect("a runtime")
+        .block_on(what)
+}
+
+fn print(name: &str, weather: &Weather) -> bool {
+    println!(
+        "{name}: {} queries, {} delivered, {} foreign (bar 0), {} hangs (bar 0), {} nameless (bar 0), {:.0} s of rig time in {:.1} s",
+        weather.queries,
+        weather.delivered,
+        weather.foreign,
+        weather.hangs,
+        weather.nameless,
+        weather.rig_s,
+        weather.wall_s,
+    );
+    println!("  failed programs: {:?}", weather.failures);
+    weather.examples.iter().for_each(|it| println!("  {it}"));
+    weather.is_honest()
+}
