@@ -86,6 +86,12 @@ test("fields refuse bad values and save good ones", async () => {
   await page.selectOption("#r_revision", String(number));
   await shown(page, "#r_fields", "4.5");
   assert.equal(await page.isVisible("#r_save"), false, "an earlier revision is read only");
+  const readAgain = page.waitForResponse((it) => it.url().includes("/api/recipes/show"));
+  await page.click("#language");
+  await readAgain;
+  await shown(page, "#r_fields", WORDS["field-decision-slow_repeats"].zh);
+  await shown(page, "#r_fields", "4.5");
+  assert.equal(await page.inputValue("#r_revision"), String(number), "another language shows the same revision");
   await leave(page);
 });
 

@@ -63,13 +63,16 @@ function showStanding() {
 let past = [];
 
 async function readPast() {
-  const members = {since: rfc3339(at("alarm_since").value), limit: 500};
+  const isNewest = newest(readPast), members = {since: rfc3339(at("alarm_since").value), limit: 500};
   at("alarm_print").href = "/api/history/report/alarms" + query({since: members.since, lang: language});
   showRanked(members.since);
   try {
-    past = (await (await ask("/api/history/alarms" + query(members))).json()).reverse();
+    const found = await (await ask("/api/history/alarms" + query(members))).json();
+    if (!isNewest()) return;
+    past = found.reverse();
     at("alarm_trouble").textContent = "";
   } catch (error) {
+    if (!isNewest()) return;
     at("alarm_trouble").textContent = error.message;
   }
   showPast();

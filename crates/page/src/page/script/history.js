@@ -26,7 +26,7 @@ async function fillLots() {
 }
 
 async function readParts() {
-  const members = filter();
+  const isNewest = newest(readParts), members = filter();
   at("export_csv").href = "/api/history/export.csv" + query(members);
   at("export_xlsx").href = "/api/history/export.xlsx" + query({...members, lang: language});
   at("h_rejudge").href = "#rejudge" + query({lot: members.lot});
@@ -36,9 +36,11 @@ async function readParts() {
     const [{parts: count}, parts] = await Promise.all([
       ask("/api/history/count" + query(members)).then((it) => it.json()),
       ask("/api/history/query" + query({...members, limit: PAGE, offset})).then((it) => it.json()), fillLots()]);
+    if (!isNewest()) return;
     showParts(parts, count);
     at("h_trouble").textContent = "";
   } catch (error) {
+    if (!isNewest()) return;
     showParts([], 0);
     at("h_trouble").textContent = error.message;
   }
@@ -71,16 +73,18 @@ PAGES.history = {enter() { makeFilter(); readParts(); }};
 const limitText = (it) => (it.low === null ? "" : "≥ " + it.low + " ") + (it.high === null ? "" : "≤ " + it.high);
 
 async function readPart() {
+  const isNewest = newest(readPart);
   const which = Object.fromEntries(new URLSearchParams(location.hash.split("?")[1]));
   at("part_title").textContent = which.lot + " / " + which.run + " / " + which.seq;
   at("part_certificate").href = "/api/history/report/certificate" + query({lot: which.lot, run: which.run, seq: which.seq, lang: language});
   at("part_certificate").hidden = which.kind !== "lot";
   try {
     const [part] = await (await ask("/api/history/show" + query(which))).json();
+    if (!isNewest()) return;
     showPart(part);
     at("part_trouble").textContent = "";
   } catch (error) {
-    at("part_trouble").textContent = error.message;
+    if (isNewest()) at("part_trouble").textContent = error.message;
   }
 }
 

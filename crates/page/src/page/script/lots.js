@@ -103,13 +103,16 @@ function showBook() {
 }
 
 async function readBook() {
+  const isNewest = newest(readBook);
   try {
-    book = await (await ask("/api/lots" + query({limit: BOOK, offset: skipped}))).json();
+    const found = await (await ask("/api/lots" + query({limit: BOOK, offset: skipped}))).json();
+    if (!isNewest()) return;
+    book = found;
     showBook();
     showWear(await (await ask("/api/wear")).json());
     showAudit(await (await ask("/api/history/orders" + query({since: dayAgo()}))).json());
   } catch (error) {
-    lotAnswer(error.message);
+    if (isNewest()) lotAnswer(error.message);
   }
 }
 

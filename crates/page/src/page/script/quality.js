@@ -29,7 +29,7 @@ async function figures(path, which) {
 }
 
 async function readQuality() {
-  const lot = at("q_lot").value, param = at("q_param").value;
+  const isNewest = newest(readQuality), lot = at("q_lot").value, param = at("q_param").value;
   at("q_print").href = "/api/history/report/chart" + query({lot, param, lang: language});
   if (!lot) {
     at("q_trouble").textContent = word("h-none");
@@ -38,12 +38,14 @@ async function readQuality() {
   const read = [
     figures("/api/history/report/chart" + query({lot, param, last: 100, lang: language}), "main figure"),
     figures("/api/history/report/lot" + query({lot, lang: language}), "figure.pareto, .figures figure"),
-    ask("/api/history/stats" + query({lot, param})).then((it) => it.json()), showStoredCycles(lot)];
+    ask("/api/history/stats" + query({lot, param})).then((it) => it.json()), storedCycles(lot)];
   const [charts, histograms, stats, cycles] = await Promise.allSettled(read);
+  if (!isNewest()) return;
   at("q_charts").replaceChildren(...(charts.value || []));
   const [paretos, classes] = [true, false].map((is) => (histograms.value || []).filter((it) => it.matches(".pareto") === is));
   at("q_paretos").replaceChildren(...paretos);
   at("q_histograms").replaceChildren(...classes);
+  at("q_stored").replaceChildren(...(cycles.value || []));
   readComparison();
   showCapability(stats.value, unitOf(param));
   const trouble = [charts, histograms, stats, cycles].find((it) => it.status === "rejected");
@@ -60,6 +62,7 @@ function showCapability(stats, unit) {
 // --- lots side by side, and a gauge study from a file ---
 
 async function readComparison() {
+  const isNewest = newest(readComparison);
   const others = Array.from(at("q_others").selectedOptions, (it) => it.value);
   const lots = [...new Set([at("q_lot").value, ...others])];
   at("q_compare_print").hidden = lots.length < 2;
@@ -69,9 +72,10 @@ async function readComparison() {
   const path = "/api/history/report/comparison" + query({param: at("q_param").value, lots: JSON.stringify(lots), lang: language});
   at("q_compare_print").href = path;
   try {
-    at("q_compared").replaceChildren(...await figures(path, "figure, table.compared"));
+    const compared = await figures(path, "figure, table.compared");
+    if (isNewest()) at("q_compared").replaceChildren(...compared);
   } catch (error) {
-    at("q_compare_trouble").textContent = error.message;
+    if (isNewest()) at("q_compare_trouble").textContent = error.message;
   }
 }
 
@@ -100,12 +104,12 @@ at("q_param").addEventListener("change", readQuality);
 
 const LAST_PARTS = 12;
 
-// Draws how the last parts of a lot overlap: one is tested while the one before it travels to its bin.
-async function showStoredCycles(lot) {
+// Returns a drawing of how the last parts of a lot overlap: one is tested while the one before it travels to its bin.
+async function storedCycles(lot) {
   const {parts: count} = await (await ask("/api/history/count" + query({lot}))).json();
   const members = {lot, limit: LAST_PARTS, offset: Math.max(0, count - LAST_PARTS)};
   const parts = (await (await ask("/api/history/query" + query(members))).json()).filter((it) => partBars(it).length);
-  at("q_stored").replaceChildren(...(parts.length ? [timeBars(parts.map((it) => [word("h-part") + " " + it.seq, partBars(it)]), word("g-stored"))] : []));
+  return parts.length ? [timeBars(parts.map((it) => [word("h-part") + " " + it.seq, partBars(it)]), word("g-stored"))] : [];
 }
 
 // --- the cycle as bars: moving actuators and tests of the last seconds ---

@@ -54,18 +54,24 @@ function showRevisions() {
 // --- reading and saving ---
 
 async function readRecipe(revision = "") {
+  const isNewest = newest(readRecipe), name = at("r_name").value;
   typed.clear();
-  [refusedField, drawnRecipe, recipeMessage] = [null, "", () => ["", false]];
+  let found = null, lines = [], message = () => ["", false];
   try {
-    recipe = await (await ask("/api/recipes/show" + query({name: at("r_name").value, revision}))).json();
-    // Without a history there are no revisions yet.
-    revisions = await ask("/api/recipes/revisions" + query({name: recipe.name})).then((it) => it.json()).catch(() => []);
+    [found, lines] = await Promise.all([
+      ask("/api/recipes/show" + query({name, revision})).then((it) => it.json()),
+      // Without a history there are no revisions yet.
+      ask("/api/recipes/revisions" + query({name})).then((it) => it.json()).catch(() => [])]);
   } catch (error) {
-    recipe = null;
-    recipeMessage = () => [error.message, true];
+    message = () => [error.message, true];
   }
+  if (!isNewest()) return;
+  [recipe, revisions, refusedField, drawnRecipe, recipeMessage] = [found, lines, null, "", message];
   showRecipe();
 }
+
+// Returns the number of the earlier revision that the page shows, "" for the newest one.
+const earlierRevision = () => (Number(at("r_revision").value) < (recipe?.newest ?? 0) ? at("r_revision").value : "");
 
 async function enterRecipes(chosen = "") {
   const first = at("r_name").value === "";
@@ -79,8 +85,8 @@ async function enterRecipes(chosen = "") {
   fillSelect(at("r_name"), all.map((it) => [it.name, it.name + (it.trouble ? " ▲" : it.approved ? "" : bracketed(word("r-not_approved")))]));
   if (chosen) at("r_name").value = chosen;
   if (first && view && all.some((it) => it.name === view.recipe)) at("r_name").value = view.recipe;
-  // Typed text survives a change of language or page.
-  if (recipe === null || typed.size === 0) await readRecipe();
+  // Typed text and an earlier revision survive a change of language or page.
+  if (recipe === null || typed.size === 0) await readRecipe(chosen ? "" : earlierRevision());
   showRecipe();
 }
 

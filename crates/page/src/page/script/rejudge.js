@@ -27,12 +27,16 @@ const proposeRecipe = () => {
 };
 
 async function rejudge() {
+  const isNewest = newest(rejudge);
   at("j_trouble").textContent = "";
   judgedAgain = null;
   try {
     const members = {lot: at("j_lot").value, recipe: at("j_recipe").value, changed: true};
-    judgedAgain = await (await ask("/api/history/rejudge" + query(members))).json();
+    const found = await (await ask("/api/history/rejudge" + query(members))).json();
+    if (!isNewest()) return;
+    judgedAgain = found;
   } catch (error) {
+    if (!isNewest()) return;
     at("j_trouble").textContent = error.message;
   }
   showRejudged();

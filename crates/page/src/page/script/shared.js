@@ -133,6 +133,15 @@ async function ask(path) {
   throw new Error(said(await reply.json(), "reason"));
 }
 
+const calls = new Map();
+
+// Counts a call of `reader`; returns a check that it is still the newest one, whose answer alone may be shown.
+function newest(reader) {
+  const call = (calls.get(reader) ?? 0) + 1;
+  calls.set(reader, call);
+  return () => calls.get(reader) === call;
+}
+
 async function post(path, body) {
   const headers = {"Content-Type": "application/json"};
   const signal = AbortSignal.timeout(5000);
