@@ -27,8 +27,8 @@ pub struct Terminal {
     rows: Rows,
     bar: ProgressBar,
     table: Table,
-    /// True once the summary of the run is printed.
-    summed_up: bool,
+    /// True once a printed summary named the cause of trouble.
+    cause_printed: bool,
 }
 
 impl Terminal {
@@ -38,13 +38,13 @@ impl Terminal {
             rows,
             bar: ProgressBar::hidden(),
             table: Table::default(),
-            summed_up: false,
+            cause_printed: false,
         }
     }
 
-    /// Prints the cause when trouble ended the run before its summary; only in JSON.
+    /// Prints the cause of trouble that no summary named, because it came before the summary or after; only in JSON.
     pub fn ended(&self, exit: &Exit) {
-        if let (Rows::Json, false, Some(cause)) = (self.rows, self.summed_up, exit.cause()) {
+        if let (Rows::Json, false, Some(cause)) = (self.rows, self.cause_printed, exit.cause()) {
             let it = serde_json::json!({"type": "trouble", "cause": cause});
             self.print(&format!("{it}\n"));
         }
@@ -61,6 +61,7 @@ impl Terminal {
             false => progress(lot.context.order.count, "{bar:30} {pos}/{len} {msg}"),
         };
         self.table = Table::default();
+        self.cause_printed = false;
     }
 
     fn judged(&mut self, judged: &Judged, lot: &LotProgress) {
@@ -109,7 +110,7 @@ impl Subscriber for Terminal {
                 if rows == Rows::Json {
                     self.print(&format!("{}\n", serde_json::json!(summary)));
                 }
-                self.summed_up = true;
+                self.cause_printed = summary.cause.is_some();
                 self.bar.finish_and_clear();
                 if rows == Rows::Table {
                     self.print(&self.table.text(summary));

@@ -1,12 +1,12 @@
 //! Reasons why a command ends, with their exit status, and the cause of exit status 3.
 //!
-//! The cause of exit status 3 of a run is
+//! An alarm ends a run in `machine/src/station/states.rs`. The cause of exit status 3 of a run is
 //!
-//! - chosen in `lot/mod.rs` and `service/mod.rs` (lost history, failed assertion), `lot/progress.rs` (the alarm, or an
-//!   order), `lib.rs` (the rig refuses the lot before it begins; `admission.rs` makes its row) and
-//!   `calibration/mod.rs` (reference parts without a calibration);
-//! - made into a row in `lot/journal.rs`;
-//! - written by `history/src/run_end.rs`.
+//! - chosen in `lot/progress.rs` (the alarm, or an order); without an alarm in `lot/mod.rs` and `service/mod.rs` (lost
+//!   history, failed assertion), `lib.rs` (the rig refuses the lot before it begins) and `calibration/mod.rs` (reference
+//!   parts without a calibration);
+//! - written as a row by `lot/journal.rs` and `history/src/run_end.rs`;
+//! - printed by `src/cli/terminal.rs` (log, `--json`) and `src/cli/lot.rs` (`lot show`).
 //!
 //! `story/mod.rs` chooses the cause of a story whose player failed; no row keeps that one.
 

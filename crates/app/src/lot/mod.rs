@@ -42,7 +42,7 @@ use super::traces::Traces;
 use bus::{LineLog, Pace};
 use cycle::{CycleLinks, Ended, Event};
 use history::HistoryError;
-use machine::station::turn::HistoryState;
+use machine::station::turn::{Ending, HistoryState};
 pub(crate) use outage::HistoryRetry;
 use outage::{Outage, history_lost};
 use recorder::Recorder;
@@ -141,7 +141,11 @@ impl LotRunner<'_> {
                 Exit::Trouble(cause)
             }
         };
-        let ended = ended.unwrap_or_else(|_| Ended::by_assertion());
+        let mut ended = ended.unwrap_or_else(|_| Ended::by_assertion());
+        if exit.cause().is_some() {
+            // A run whose last rows are lost is not complete, even if its cycle ended well.
+            ended.ending = Ending::Alarm;
+        }
         let closed = stream.close(&ended, &exit, &lines.logs).await;
         lines.finish(context.source)?;
         // A failed assertion outranks a failed close.

@@ -71,7 +71,7 @@ impl Service {
     /// Opens the rig and serves its page at `door`; the day begins with lot `first`, if given.
     ///
     /// # Errors
-    /// Fails for a faulty configuration, for a lot that the rig refuses, and when the rig cannot be built.
+    /// Fails for a faulty configuration, for a lot that the rig refuses, and when the rig cannot be opened.
     pub fn open(
         files: &Files,
         source: RigSource,
