@@ -1,12 +1,13 @@
 //! One transaction on an open port, with its turnaround, its confirmation and the resynchronisation after trouble.
 //!
-//! A late reply (one to an earlier request, which timed out) is dropped in three places:
+//! A late reply (one to an earlier request, which timed out) is dropped in four places:
 //!
 //! 1. before the request: [`Exchange::discard`] empties the input;
 //! 2. after the request: [`OutstandingReplies::could_be`] recognises a reply that may be late, and the transaction
 //!    rejects it unless [`Transaction::confirm`] proves that the module meant it;
 //! 3. while resynchronising: [`Transaction::resynchronise`] discards what arrives before the module names itself, or
-//!    before the line falls silent.
+//!    before the line falls silent;
+//! 4. after a reply: [`Transaction::rest`] finds what follows it, so that neither of the two counts.
 
 use super::exchange::{Exchange, Frame, FrameEnd, SilenceEnd};
 use super::outstanding::{OutstandingReplies, identification};

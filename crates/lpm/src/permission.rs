@@ -14,7 +14,7 @@ use super::mover::Mover;
 use super::pose::Pose;
 use super::shape::{Flaw, Shape};
 
-/// Half extent that remains of a piece thinner than the depth taken off, mm, so that no piece vanishes.
+/// Least half extent of a piece of a mover, mm: taking off the depth of [`Permission::MayTouch`] leaves a thin piece this much.
 const CORE_MM: f64 = 1e-3;
 
 /// How far beyond its margin the distance of a forbidden pair is still measured, mm.

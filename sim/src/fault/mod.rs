@@ -8,6 +8,9 @@
 //! | `upset` | modules that restart, trip, or are replaced by another product |
 //! | `port` | dead lines, ports that vanish and come back |
 //!
+//! `instrument` has the faults of SCPI instruments, which `scpi/port.rs` applies; a new one is a variant there, with its
+//! line in that file's `LIST`.
+//!
 //! Faults combine freely, and one name may appear more than once; `value` describes the form of a value. All
 //! draws come from a random stream of their own, so that adding a fault changes no other draw of the rig.
 //! `sim.toml` lists the faults of the world (mechanism, board, part).

@@ -4,7 +4,7 @@
 //! | request | reply |
 //! |---|---|
 //! | `$AA2` | `!AATTCCFF` as stored |
-//! | `$AA5` | `!AAS`, S = 1 on the first read after a reset (not I-7080) |
+//! | `$AA5` | `!AAS`, S = 1 on the first read after a reset; in the I-7080 `$AA5N` is about counter N |
 //! | `$AAF`, `$AAM`, `~AAO(name)` | read firmware, read name, write name of up to 6 characters |
 //! | `$AAI` | `!AA0` when INIT* is grounded, else `!AA1` |
 //! | `%AANNTTCCFF` | `!NN`; baud and checksum bit need INIT* and take effect at the next power-on |

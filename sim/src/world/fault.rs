@@ -1,4 +1,5 @@
-//! Faults of machine and parts, by name. A fault acts where its variant is read: mechanism, parts, sensors, magazine.
+//! Faults of machine and parts, by name. A fault acts where its variant is read: mechanism, parts,
+//! sensors, magazine, and the board (`mod.rs`).
 
 use std::path::Path;
 

@@ -24,7 +24,7 @@ pub struct Gates {
 }
 
 impl Gates {
-    /// Creates gates with their delays; the window closes `after_latch_us` after the latch.
+    /// Creates gates 0 and 1 with their delays; a window whose latch is set closes `after_latch_us` later at the latest.
     pub fn new(delay_us: [f64; 2], after_latch_us: f64) -> Self {
         Self {
             window: false,

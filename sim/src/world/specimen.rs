@@ -1,7 +1,7 @@
 //! A specimen of any kind: drawn from its lot, probed by the interface board.
 //!
-//! Only this file lists the kinds, one variant for each. A kind is a folder beside this file, with a lot that
-//! draws its parts and a part that implements [`ProbeInterface`].
+//! This file lists the kinds, one variant for each; `table.rs` reads the table of each, `mod.rs` names its folder. A kind
+//! is a folder beside this file, with a lot that draws its parts and a part that implements [`ProbeInterface`].
 
 use std::ops::{Deref, DerefMut};
 

@@ -1,4 +1,5 @@
-//! Links to SCPI instruments: carry out the moves of a [`Session`] on a stream, each until its deadline.
+//! Links to SCPI instruments: a link does on a stream what its [`Session`] wants next (open, write, ask, drain), each
+//! by a deadline.
 //!
 //! The crate [`scpi`] proves that a reply is that of its query; a link adds clock, stream and a log of the traffic.
 

@@ -2,7 +2,7 @@
 //!
 //! | answer | file |
 //! |---|---|
-//! | checks of a filter | [`checks`] |
+//! | whether the values of a filter are valid | [`checks`] |
 //! | statistics of one parameter | [`figures`] |
 //! | control charts of a parameter, or of the share of every bin | [`charts`] |
 //! | lot report, certificate, list of alarms | [`paper`] |

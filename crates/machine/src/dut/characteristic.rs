@@ -28,7 +28,7 @@ pub struct Definition {
 }
 
 /// A characteristic of one kind of device. The default methods suit a characteristic that does not depend on
-/// temperature and has no bound from stored curves.
+/// temperature and for which stored curves give no lower bound.
 pub trait KindCharacteristic {
     /// Returns the constant data of the characteristic.
     fn definition(&self) -> &'static Definition;

@@ -15,7 +15,7 @@ use units::{RigTime, Span};
 /// Progress of a test after a step.
 #[derive(Debug)]
 pub enum Progress {
-    /// The test goes on; the state is that of the runner of its stage.
+    /// The test goes on; holds the state of the runner that carries out its stage.
     Running(RunnerState),
     /// The part is judged.
     Judged,

@@ -71,7 +71,7 @@ impl Strokes {
 }
 
 impl Move {
-    /// Returns the motion in the terms of guard and drive.
+    /// Returns the motion as actuators with their target positions, as guard and drive take it.
     pub fn motion(self, strokes: &Strokes) -> Motion {
         let full = |actuator| Motion::to(actuator, strokes.of(actuator));
         let rest = |actuator| Motion::to(actuator, 0.0);

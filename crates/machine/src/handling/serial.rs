@@ -146,7 +146,8 @@ impl Serials {
     /// Takes the scan of a part that a person is about to load.
     ///
     /// # Errors
-    /// Fails when the lot takes no scans, or when the text cannot be the number of a further part.
+    /// Fails when the lot takes no scans, or when the text is no serial number for one more part: malformed,
+    /// already taken, or one scan too many.
     pub fn scan(&mut self, text: &str, ledger: &Ledger) -> Result<(), ScanRefused> {
         if self.source != Source::Wedge {
             return Err(ScanRefused::NotScanned);

@@ -7,8 +7,8 @@
 //! The sorter does not return while open fingers still hold a part, which they would drop on the next one.
 //!
 //! It releases a part only when the part's rows are durable and the previous part has passed its beam. z comes down
-//! early, during the test, once the pusher has returned. Fingers also open in homing (`recovery.rs`) and by hand
-//! (`crate::station::orders`).
+//! early, during the test, once the pusher has returned. Fingers also open before they close once more on a part
+//! that they missed (`mechanism.rs`), in homing (`recovery.rs`) and by hand (`crate::station::answers`).
 
 use super::ledger::Ledger;
 use super::moves::Move;

@@ -74,7 +74,7 @@ pub struct BusSettings {
 /// Demands of the plant on the emergency stop.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct SafetySettings {
-    /// Longest accepted time from the opening of the emergency-stop contact to the last write, ms.
+    /// Longest accepted time from the opening of the emergency-stop contact to the reply of the last command that switches an output off, ms.
     pub estop_reaction_ms: f64,
 }
 

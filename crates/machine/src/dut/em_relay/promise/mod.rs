@@ -63,7 +63,7 @@ impl Promises {
         }
     }
 
-    /// Returns the promised value, in the unit of its key.
+    /// Returns the value that the configuration promises, in the unit of the promise's key.
     pub fn promised(&self, promise: Promise) -> f64 {
         self.watched[promise.index()].promised
     }
