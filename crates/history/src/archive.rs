@@ -146,11 +146,11 @@ impl Archive {
         row.map(|row| self.part(row)).transpose().doing(DOING)
     }
 
-    /// Returns the newest calibration for each coil voltage, of the real or the simulated rig.
+    /// Returns the calibration that was stored last for each coil voltage, of the real or the simulated rig.
     pub fn calibrations(&self, simulated: bool) -> Result<Vec<CalibrationRecord>> {
         self.connection
             .prepare(
-                "SELECT max(made_at_us), due_at_us, hash, body, verified FROM calibration
+                "SELECT made_at_us, due_at_us, hash, body, verified, max(id) FROM calibration
                  WHERE body ->> 'simulated' = ?1 GROUP BY body ->> 'nominal_v'",
             )
             .and_then(|mut it| it.query_map([simulated], store::calibration)?.collect())

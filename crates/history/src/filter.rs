@@ -108,7 +108,7 @@ const COLUMNS: &str = "part.id, part.run_id, part.kind, part.seq, part.serial, p
 pub(super) fn reference_part() -> String {
     format!(
         "SELECT {COLUMNS} FROM part WHERE part.serial = ?1 AND part.kind = 'golden'
-         ORDER BY part.judged_at_us DESC LIMIT 1"
+         ORDER BY part.id DESC LIMIT 1"
     )
 }
 

@@ -128,12 +128,18 @@ pub struct ReferenceCheck {
     pub suspect_since: Option<Moment>,
 }
 
-/// SQL condition on `part` that is true for a suspect part.
+/// SQL condition on `part` that is true for a suspect part: a check after it failed, and none between the two passed.
+///
+/// Instants of one run are in order; runs are in order of their row numbers, because the clock may be set back between
+/// them.
 pub(super) const SUSPECT: &str = " AND EXISTS (SELECT 1 FROM golden_check AS failed \
     JOIN run AS checked ON checked.id = failed.run_id JOIN run AS own ON own.id = part.run_id \
-    WHERE NOT failed.passed AND part.judged_at_us > failed.suspect_since_us \
-    AND part.judged_at_us <= failed.at_us \
-    AND (own.id = checked.id OR (own.source = 'rig' AND checked.source = 'rig')))";
+    WHERE NOT failed.passed AND (part.run_id, part.judged_at_us) <= (failed.run_id, failed.at_us) \
+    AND (own.id = checked.id OR (own.source = 'rig' AND checked.source = 'rig')) \
+    AND NOT EXISTS (SELECT 1 FROM golden_check AS good JOIN run ON run.id = good.run_id \
+      WHERE good.passed AND good.id < failed.id \
+      AND (run.id = checked.id OR (run.source = 'rig' AND checked.source = 'rig')) \
+      AND (part.run_id, part.judged_at_us) <= (good.run_id, good.at_us)))";
 
 /// Stores the state of a lot, `complete` instead of `open` for one that was complete; does nothing for a lot without
 /// runs. Returns the number of changed rows.
@@ -158,9 +164,9 @@ pub(super) fn reference_check(
     tx.execute(
         "INSERT INTO golden_check (run_id, at_us, passed, text, suspect_since_us)
          SELECT own.id, ?2, ?3, ?4, CASE WHEN ?3 THEN NULL ELSE ifnull(
-           (SELECT max(good.at_us) FROM golden_check AS good JOIN run ON run.id = good.run_id
-            WHERE good.passed AND good.at_us < ?2
-              AND (run.id = own.id OR (run.source = 'rig' AND own.source = 'rig'))),
+           (SELECT good.at_us FROM golden_check AS good JOIN run ON run.id = good.run_id
+            WHERE good.passed AND (run.id = own.id OR (run.source = 'rig' AND own.source = 'rig'))
+            ORDER BY good.id DESC LIMIT 1),
            iif(own.source = 'rig', 0, own.opened_at_us)) END
          FROM run AS own WHERE own.id = ?1
            AND NOT EXISTS (SELECT 1 FROM golden_check WHERE run_id = ?1 AND at_us = ?2)",
@@ -267,7 +273,7 @@ impl Archive {
             .query_row(
                 "SELECT run.number, golden_check.at_us, passed, text, suspect_since_us
                  FROM golden_check JOIN run ON run.id = golden_check.run_id
-                 WHERE run.source = ?1 ORDER BY golden_check.at_us DESC, golden_check.id DESC LIMIT 1",
+                 WHERE run.source = ?1 ORDER BY golden_check.id DESC LIMIT 1",
                 [source(simulated)],
                 reference_check_of,
             )

@@ -141,7 +141,8 @@ impl Store {
         save(&self.connection, calibration)
     }
 
-    /// Returns the newest calibration for one coil voltage, expired or not, of the real or the simulated rig.
+    /// Returns the calibration for one coil voltage that was stored last, expired or not, of the real or the simulated
+    /// rig. Its date may be before that of an earlier one, after the clock was set back.
     pub fn latest_calibration_of(
         &self,
         simulated: bool,
@@ -151,7 +152,7 @@ impl Store {
             .query_row(
                 "SELECT made_at_us, due_at_us, hash, body, verified FROM calibration
                  WHERE body ->> 'simulated' = ?1 AND body ->> 'nominal_v' = ?2
-                 ORDER BY made_at_us DESC, id DESC LIMIT 1",
+                 ORDER BY id DESC LIMIT 1",
                 params![simulated, nominal_v],
                 calibration,
             )

@@ -57,6 +57,31 @@ fn parts_between_passed_and_failed_check_are_suspect() {
 }
 
 #[test]
+fn a_clock_set_back_hides_no_suspect_part() {
+    let file = File::new();
+    let mut store = file.store();
+    let run = |name: &str| LotRecord {
+        simulated: false,
+        ..lot(name)
+    };
+    store.begin_lot(&run("before")).unwrap();
+    store.record(&parts("before", 6)).unwrap();
+    store.record(&[check("before", 4_500_000, true)]).unwrap();
+    // The clock goes back by more than the run took: the next check fails "before" the one that passed.
+    store.begin_lot(&run("after")).unwrap();
+    store.record(&parts("after", 1)).unwrap();
+    store.record(&[check("after", 2_000_000, false)]).unwrap();
+    let expected = [("before", 5), ("before", 6), ("after", 1)];
+    assert_eq!(
+        suspects(&file),
+        expected.map(|(lot, seq)| (lot.to_owned(), seq))
+    );
+    let last = file.archive().last_reference_check(false).unwrap().unwrap();
+    assert!(!last.passed);
+    assert_eq!(last.suspect_since, Some(Moment(4_500_000)));
+}
+
+#[test]
 fn a_check_sent_again_is_one_check() {
     let file = File::new();
     let mut store = file.store();
@@ -68,7 +93,7 @@ fn a_check_sent_again_is_one_check() {
 
 #[test]
 fn failed_check_reaches_earlier_lots_on_a_rig_only() {
-    for (simulated, expected) in [(false, 4), (true, 1)] {
+    for (simulated, expected) in [(false, 4), (true, 2)] {
         let file = File::new();
         let mut store = file.store();
         for name in ["first", "second"] {

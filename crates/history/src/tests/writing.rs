@@ -352,14 +352,15 @@ fn the_latest_calibration_is_per_rig_and_coil() {
     };
     let made = |made_at_us: i64| of(made_at_us, false, 12.0);
     store.save_calibration(&made(20)).unwrap();
+    // The clock was set back.
     store.save_calibration(&made(10)).unwrap();
     // A calibration of the simulated rig, or for another coil voltage, does not take its place.
     store.save_calibration(&of(30, true, 12.0)).unwrap();
     store.save_calibration(&of(40, false, 6.0)).unwrap();
-    assert_eq!(latest(&store), Some(made(20)));
+    assert_eq!(latest(&store), Some(made(10)));
     let verified = CalibrationRecord {
         verified: true,
-        ..made(20)
+        ..made(10)
     };
     store.save_calibration(&verified).unwrap();
     assert_eq!(latest(&store), Some(verified));

@@ -2,7 +2,8 @@
 //!
 //! A name may fail five times within five minutes, all names together thirty times. Then the next try must wait until
 //! the oldest of these failures is five minutes old. A right password clears the failures of its name, and so does an
-//! engineer who unlocks it. The file keeps the failures, so that a restart clears none.
+//! engineer who unlocks it. The file keeps the failures, so that a restart clears none. After the clock was set back, a
+//! failure that lies in the future counts no more.
 
 use super::{Register, digest};
 use crate::access::error::{Doing, Result};
@@ -35,9 +36,9 @@ impl Register {
     /// Returns the instant of the `most`th-last failure that still counts; `None` with fewer. `names` is a digest, or
     /// `%` for all names.
     fn binding(&self, names: &str, most: i64, now_us: i64) -> Result<Option<i64>> {
-        let sql = "SELECT at_us FROM failure WHERE name_sha256 LIKE ?1 AND at_us > ?2 \
-                   ORDER BY at_us DESC LIMIT 1 OFFSET ?3";
-        let row = params![names, now_us - WINDOW_US, most - 1];
+        let sql = "SELECT at_us FROM failure WHERE name_sha256 LIKE ?1 AND at_us > ?2 AND at_us <= ?3 \
+                   ORDER BY at_us DESC LIMIT 1 OFFSET ?4";
+        let row = params![names, now_us - WINDOW_US, now_us, most - 1];
         let found = self.connection.query_row(sql, row, |row| row.get(0));
         found.optional().doing("counting wrong passwords")
     }

@@ -65,6 +65,20 @@ fn a_file_of_schema_1_keeps_its_people() {
 }
 
 #[test]
+fn a_clock_set_back_locks_no_name_longer() {
+    let (mut register, _folder) = fresh();
+    register.add("li", Role::Operator, "secret-12", 0).unwrap();
+    for _ in 0..5 {
+        register.log_in("li", "secret-13", HOUR_US).unwrap();
+    }
+    let try_at = |register: &mut Register, at_us| register.log_in("li", "secret-12", at_us);
+    let locked = try_at(&mut register, HOUR_US).unwrap();
+    assert!(matches!(locked, Login::Wait(_)), "{locked:?}");
+    let set_back = try_at(&mut register, 0).unwrap();
+    assert!(matches!(set_back, Login::Right(_)), "{set_back:?}");
+}
+
+#[test]
 fn wrong_names_and_wrong_passwords_are_wrong() {
     let (mut register, _folder) = fresh();
     register.add("li", Role::Operator, "secret-12", 0).unwrap();
