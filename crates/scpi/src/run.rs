@@ -109,12 +109,17 @@ impl Run {
     ) -> Option<Result<Vec<Reply>, Failure>> {
         let at = std::mem::replace(&mut self.at, At::End);
         let next = match (at, outcome) {
-            (At::Why(failure), outcome) => Err(reason(outcome).unwrap_or(failure)),
+            (At::Why(timeout), outcome) => match outcome.and_then(|raw| entry(raw.as_ref())) {
+                Ok(entry) if refuses(entry.class()) => self.after_entry(settings, 0, entry),
+                Ok(_) | Err(_) => Err(timeout),
+            },
             (At::Step { number, repeated }, outcome) => {
                 self.after_step(number, outcome, is_copy && !repeated)
             }
             (_, Err(failure)) => Err(failure),
-            (At::Errors(count), Ok(raw)) => self.after_error(settings, count, raw.as_ref()),
+            (At::Errors(count), Ok(raw)) => {
+                entry(raw.as_ref()).and_then(|it| self.after_entry(settings, count, it))
+            }
             (At::Events, Ok(raw)) => after_events(raw.as_ref()),
             (At::Echo, Ok(raw)) => after_echo(settings, nonce, raw.as_ref()),
             (At::Mark | At::End, Ok(_)) => Ok(At::End),
@@ -177,13 +182,13 @@ impl Run {
         })
     }
 
-    fn after_error(
+    /// Takes an entry of the error queue that `count` others precede.
+    fn after_entry(
         &mut self,
         settings: &LinkSettings,
         count: u8,
-        raw: Option<&Raw>,
+        entry: ErrorEntry,
     ) -> Result<At, Failure> {
-        let entry = entry(raw)?;
         let failure = match entry.class() {
             ErrorClass::None => return Ok(At::Events),
             ErrorClass::Overflow => return Err(Failure::QueueOverflow),
@@ -237,14 +242,12 @@ fn entry(raw: Option<&Raw>) -> Result<ErrorEntry, Failure> {
         .map_err(|reason| malformed("SYST:ERR?", reason))
 }
 
-/// Returns why a query has no reply, when the instrument says that it does not know it.
-fn reason(outcome: Result<Option<Raw>, Failure>) -> Option<Failure> {
-    let entry = entry(outcome.ok()?.as_ref()).ok()?;
-    match entry.class() {
-        ErrorClass::Command | ErrorClass::Execution => Some(instrument(entry)),
-        ErrorClass::Local => Some(Failure::Local { text: entry.text }),
-        ErrorClass::Overflow => Some(Failure::QueueOverflow),
-        ErrorClass::None | ErrorClass::Device | ErrorClass::Query | ErrorClass::Other => None,
+/// Returns true when an error of this class explains why a query has no reply: the instrument did not carry it out.
+fn refuses(class: ErrorClass) -> bool {
+    match class {
+        ErrorClass::Command | ErrorClass::Execution => true,
+        ErrorClass::Local | ErrorClass::Overflow => true,
+        ErrorClass::None | ErrorClass::Device | ErrorClass::Query | ErrorClass::Other => false,
     }
 }
 

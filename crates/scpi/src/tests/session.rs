@@ -119,8 +119,16 @@ fn a_time_out_leaves_doubt_and_returns_at_once() {
 fn an_unknown_query_is_named_by_the_instrument() {
     let mut bench = Bench::new();
     bench.run().unwrap();
-    (bench.value, bench.errors) = (Err(late()), vec!["-113,\"Undefined header\""]);
-    assert_eq!(bench.run().unwrap_err().code(), "instrument");
+    let queue = vec![
+        "-420,\"Query UNTERMINATED\"",
+        "-113,\"Undefined header\"",
+    ];
+    (bench.value, bench.errors) = (Err(late()), queue);
+    let (code, text) = (-113, "Undefined header".to_owned());
+    assert_eq!(bench.run(), Err(Failure::Instrument { code, text }));
+    bench.value = Ok("1.5");
+    let next = bench.run();
+    assert_eq!(next, Ok(vec![Reply::Number(1.5)]), "no error is left");
 }
 
 #[test]
