@@ -99,11 +99,11 @@ impl Run {
         }
     }
 
-    /// Takes the end of a move; returns the result at the end of the run.
+    /// Takes the end of a move; returns the result at the end of the run. `echo` is the reply that proves the step.
     pub(crate) fn advance(
         &mut self,
         settings: &LinkSettings,
-        nonce: &mut Nonce,
+        echo: &str,
         outcome: Result<Option<Raw>, Failure>,
         is_copy: bool,
     ) -> Option<Result<Vec<Reply>, Failure>> {
@@ -121,7 +121,7 @@ impl Run {
                 entry(raw.as_ref()).and_then(|it| self.after_entry(settings, count, it))
             }
             (At::Events, Ok(raw)) => after_events(raw.as_ref()),
-            (At::Echo, Ok(raw)) => after_echo(settings, nonce, raw.as_ref()),
+            (At::Echo, Ok(raw)) => after_echo(settings, echo, raw.as_ref()),
             (At::Mark | At::End, Ok(_)) => Ok(At::End),
         };
         match next {
@@ -209,7 +209,7 @@ pub(crate) fn events(raw: Option<&Raw>) -> Result<StandardEvents, Failure> {
     let line = raw.map_or(Err(ReplyError::Empty), Raw::text);
     let events = line.and_then(|line| {
         let found = line.to_owned();
-        let events = line.trim_start_matches('+').parse().map(StandardEvents);
+        let events = line.parse().map(StandardEvents);
         events.map_err(|_| ReplyError::NotNumber { found })
     });
     events.map_err(|reason| malformed("*ESR?", reason))
@@ -287,27 +287,18 @@ fn same(found: &str, expected: &str) -> bool {
     }
 }
 
-/// Compares the echo; then the next number is left, so that no later echo equals this one.
-fn after_echo(
-    settings: &LinkSettings,
-    nonce: &mut Nonce,
-    raw: Option<&Raw>,
-) -> Result<At, Failure> {
+/// Compares the echo; a number is left anew, so that no later echo equals this one.
+fn after_echo(settings: &LinkSettings, echo: &str, raw: Option<&Raw>) -> Result<At, Failure> {
     let line = raw.and_then(|it| it.text().ok()).unwrap_or_default();
-    match (settings.echo, line.trim_start_matches('+').parse::<u8>()) {
-        (Echo::Identity, _) if line.matches(',').count() >= 2 => Ok(At::End),
-        (Echo::Ese, Ok(found)) if found == nonce.current() => {
-            nonce.advance();
-            Ok(At::Mark)
-        }
-        (Echo::Ese | Echo::Identity, _) => {
-            let command = match settings.echo {
-                Echo::Ese => "*ESE?",
-                Echo::Identity => "*IDN?",
-            };
-            Err(Failure::OutOfStep {
-                command: command.to_owned(),
-            })
-        }
+    match (same(line, echo), settings.echo) {
+        (true, Echo::Ese) => Ok(At::Mark),
+        (true, Echo::Identity) => Ok(At::End),
+        (false, Echo::Ese) => Err(Failure::OutOfStep {
+            command: "*ESE?".to_owned(),
+        }),
+        (false, Echo::Identity) => Err(Failure::Identity {
+            found: line.to_owned(),
+            expected: format!("{echo:?}"),
+        }),
     }
 }

@@ -416,7 +416,14 @@ impl Session {
         if let Ok(Some(raw)) = &outcome {
             self.previous = Some(raw.clone());
         }
-        let result = run.advance(&self.settings, &mut self.nonce, outcome, copy);
+        let echo = match self.settings.echo {
+            Echo::Ese => self.nonce.current().to_string(),
+            Echo::Identity => self.bound.clone().unwrap_or_default(),
+        };
+        let result = run.advance(&self.settings, &echo, outcome, copy);
+        if run.at == At::Mark {
+            self.nonce.advance();
+        }
         self.power_reported |= matches!(result, Some(Err(Failure::PowerCycled)));
         debug_assert!(result.is_none() || run.at == At::End, "a result ends a run");
         result

@@ -1,6 +1,6 @@
 //! Tests of the state machine alone: its moves against scripted ends.
 
-use crate::{Failure, Form, LinkSettings, Move, Program, Raw, Reply, Session, Step};
+use crate::{Echo, Failure, Form, LinkSettings, Move, Program, Raw, Reply, Session, Step};
 use units::Span;
 
 const IDENTITY: &str = "MAKER,MODEL,1,1";
@@ -11,6 +11,7 @@ struct Bench {
     ese: String,
     events: &'static str,
     errors: Vec<&'static str>,
+    identity: &'static str,
     /// Reply to every other query.
     value: Result<&'static str, Failure>,
     sent: Vec<String>,
@@ -18,11 +19,16 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
+        Self::with_echo(Echo::Ese)
+    }
+
+    fn with_echo(echo: Echo) -> Self {
         let set_up = Program {
             steps: vec![Step::send("SETUP")],
         };
         let settings = LinkSettings {
             set_up,
+            echo,
             ..LinkSettings::default()
         };
         Self {
@@ -30,6 +36,7 @@ impl Bench {
             ese: "0".to_owned(),
             events: "128",
             errors: Vec::new(),
+            identity: IDENTITY,
             value: Ok("1.5"),
             sent: Vec::new(),
         }
@@ -70,7 +77,7 @@ impl Bench {
         let text = match command {
             "*ESE?" => self.ese.clone(),
             "*ESR?" => std::mem::replace(&mut self.events, "0").to_owned(),
-            "*IDN?" => IDENTITY.to_owned(),
+            "*IDN?" => self.identity.to_owned(),
             "SYST:ERR?" => self.errors.pop().unwrap_or("0,\"No error\"").to_owned(),
             _ => self.value.clone()?.to_owned(),
         };
@@ -178,6 +185,15 @@ fn the_number_of_another_program_proves_nothing() {
     bench.run().unwrap();
     bench.ese = "128".to_owned();
     assert_eq!(bench.run().unwrap_err().code(), "out_of_step");
+}
+
+#[test]
+fn another_identity_is_no_proof() {
+    let mut bench = Bench::with_echo(Echo::Identity);
+    bench.run().unwrap();
+    assert_eq!(bench.run(), Ok(vec![Reply::Number(1.5)]));
+    bench.identity = "MAKER,MODEL,2,1";
+    assert_eq!(bench.run().unwrap_err().code(), "wrong_identity");
 }
 
 #[test]
