@@ -62,18 +62,7 @@ impl Run {
     pub(crate) fn next_move(&self, settings: &LinkSettings, nonce: &Nonce) -> Move {
         let limit = settings.limit;
         let ask = |command: &str, form, limit: Span| {
-            let (bytes, tail) = settings
-                .framing
-                .proven(settings.framing.ask(command, limit));
-            let command = command.to_owned();
-            Move::Ask(Question {
-                command,
-                bytes,
-                form,
-                limit,
-                tail,
-                strict: true,
-            })
+            Move::Ask(Question::new(settings.framing, command, form, limit))
         };
         let send = |command: &str| {
             let (bytes, tail) = settings.framing.proven(settings.framing.send(command));

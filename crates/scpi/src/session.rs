@@ -2,6 +2,7 @@
 //! that ended. Every move has a time limit, and the number of moves of a program is bounded.
 
 use super::failure::Failure;
+use super::framing::Framing;
 use super::nonce::Nonce;
 use super::program::Program;
 use super::reply::{Form, Raw, Reply};
@@ -58,6 +59,21 @@ pub struct Question {
     pub tail: Option<String>,
     /// True when bytes before the query or behind the reply are a failure; false while they are discarded.
     pub strict: bool,
+}
+
+impl Question {
+    /// Returns a query whose reply must come alone, and, behind an adapter, with the proof of its address.
+    pub fn new(framing: Framing, command: &str, form: Form, limit: Span) -> Self {
+        let (bytes, tail) = framing.proven(framing.ask(command, limit));
+        Self {
+            command: command.to_owned(),
+            bytes,
+            form,
+            limit,
+            tail,
+            strict: true,
+        }
+    }
 }
 
 /// Place in a resynchronisation.

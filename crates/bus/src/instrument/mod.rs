@@ -111,16 +111,7 @@ impl Link {
             let (bytes, tail) = framing.proven(framing.send(command));
             return self.send(bytes, limit, tail.as_deref()).await;
         };
-        let (bytes, tail) = framing.proven(framing.ask(command, limit));
-        let command = command.to_owned();
-        let question = Question {
-            command,
-            bytes,
-            form,
-            limit,
-            tail,
-            strict: true,
-        };
+        let question = Question::new(framing, command, form, limit);
         self.ask(&question).await.map(Some)
     }
 
