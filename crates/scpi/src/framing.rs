@@ -7,15 +7,13 @@ use units::Span;
 /// Longest time that an adapter waits for an instrument, milliseconds.
 const ADAPTER_LIMIT_MS: u64 = 3000;
 
-/// End of a message on a raw stream.
+/// End of a message to the instrument on a raw stream; each reply ends with a line feed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Terminator {
     /// Line feed.
     #[default]
     Lf,
-    /// Carriage return.
-    Cr,
     /// Carriage return and line feed.
     Crlf,
 }
@@ -24,7 +22,6 @@ impl Terminator {
     const fn bytes(self) -> &'static [u8] {
         match self {
             Self::Lf => b"\n",
-            Self::Cr => b"\r",
             Self::Crlf => b"\r\n",
         }
     }

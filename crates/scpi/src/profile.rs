@@ -28,7 +28,7 @@ pub struct Profile {
     /// Proof that replies and queries are in step.
     #[serde(default)]
     pub echo: Echo,
-    /// End of a message on a raw stream.
+    /// End of a command on a raw stream.
     #[serde(default)]
     pub terminator: Terminator,
     /// Flow control of a serial port.
