@@ -154,7 +154,7 @@ impl Link {
         }
         let Some(tail) = tail else {
             let deadline = self.pace.now() + limit;
-            self.write(&bytes, deadline, limit).await?;
+            self.write(&bytes, deadline).await?;
             return Ok(None);
         };
         let question = Question {
@@ -179,8 +179,7 @@ impl Link {
         let deadline = self.pace.now() + question.limit;
         if !question.bytes.is_empty() {
             self.reader.clear();
-            self.write(&question.bytes, deadline, question.limit)
-                .await?;
+            self.write(&question.bytes, deadline).await?;
         }
         let malformed = |reason| Failure::Malformed {
             command: command(),
@@ -236,15 +235,14 @@ impl Link {
         }
     }
 
-    async fn write(&mut self, bytes: &[u8], deadline: RigTime, limit: Span) -> Result<(), Failure> {
+    /// Writes a message; one that leaves in part ends the connection, so that nothing is added to it.
+    async fn write(&mut self, bytes: &[u8], deadline: RigTime) -> Result<(), Failure> {
         self.note(Direction::Sent, bytes);
         let stream = self.stream.as_mut().ok_or_else(closed)?;
         let written = tokio::select! {
             biased;
             written = stream.write_all(bytes) => written,
-            () = self.timer.until(deadline) => {
-                return Err(Failure::Timeout { command: command(bytes), limit });
-            }
+            () = self.timer.until(deadline) => Err(io::ErrorKind::TimedOut.into()),
         };
         written.map_err(|error| self.broken(&error))
     }
