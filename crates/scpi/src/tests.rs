@@ -232,7 +232,7 @@ fn an_adapter_gets_its_address_with_every_message() {
     let (bytes, proof) = adapter.proven(adapter.ask("*IDN?", Span::ms(500)));
     assert_eq!(
         bytes,
-        b"++addr 9\n*IDN?\n++read_tmo_ms 500\n++read eoi\n++addr\n"
+        b"++addr 9\n*IDN?\n++read_tmo_ms 450\n++read eoi\n++addr\n"
     );
     assert_eq!(proof.as_deref(), Some("9"));
     assert!(
