@@ -130,8 +130,16 @@ fn sentence(failure: &Failure) -> String {
 fn text(reply: &Reply) -> String {
     match reply {
         Reply::Line(line) | Reply::Text(line) => line.clone(),
-        Reply::Number(number) => number.to_string(),
+        Reply::Number(number) => decimal(*number),
         Reply::Numbers(numbers) => format!("{} numbers", numbers.len()),
         Reply::Block(bytes) => format!("a block of {} bytes", bytes.len()),
+    }
+}
+
+/// Returns a number for a person to read: a small or large one with its power of ten.
+fn decimal(value: f64) -> String {
+    match value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
+        true => value.to_string(),
+        false => format!("{value:e}"),
     }
 }

@@ -166,10 +166,27 @@ fn send_shows_reply_and_error_queue() {
         said.stdout.contains("error -113: Undefined header"),
         "{said:?}"
     );
-    let said = bench.run("send", "smu", "NONSENSE? --timeout 200 --json");
-    let object = &said.with_status(1).objects()[0];
-    assert_eq!(object["failure"]["code"], "timeout", "{object}");
-    assert_eq!(object["errors"][0]["code"], -113, "{object}");
+    for name in ["smu", "ac_source"] {
+        let said = bench.run("send", name, "NONSENSE? --timeout 500 --json");
+        let object = &said.with_status(1).objects()[0];
+        assert_eq!(object["failure"]["code"], "timeout", "{object}");
+        assert_eq!(object["errors"][0]["code"], -113, "{object}");
+    }
+    let said = bench.run("send", "rigol", ":WAV:PRE?").with_status(0);
+    assert!(said.stdout.contains("  10 numbers\n"), "{said:?}");
+}
+
+#[test]
+fn a_command_that_nobody_takes_is_no_success() {
+    let bench = Bench::new("instrument_absent");
+    let (adapter, _) = bench.link("ac_source").rsplit_once(':').unwrap();
+    let mut send = bench.shop.command("instrument send --timeout 300 --link");
+    let sent = send.args([&format!("{adapter}:10"), "*CLS"]).output();
+    let said = sent.unwrap();
+    let stdout = String::from_utf8(said.stdout).unwrap();
+    assert_eq!(said.status.code(), Some(1), "{stdout}");
+    let expected = "> *CLS\n  no error queue: SYST:ERR?: no reply within 300 ms.\n";
+    assert_eq!(stdout, expected);
 }
 
 #[test]
