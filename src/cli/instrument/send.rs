@@ -77,7 +77,7 @@ pub(super) async fn run(folder: &Folder, args: &SendArgs) -> anyhow::Result<Exit
         let mut rows = transcript(&args.command, &outcome, taken_ms);
         let queue = errors.iter();
         rows.extend(queue.map(|it| format!("  error {}: {}", it.code, it.text)));
-        rows.extend(unread.map(|it| format!("  no error queue: {}", sentence(&it))));
+        rows.extend(unread.map(|it| format!("  the error queue cannot be read: {}", sentence(&it))));
         rows.join("\n") + "\n"
     })?;
     Ok(if is_good {
