@@ -97,7 +97,7 @@ pub fn run(folder: &Folder, args: &InstrumentArgs) -> anyhow::Result<Exit> {
         .enable_all()
         .build();
     let runtime = runtime.context("starting the runtime")?;
-    let folder = profiles(folder);
+    let folder = profiles(folder)?;
     let done = runtime.block_on(async {
         match &args.command {
             InstrumentCommand::Scan(args) => scan::run(&folder, args).await,
@@ -110,11 +110,12 @@ pub fn run(folder: &Folder, args: &InstrumentArgs) -> anyhow::Result<Exit> {
 }
 
 /// Returns the folder that has profiles: that of the plant, or, when it has none, the profiles of the program.
-fn profiles(folder: &Folder) -> Folder {
-    match instrument_names(folder).is_empty() {
+fn profiles(folder: &Folder) -> Result<Folder, ConfigError> {
+    folder.check_exists()?;
+    Ok(match instrument_names(folder).is_empty() {
         true => Folder::built_in(),
         false => folder.clone(),
-    }
+    })
 }
 
 fn profile(folder: &Folder, name: Option<&String>) -> Result<Option<Profile>, ConfigError> {

@@ -123,6 +123,9 @@ fn a_wrong_profile_or_argument_is_named() {
         (1, &"wrong_identity".into()),
         "{said:?}"
     );
+    let words = "--profile smu-2450 --config nowhere";
+    let said = bench.run("check", "smu", words).with_status(2);
+    assert!(said.stderr.contains("nowhere"), "{said:?}");
     let wrong = [
         (
             "current_at_level",
