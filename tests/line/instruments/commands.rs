@@ -114,6 +114,19 @@ fn every_profile_passes_its_check_with_its_programs() {
 }
 
 #[test]
+fn an_interrupted_check_makes_the_instrument_safe() {
+    let bench = Bench::new("instrument_interrupted");
+    let ramp = "ramp,from_v=1,to_v=9,step_v=1,dwell_s=1,points=9";
+    let line = format!(
+        "instrument check --link {} --profile smu-2450 --run {ramp} --json",
+        bench.link("smu")
+    );
+    let said = bench.shop.run_interrupted("4", &line).with_status(4);
+    let last = &said.objects().pop().unwrap();
+    assert_eq!((&last["check"], &last["ok"]), (&"safe".into(), &true.into()));
+}
+
+#[test]
 fn a_wrong_profile_or_argument_is_named() {
     let bench = Bench::new("instrument_refused");
     let said = bench.run("check", "smu", "--profile dmm-34461a --json");
