@@ -1,6 +1,6 @@
 //! `relayrig instrument scan`: asks links for the identity of their instrument.
 
-use super::LinkArgs;
+use super::{LinkArgs, sentence};
 use crate::cli::output::{Fixed, latency_ms, listing, print};
 use anyhow::bail;
 use app::controls::Interrupts;
@@ -96,11 +96,16 @@ async fn scan(folder: &Folder, args: &ScanArgs, found: &mut Vec<Found>) {
                     profiles,
                 });
             }
-            Err(Failure::Disconnected { reason }) => {
-                tracing::debug!("{link}: {reason}");
-                unreachable = Some(link.transport);
+            Err(failure) => {
+                // A port of a host is a guess, a link is not.
+                match args.link.contains(&link) {
+                    true => tracing::warn!("{link}: {}", sentence(&failure)),
+                    false => tracing::debug!("{link}: {}", sentence(&failure)),
+                }
+                if let Failure::Disconnected { .. } = failure {
+                    unreachable = Some(link.transport);
+                }
             }
-            Err(failure) => tracing::debug!("{link}: {failure}"),
         }
     }
     bar.finish_and_clear();

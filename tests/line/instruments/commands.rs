@@ -169,7 +169,9 @@ fn scan_names_every_instrument_and_its_profile() {
         assert_eq!(it["profiles"], serde_json::json!([profile]), "{it}");
     }
     let nobody = bench.shop.run("instrument scan --link tcp:127.0.0.1:1");
-    assert_eq!(nobody.with_status(1).stdout, "no instrument answered\n");
+    let nobody = nobody.with_status(1);
+    assert_eq!(nobody.stdout, "no instrument answered\n");
+    assert!(nobody.stderr.contains("tcp:127.0.0.1:1: connection refused"), "{nobody}");
 }
 
 #[test]
