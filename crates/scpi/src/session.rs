@@ -171,6 +171,11 @@ impl Session {
         self.bound.as_deref()
     }
 
+    /// Makes the next program begin with a resynchronisation, after a failure outside a program.
+    pub fn doubt(&mut self) {
+        self.in_step = false;
+    }
+
     /// Begins a program. One that was abandoned leaves doubt behind.
     pub fn start(&mut self, program: Program) -> Move {
         self.in_step &= matches!(self.doing, Doing::Nothing);

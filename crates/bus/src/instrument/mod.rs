@@ -90,13 +90,25 @@ impl Link {
     /// for tools that show what an instrument does by itself. Without `form` there is no reply.
     ///
     /// # Errors
-    /// Fails as [`Link::run`] does.
+    /// Fails as [`Link::run`] does; then the next program resynchronises first.
     pub async fn exchange(
         &mut self,
         command: &str,
         form: Option<Form>,
     ) -> Result<Option<Raw>, Failure> {
         self.programs += 1;
+        let outcome = self.unproven(command, form).await;
+        if outcome.is_err() {
+            self.session.doubt();
+        }
+        outcome
+    }
+
+    async fn unproven(
+        &mut self,
+        command: &str,
+        form: Option<Form>,
+    ) -> Result<Option<Raw>, Failure> {
         let (framing, limit) = (
             self.session.settings().framing,
             self.session.settings().limit,

@@ -123,6 +123,15 @@ fn a_time_out_leaves_doubt_and_returns_at_once() {
 }
 
 #[test]
+fn a_failure_outside_a_program_leaves_doubt() {
+    let mut bench = Bench::new();
+    bench.run().unwrap();
+    bench.session.doubt();
+    bench.run().unwrap();
+    assert_eq!(bench.set_ups(), 2);
+}
+
+#[test]
 fn an_unknown_query_is_named_by_the_instrument() {
     let mut bench = Bench::new();
     bench.run().unwrap();
