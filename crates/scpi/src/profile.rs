@@ -100,7 +100,10 @@ pub enum ProgramError {
         known: Vec<String>,
     },
     /// The program has no such argument.
-    #[error("program {program}: found argument \"{name}\", expected {}", either(known))]
+    #[error(
+        "program {program}: found argument \"{name}\", expected {}",
+        either(known)
+    )]
     UnknownArgument {
         /// Name of the program.
         program: String,
@@ -363,7 +366,11 @@ fn check_step(
         }
     }
     match step.texts().find_map(|it| unknown_name(it, arguments)) {
-        Some(name) => fault(own, &format!("{name:?}"), "the name of an argument in braces"),
+        Some(name) => fault(
+            own,
+            &format!("{name:?}"),
+            "the name of an argument in braces",
+        ),
         None => Ok(()),
     }
 }

@@ -77,7 +77,9 @@ pub(super) async fn run(folder: &Folder, args: &SendArgs) -> anyhow::Result<Exit
         let mut rows = transcript(&args.command, &outcome, taken_ms);
         let queue = errors.iter();
         rows.extend(queue.map(|it| format!("  error {}: {}", it.code, it.text)));
-        rows.extend(unread.map(|it| format!("  the error queue cannot be read: {}", sentence(&it))));
+        rows.extend(
+            unread.map(|it| format!("  the error queue cannot be read: {}", sentence(&it))),
+        );
         rows.join("\n") + "\n"
     })?;
     Ok(if is_good {
@@ -111,11 +113,7 @@ async fn error(link: &mut Link) -> Result<ErrorEntry, Failure> {
         })
 }
 
-fn transcript(
-    command: &str,
-    outcome: &Result<Option<Raw>, Failure>,
-    taken_ms: f64,
-) -> Vec<String> {
+fn transcript(command: &str, outcome: &Result<Option<Raw>, Failure>, taken_ms: f64) -> Vec<String> {
     let mut rows = vec![format!("> {command}")];
     match outcome {
         Ok(Some(raw)) => {
@@ -156,7 +154,11 @@ fn meaning(raw: &Raw) -> String {
         }
         Err(_) => {}
     }
-    match (Form::Numbers.read(raw), string(text), ErrorEntry::read(text)) {
+    match (
+        Form::Numbers.read(raw),
+        string(text),
+        ErrorEntry::read(text),
+    ) {
         (Ok(numbers), _, _) => super::text(&numbers),
         (_, Ok(text), _) => format!("the string {text}"),
         (_, _, Ok(entry)) => format!("the entry {} of an error queue, {}", entry.code, entry.text),

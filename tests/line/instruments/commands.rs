@@ -123,7 +123,10 @@ fn an_interrupted_check_makes_the_instrument_safe() {
     );
     let said = bench.shop.run_interrupted("4", &line).with_status(4);
     let last = &said.objects().pop().unwrap();
-    assert_eq!((&last["check"], &last["ok"]), (&"safe".into(), &true.into()));
+    assert_eq!(
+        (&last["check"], &last["ok"]),
+        (&"safe".into(), &true.into())
+    );
 }
 
 #[test]
@@ -171,7 +174,10 @@ fn scan_names_every_instrument_and_its_profile() {
     let nobody = bench.shop.run("instrument scan --link tcp:127.0.0.1:1");
     let nobody = nobody.with_status(1);
     assert_eq!(nobody.stdout, "no instrument answered\n");
-    assert!(nobody.stderr.contains("tcp:127.0.0.1:1: connection refused"), "{nobody}");
+    assert!(
+        nobody.stderr.contains("127.0.0.1:1: connection refused"),
+        "{nobody}"
+    );
 }
 
 #[test]
@@ -203,7 +209,10 @@ fn a_command_that_nobody_takes_is_no_success() {
     let said = sent.unwrap();
     let stdout = String::from_utf8(said.stdout).unwrap();
     assert_eq!(said.status.code(), Some(1), "{stdout}");
-    assert!(stdout.contains("the error queue cannot be read: SYST:ERR?"), "{stdout}");
+    assert!(
+        stdout.contains("the error queue cannot be read: SYST:ERR?"),
+        "{stdout}"
+    );
 }
 
 #[test]

@@ -78,7 +78,9 @@ fn a_program_gets_its_arguments() {
         wrong(&[("chanel", 1.0)]),
         "program waveform: found argument \"chanel\", expected channel or points"
     );
-    assert!(wrong(&[("channel", 1.0), ("channel", 2.0)]).contains("channel: found 1 and 2, expected"));
+    assert!(
+        wrong(&[("channel", 1.0), ("channel", 2.0)]).contains("channel: found 1 and 2, expected")
+    );
     assert!(
         profile
             .program("wave", &[])

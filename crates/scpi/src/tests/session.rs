@@ -135,10 +135,7 @@ fn a_failure_outside_a_program_leaves_doubt() {
 fn an_unknown_query_is_named_by_the_instrument() {
     let mut bench = Bench::new();
     bench.run().unwrap();
-    let queue = vec![
-        "-420,\"Query UNTERMINATED\"",
-        "-113,\"Undefined header\"",
-    ];
+    let queue = vec!["-420,\"Query UNTERMINATED\"", "-113,\"Undefined header\""];
     (bench.value, bench.errors) = (Err(late()), queue);
     let (code, text) = (-113, "Undefined header".to_owned());
     assert_eq!(bench.run(), Err(Failure::Instrument { code, text }));
