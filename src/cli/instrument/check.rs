@@ -86,7 +86,7 @@ pub(super) async fn run(folder: &Folder, args: &CheckArgs) -> anyhow::Result<Exi
         () = interrupts.next() => true,
     };
     if link.session().identity().is_some() {
-        let safe = link.run(profile.safe()).await;
+        let safe = link.make_safe(profile.safe()).await;
         let steps = profile.safe().steps.len();
         rows.push(Row::new("safe", safe.map(|_| carried_out(steps))));
     }

@@ -69,10 +69,26 @@ impl Link {
     /// Fails with the first reason why its values are not certain; then the next program resynchronises first. A program
     /// whose future is dropped counts as a failed one.
     pub async fn run(&mut self, program: Program) -> Result<Vec<Reply>, Failure> {
+        self.carry_out(program, Session::start).await
+    }
+
+    /// Runs a program that makes the instrument safe, also when its set-up fails.
+    ///
+    /// # Errors
+    /// Fails as [`Link::run`] does.
+    pub async fn make_safe(&mut self, program: Program) -> Result<Vec<Reply>, Failure> {
+        self.carry_out(program, Session::start_safe).await
+    }
+
+    async fn carry_out(
+        &mut self,
+        program: Program,
+        start: fn(&mut Session, Program) -> Move,
+    ) -> Result<Vec<Reply>, Failure> {
         self.programs += 1;
         let limit = self.session.settings().longest(&program);
         let deadline = self.pace.now() + limit;
-        let mut next = self.session.start(program);
+        let mut next = start(&mut self.session, program);
         loop {
             let outcome = match next {
                 Move::Done(result) => return result,

@@ -46,7 +46,11 @@ impl Bench {
         let program = Program {
             steps: vec![Step::ask("READ?", Form::Number)],
         };
-        let mut next = self.session.start(program);
+        let next = self.session.start(program);
+        self.carry_out(next)
+    }
+
+    fn carry_out(&mut self, mut next: Move) -> Result<Vec<Reply>, Failure> {
         for _ in 0..1000 {
             let outcome = match next {
                 Move::Done(result) => return result,
@@ -142,6 +146,21 @@ fn an_unknown_query_is_named_by_the_instrument() {
     bench.value = Ok("1.5");
     let next = bench.run();
     assert_eq!(next, Ok(vec![Reply::Number(1.5)]), "no error is left");
+}
+
+#[test]
+fn a_failed_set_up_keeps_nothing_unsafe() {
+    let mut bench = Bench::new();
+    bench.errors = vec!["-222,\"Data out of range\""];
+    assert_eq!(bench.run().unwrap_err().code(), "instrument");
+    let off = Program {
+        steps: vec![Step::send("OFF")],
+    };
+    let next = bench.session.start_safe(off);
+    assert_eq!(bench.carry_out(next), Ok(Vec::new()));
+    assert!(bench.sent.contains(&"OFF".to_owned()) && bench.set_ups() == 1);
+    bench.run().unwrap();
+    assert_eq!(bench.set_ups(), 2, "the next program sets up");
 }
 
 #[test]
