@@ -140,7 +140,10 @@ impl Command {
             #[cfg(feature = "sim")]
             Self::Demo(_) => Some(Folder::built_in()),
             #[cfg(feature = "sim")]
-            Self::Sim(args) if args.faults && !installed::has_world() => Some(Folder::built_in()),
+            Self::Sim(args) if args.faults && !installed::has("sim.toml") => {
+                Some(Folder::built_in())
+            }
+            Self::Instrument(_) if !installed::has("instruments") => Some(Folder::built_in()),
             _ => None,
         }
     }

@@ -22,11 +22,10 @@ pub fn is_default() -> bool {
     !local.iter().any(|it| Path::new(it).exists()) && Path::new(CONFIG).join("rig.toml").exists()
 }
 
-/// Returns true when the configuration that a command uses by default has a simulated world.
-#[cfg(feature = "sim")]
-pub fn has_world() -> bool {
+/// Returns true when the configuration that a command uses by default has this file or folder.
+pub fn has(name: &str) -> bool {
     let config = if is_default() { CONFIG } else { LOCAL_CONFIG };
-    Path::new(config).join("sim.toml").exists()
+    Path::new(config).join(name).exists()
 }
 
 /// Returns the files of a command: those given, else the defaults.

@@ -97,7 +97,7 @@ pub fn run(folder: &Folder, args: &InstrumentArgs) -> anyhow::Result<Exit> {
         .enable_all()
         .build();
     let runtime = runtime.context("starting the runtime")?;
-    let folder = profiles(folder);
+    let folder = profiles(folder)?;
     let done = runtime.block_on(async {
         match &args.command {
             InstrumentCommand::Scan(args) => scan::run(&folder, args).await,
@@ -110,11 +110,12 @@ pub fn run(folder: &Folder, args: &InstrumentArgs) -> anyhow::Result<Exit> {
 }
 
 /// Returns the folder that has profiles: that of the plant, or, when it has none, the profiles of the program.
-fn profiles(folder: &Folder) -> Folder {
-    match instrument_names(folder).is_empty() {
+fn profiles(folder: &Folder) -> Result<Folder, ConfigError> {
+    folder.check_exists()?;
+    Ok(match instrument_names(folder).is_empty() {
         true => Folder::built_in(),
         false => folder.clone(),
-    }
+    })
 }
 
 fn profile(folder: &Folder, name: Option<&String>) -> Result<Option<Profile>, ConfigError> {
@@ -130,8 +131,16 @@ fn sentence(failure: &Failure) -> String {
 fn text(reply: &Reply) -> String {
     match reply {
         Reply::Line(line) | Reply::Text(line) => line.clone(),
-        Reply::Number(number) => number.to_string(),
+        Reply::Number(number) => decimal(*number),
         Reply::Numbers(numbers) => format!("{} numbers", numbers.len()),
         Reply::Block(bytes) => format!("a block of {} bytes", bytes.len()),
+    }
+}
+
+/// Returns a number for a person to read: a small or large one with its power of ten.
+fn decimal(value: f64) -> String {
+    match value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
+        true => value.to_string(),
+        false => format!("{value:e}"),
     }
 }

@@ -130,6 +130,15 @@ impl Workshop {
             .unwrap()
     }
 
+    /// As [`Self::run`], with an interrupt after a time, s.
+    #[cfg(all(feature = "sim", unix))]
+    pub fn run_interrupted(&self, seconds: &str, line: &str) -> Said {
+        let mut command = Command::new("timeout");
+        command.args(["--preserve-status", "--signal", "INT", seconds]);
+        command.arg(env!("CARGO_BIN_EXE_relayrig"));
+        said(&self.worded(command, line).output().unwrap())
+    }
+
     /// Returns the command of `relayrig` with the words of `line`.
     pub fn command(&self, line: &str) -> Command {
         self.worded(Command::new(env!("CARGO_BIN_EXE_relayrig")), line)

@@ -9,6 +9,7 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt, DuplexStream, duplex};
 use tokio::sync::mpsc;
 use units::{RigTime, Span};
 
+mod instruments;
 mod late_host;
 mod ports;
 mod probation;

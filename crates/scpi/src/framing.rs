@@ -6,16 +6,17 @@ use units::Span;
 
 /// Longest time that an adapter waits for an instrument, milliseconds.
 const ADAPTER_LIMIT_MS: u64 = 3000;
+/// Share of the time for a reply after which an adapter gives up, percent: its own line arrives before the time is over,
+/// not among the bytes of the next query.
+const ADAPTER_SHARE_PCT: u64 = 90;
 
-/// End of a message on a raw stream.
+/// End of a message to the instrument on a raw stream; each reply ends with a line feed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Terminator {
     /// Line feed.
     #[default]
     Lf,
-    /// Carriage return.
-    Cr,
     /// Carriage return and line feed.
     Crlf,
 }
@@ -24,7 +25,6 @@ impl Terminator {
     const fn bytes(self) -> &'static [u8] {
         match self {
             Self::Lf => b"\n",
-            Self::Cr => b"\r",
             Self::Crlf => b"\r\n",
         }
     }
@@ -77,7 +77,8 @@ impl Framing {
     pub fn ask(self, command: &str, limit: Span) -> Vec<u8> {
         let mut bytes = self.send(command);
         if let Self::Adapter(_) = self {
-            let limit_ms = (limit.0 / 1000).clamp(1, ADAPTER_LIMIT_MS);
+            let limit_ms = limit.0 / 1000 * ADAPTER_SHARE_PCT / 100;
+            let limit_ms = limit_ms.clamp(1, ADAPTER_LIMIT_MS);
             bytes.extend(format!("++read_tmo_ms {limit_ms}\n++read eoi\n").bytes());
         }
         bytes

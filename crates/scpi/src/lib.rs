@@ -23,7 +23,7 @@
 //! 4. After a failure that leaves doubt, nothing is delivered before a resynchronisation: a new connection (serial ports:
 //!    the end of a message; adapters: a device clear), silence, two numbers through `*ESE` with every other reply discarded,
 //!    the same identity as before, `*ESR?` for a loss of power, `*CLS`, and the whole set-up again. It begins with the
-//!    next program, so a caller opens its contactor before.
+//!    next program: a caller that must open a contactor first has the time to.
 //! 5. Behind an adapter each message carries its GPIB address, and the adapter says its address after each.
 //!
 //! What no host can notice: a number that lost digits and kept its end of line, and a command that was lost without a

@@ -28,7 +28,7 @@ pub struct Profile {
     /// Proof that replies and queries are in step.
     #[serde(default)]
     pub echo: Echo,
-    /// End of a message on a raw stream.
+    /// End of a command on a raw stream.
     #[serde(default)]
     pub terminator: Terminator,
     /// Flow control of a serial port.
@@ -99,7 +99,20 @@ pub enum ProgramError {
         /// Names of its programs.
         known: Vec<String>,
     },
-    /// An argument is missing, unknown or out of range.
+    /// The program has no such argument.
+    #[error(
+        "program {program}: found argument \"{name}\", expected {}",
+        either(known)
+    )]
+    UnknownArgument {
+        /// Name of the program.
+        program: String,
+        /// Name given.
+        name: String,
+        /// Names of its arguments.
+        known: Vec<String>,
+    },
+    /// An argument is missing, given twice or out of range.
     #[error("program {program}, argument {argument}: found {found}, expected {expected}")]
     Argument {
         /// Name of the program.
@@ -113,12 +126,34 @@ pub enum ProgramError {
     },
 }
 
+/// Returns the names that an argument may have, in words.
+fn either(known: &[String]) -> String {
+    match known {
+        [] => "no argument".to_owned(),
+        known => known.join(" or "),
+    }
+}
+
 impl Profile {
-    /// Checks what no single key shows: each step is a command or a query, every placeholder is an argument.
+    /// Checks what no single key shows: an instrument can match, each step is a command or a query, every name in braces
+    /// is an argument.
     ///
     /// # Errors
     /// Fails with the first fault.
     pub fn check(&self) -> Result<(), ProfileFault> {
+        for (key, list) in [
+            ("makers", &self.identity.makers),
+            ("models", &self.identity.models),
+        ] {
+            if list.is_empty() {
+                let (key, found) = (key.to_owned(), "an empty list".to_owned());
+                return Err(ProfileFault {
+                    key,
+                    found,
+                    expected: "at least one beginning",
+                });
+            }
+        }
         let none = BTreeMap::new();
         check_steps("set_up", &self.set_up, &none)?;
         check_steps("safe", &self.safe, &none)?;
@@ -138,8 +173,9 @@ impl Profile {
                         expected,
                     });
                 }
-                let place = format!("{{{argument}}}");
-                if !program.steps.iter().any(|it| it.text().contains(&place)) {
+                let named = braced(argument);
+                let uses = |it: &StepText| it.texts().any(|text| text.contains(&named));
+                if !program.steps.iter().any(uses) {
                     let found = "an argument without use".to_owned();
                     return Err(ProfileFault {
                         key,
@@ -171,30 +207,24 @@ impl Profile {
                 known,
             });
         };
-        let wrong = |argument: &str, found: String, expected: String| ProgramError::Argument {
-            program: name.to_owned(),
-            argument: argument.to_owned(),
-            found,
-            expected,
-        };
-        if let Some((other, value)) = arguments
-            .iter()
-            .find(|it| !program.argument.contains_key(it.0))
-        {
-            return Err(wrong(
-                other,
-                value.to_string(),
-                "no such argument".to_owned(),
-            ));
+        let is_known = |it: &&(&str, f64)| program.argument.contains_key(it.0);
+        if let Some((other, _)) = arguments.iter().find(|it| !is_known(it)) {
+            return Err(ProgramError::UnknownArgument {
+                program: name.to_owned(),
+                name: (*other).to_owned(),
+                known: program.argument.keys().cloned().collect(),
+            });
         }
         let mut filled = Vec::new();
         for (argument, Bounds { low, high }) in &program.argument {
-            let value = arguments.iter().find(|it| it.0 == argument).map(|it| it.1);
-            let good = value.filter(|it| (*low..=*high).contains(it));
-            let found = || value.map_or_else(|| "nothing".to_owned(), |it| it.to_string());
-            let expected = || format!("a number from {low} to {high}");
-            let good = good.ok_or_else(|| wrong(argument, found(), expected()))?;
-            filled.push((format!("{{{argument}}}"), good.to_string()));
+            let given = arguments.iter().filter(|it| it.0 == argument);
+            let given: Vec<f64> = given.map(|it| it.1).collect();
+            match given[..] {
+                [value] if (*low..=*high).contains(&value) => {
+                    filled.push((braced(argument), value.to_string()));
+                }
+                _ => return Err(wrong_argument(name, argument, &given, (*low, *high))),
+            }
         }
         Ok(steps(&program.steps, &filled))
     }
@@ -223,10 +253,29 @@ impl Profile {
     }
 }
 
+fn wrong_argument(program: &str, argument: &str, given: &[f64], ends: (f64, f64)) -> ProgramError {
+    let found: Vec<String> = given.iter().map(f64::to_string).collect();
+    ProgramError::Argument {
+        program: program.to_owned(),
+        argument: argument.to_owned(),
+        found: match found[..] {
+            [] => "nothing".to_owned(),
+            _ => found.join(" and "),
+        },
+        expected: format!("a number from {} to {}", ends.0, ends.1),
+    }
+}
+
+/// Returns the name of an argument as it stands in a step, for which its value goes out.
+fn braced(argument: &str) -> String {
+    format!("{{{argument}}}")
+}
+
 impl StepText {
-    fn text(&self) -> &str {
-        let text = self.send.as_ref().or(self.ask.as_ref());
-        text.map_or("", String::as_str)
+    /// Returns the texts in which names of arguments may stand.
+    fn texts(&self) -> impl Iterator<Item = &str> {
+        let all = [&self.send, &self.ask, &self.expect];
+        all.into_iter().flatten().map(String::as_str)
     }
 
     fn form(&self) -> Form {
@@ -242,17 +291,17 @@ impl StepText {
 
 fn steps(texts: &[StepText], filled: &[(String, String)]) -> Program {
     let fill = |text: &str| {
-        filled.iter().fold(text.to_owned(), |text, (place, value)| {
-            text.replace(place, value)
+        filled.iter().fold(text.to_owned(), |text, (named, value)| {
+            text.replace(named, value)
         })
     };
     let step = |it: &StepText| match &it.ask {
-        None => Step::Send(fill(it.text())),
+        None => Step::Send(fill(it.send.as_deref().unwrap_or_default())),
         Some(command) => Step::Ask {
             command: fill(command),
             form: it.form(),
             limit: it.timeout_ms.map(Span::ms),
-            expect: it.expect.clone(),
+            expect: it.expect.as_deref().map(fill),
         },
     };
     Program {
@@ -265,78 +314,69 @@ fn check_steps(
     steps: &[StepText],
     arguments: &BTreeMap<String, Bounds>,
 ) -> Result<(), ProfileFault> {
-    for (number, step) in steps.iter().enumerate() {
-        check_step(step, arguments).map_err(|(name, found, expected)| {
-            let place = if name.is_empty() {
-                String::new()
-            } else {
-                format!(".{name}")
-            };
-            ProfileFault {
-                key: format!("{key}.{number}{place}"),
-                found,
-                expected,
-            }
-        })?;
-    }
-    Ok(())
+    let mut numbered = steps.iter().enumerate();
+    numbered.try_for_each(|(number, step)| check_step(&format!("{key}.{number}"), step, arguments))
 }
 
-type StepFault = (&'static str, String, &'static str);
-
-fn check_step(step: &StepText, arguments: &BTreeMap<String, Bounds>) -> Result<(), StepFault> {
-    let quoted = |text: &str| format!("{text:?}");
-    let text = step.text();
-    let name = if step.ask.is_some() { "ask" } else { "send" };
-    if step.send.is_some() == step.ask.is_some() {
-        let found = if step.ask.is_some() {
-            "both send and ask"
-        } else {
-            "neither send nor ask"
-        };
-        return Err(("", found.to_owned(), "one of send and ask"));
-    }
+fn check_step(
+    key: &str,
+    step: &StepText,
+    arguments: &BTreeMap<String, Bounds>,
+) -> Result<(), ProfileFault> {
+    let fault = |key: String, found: &str, expected| {
+        let found = found.to_owned();
+        Err(ProfileFault {
+            key,
+            found,
+            expected,
+        })
+    };
+    let one = "one of send and ask";
+    let (name, text) = match (&step.send, &step.ask) {
+        (Some(text), None) => ("send", text),
+        (None, Some(text)) => ("ask", text),
+        (Some(_), Some(_)) => return fault(key.to_owned(), "both send and ask", one),
+        (None, None) => return fault(key.to_owned(), "neither send nor ask", one),
+    };
+    let (own, quoted) = (format!("{key}.{name}"), format!("{text:?}"));
     if !text.bytes().all(|it| (0x20..0x7F).contains(&it)) {
-        return Err((name, quoted(text), "printable ASCII characters"));
+        return fault(own, &quoted, "printable ASCII characters");
     }
-    let queries = text.matches('?').count();
-    if step.ask.is_some() && (queries == 0 || text.contains(';')) {
-        return Err((name, quoted(text), "one query with ?, without ;"));
+    if step.send.is_some() {
+        if text.contains('?') {
+            let expected = "a command without reply; a query is an `ask`";
+            return fault(own, &quoted, expected);
+        }
+        let asks = step.reply.is_some() || step.expect.is_some() || step.timeout_ms.is_some();
+        if asks || step.most_bytes.is_some() {
+            let expected = "no reply, expect, timeout_ms or most_bytes beside send";
+            return fault(own, &quoted, expected);
+        }
+    } else {
+        if !text.contains('?') || text.contains(';') {
+            return fault(own, &quoted, "one query with ?, without ;");
+        }
+        if step.reply.is_some() == step.expect.is_some() {
+            return fault(own, &quoted, "one of reply and expect beside it");
+        }
+        let is_block = step.reply == Some(ReplyForm::Block);
+        if is_block != step.most_bytes.is_some() {
+            let expected = "most_bytes beside reply = \"block\", and nowhere else";
+            return fault(own, &quoted, expected);
+        }
     }
-    if step.send.is_some() && queries > 0 {
-        return Err((
-            name,
-            quoted(text),
-            "a command without reply; a query is an `ask`",
-        ));
-    }
-    let asks_only = step.reply.is_some() || step.expect.is_some() || step.timeout_ms.is_some();
-    if step.send.is_some() && (asks_only || step.most_bytes.is_some()) {
-        return Err((
-            name,
-            quoted(text),
-            "no reply, expect, timeout_ms or most_bytes beside send",
-        ));
-    }
-    if step.ask.is_some() && step.reply.is_some() == step.expect.is_some() {
-        return Err((name, quoted(text), "one of reply and expect beside it"));
-    }
-    let is_block = step.reply == Some(ReplyForm::Block);
-    if is_block != step.most_bytes.is_some() {
-        return Err((
-            "",
-            "no match".to_owned(),
-            "most_bytes beside reply = \"block\" and nowhere else",
-        ));
-    }
-    match unknown_place(text, arguments) {
-        Some(place) => Err((name, quoted(place), "the name of an argument in braces")),
+    match step.texts().find_map(|it| unknown_name(it, arguments)) {
+        Some(name) => fault(
+            own,
+            &format!("{name:?}"),
+            "the name of an argument in braces",
+        ),
         None => Ok(()),
     }
 }
 
-/// Returns the first placeholder that is no argument.
-fn unknown_place<'a>(text: &'a str, arguments: &BTreeMap<String, Bounds>) -> Option<&'a str> {
+/// Returns the first name in braces that is no argument.
+fn unknown_name<'a>(text: &'a str, arguments: &BTreeMap<String, Bounds>) -> Option<&'a str> {
     let mut opened = text.split('{').skip(1);
     opened.find_map(|rest| match rest.split_once('}') {
         Some((name, _)) if arguments.contains_key(name) => None,

@@ -128,7 +128,9 @@ impl Reader {
         let (count, digits) = match self.bytes.as_slice() {
             [] | [b'#'] => return Ok(Some(Header::Partial)),
             [b'#', count @ b'1'..=b'9', digits @ ..] => (usize::from(count - b'0'), digits),
-            [_, ..] if form == Form::Any && self.bytes.first() != Some(&b'#') => return Ok(None),
+            [b'#', b'0', ..] => return Err(ReplyError::BlockHeader),
+            // Also `#H1F`, a number.
+            [_, ..] if form == Form::Any => return Ok(None),
             [_, ..] => return Err(ReplyError::BlockHeader),
         };
         let digits = &digits[..count.min(digits.len())];

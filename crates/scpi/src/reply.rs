@@ -1,6 +1,5 @@
 //! Replies of IEEE 488.2: numbers, strings, blocks, and the reasons why one is not accepted.
 
-use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// Longest line of a reply, bytes without its end.
@@ -13,8 +12,7 @@ const OVER_RANGE: f64 = 9.9e37;
 const NOT_A_NUMBER: f64 = 9.91e37;
 
 /// Form that the reply to a query must have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// One line of text.
     Line,
@@ -25,10 +23,8 @@ pub enum Form {
     /// A string between quotation marks; a doubled mark inside stands for one.
     Text,
     /// A definite block of at most this many bytes.
-    #[serde(skip)]
     Block(usize),
-    /// A block if the reply begins with `#`, else a line; for tools that do not know the query.
-    #[serde(skip)]
+    /// A block if the reply begins with `#` and a digit, else a line; for tools that do not know the query.
     Any,
 }
 
@@ -102,6 +98,9 @@ pub enum ReplyError {
         /// Value of the byte.
         byte: u8,
     },
+    /// The reply is a block.
+    #[error("a block, expected a line")]
+    Block,
     /// More bytes followed the reply.
     #[error("more bytes follow the reply")]
     More,
@@ -120,21 +119,15 @@ impl Form {
     /// Fails when the reply does not have this form, or is a number that is no value.
     pub fn read(self, raw: &Raw) -> Result<Reply, ReplyError> {
         match (self, raw) {
-            (Self::Block(_) | Self::Any, Raw::Block(bytes)) if !bytes.is_empty() => {
-                Ok(Reply::Block(bytes.clone()))
-            }
-            (_, Raw::Block(_)) => Err(ReplyError::Empty),
+            (Self::Block(_) | Self::Any, Raw::Block(bytes)) => Ok(Reply::Block(bytes.clone())),
             (Self::Block(_), Raw::Line(_)) => Err(ReplyError::BlockHeader),
-            (Self::Line | Self::Any, Raw::Line(line)) => Ok(Reply::Line(text(line)?.to_owned())),
-            (Self::Number, Raw::Line(line)) => number(text(line)?).map(Reply::Number),
-            (Self::Numbers, Raw::Line(line)) => {
-                let fields = text(line)?.split(',');
-                fields
-                    .map(number)
-                    .collect::<Result<_, _>>()
-                    .map(Reply::Numbers)
+            (Self::Line | Self::Any, raw) => Ok(Reply::Line(raw.text()?.to_owned())),
+            (Self::Number, raw) => number(raw.text()?).map(Reply::Number),
+            (Self::Numbers, raw) => {
+                let fields = raw.text()?.split(',').map(number);
+                fields.collect::<Result<_, _>>().map(Reply::Numbers)
             }
-            (Self::Text, Raw::Line(line)) => string(text(line)?).map(Reply::Text),
+            (Self::Text, raw) => string(raw.text()?).map(Reply::Text),
         }
     }
 }
@@ -156,7 +149,7 @@ impl Raw {
     pub fn text(&self) -> Result<&str, ReplyError> {
         match self {
             Self::Line(line) => text(line),
-            Self::Block(_) => Err(ReplyError::More),
+            Self::Block(_) => Err(ReplyError::Block),
         }
     }
 }

@@ -62,18 +62,7 @@ impl Run {
     pub(crate) fn next_move(&self, settings: &LinkSettings, nonce: &Nonce) -> Move {
         let limit = settings.limit;
         let ask = |command: &str, form, limit: Span| {
-            let (bytes, tail) = settings
-                .framing
-                .proven(settings.framing.ask(command, limit));
-            let command = command.to_owned();
-            Move::Ask(Question {
-                command,
-                bytes,
-                form,
-                limit,
-                tail,
-                strict: true,
-            })
+            Move::Ask(Question::new(settings.framing, command, form, limit))
         };
         let send = |command: &str| {
             let (bytes, tail) = settings.framing.proven(settings.framing.send(command));
@@ -99,24 +88,29 @@ impl Run {
         }
     }
 
-    /// Takes the end of a move; returns the result at the end of the run.
+    /// Takes the end of a move; returns the result at the end of the run. `echo` is the reply that proves the step.
     pub(crate) fn advance(
         &mut self,
         settings: &LinkSettings,
-        nonce: &mut Nonce,
+        echo: &str,
         outcome: Result<Option<Raw>, Failure>,
         is_copy: bool,
     ) -> Option<Result<Vec<Reply>, Failure>> {
         let at = std::mem::replace(&mut self.at, At::End);
         let next = match (at, outcome) {
-            (At::Why(failure), outcome) => Err(reason(outcome).unwrap_or(failure)),
+            (At::Why(timeout), outcome) => match outcome.and_then(|raw| entry(raw.as_ref())) {
+                Ok(entry) if refuses(entry.class()) => self.after_entry(settings, 0, entry),
+                Ok(_) | Err(_) => Err(timeout),
+            },
             (At::Step { number, repeated }, outcome) => {
                 self.after_step(number, outcome, is_copy && !repeated)
             }
             (_, Err(failure)) => Err(failure),
-            (At::Errors(count), Ok(raw)) => self.after_error(settings, count, raw.as_ref()),
+            (At::Errors(count), Ok(raw)) => {
+                entry(raw.as_ref()).and_then(|it| self.after_entry(settings, count, it))
+            }
             (At::Events, Ok(raw)) => after_events(raw.as_ref()),
-            (At::Echo, Ok(raw)) => after_echo(settings, nonce, raw.as_ref()),
+            (At::Echo, Ok(raw)) => after_echo(settings, echo, raw.as_ref()),
             (At::Mark | At::End, Ok(_)) => Ok(At::End),
         };
         match next {
@@ -177,13 +171,13 @@ impl Run {
         })
     }
 
-    fn after_error(
+    /// Takes an entry of the error queue that `count` others precede.
+    fn after_entry(
         &mut self,
         settings: &LinkSettings,
         count: u8,
-        raw: Option<&Raw>,
+        entry: ErrorEntry,
     ) -> Result<At, Failure> {
-        let entry = entry(raw)?;
         let failure = match entry.class() {
             ErrorClass::None => return Ok(At::Events),
             ErrorClass::Overflow => return Err(Failure::QueueOverflow),
@@ -204,7 +198,7 @@ pub(crate) fn events(raw: Option<&Raw>) -> Result<StandardEvents, Failure> {
     let line = raw.map_or(Err(ReplyError::Empty), Raw::text);
     let events = line.and_then(|line| {
         let found = line.to_owned();
-        let events = line.trim_start_matches('+').parse().map(StandardEvents);
+        let events = line.parse().map(StandardEvents);
         events.map_err(|_| ReplyError::NotNumber { found })
     });
     events.map_err(|reason| malformed("*ESR?", reason))
@@ -237,14 +231,12 @@ fn entry(raw: Option<&Raw>) -> Result<ErrorEntry, Failure> {
         .map_err(|reason| malformed("SYST:ERR?", reason))
 }
 
-/// Returns why a query has no reply, when the instrument says that it does not know it.
-fn reason(outcome: Result<Option<Raw>, Failure>) -> Option<Failure> {
-    let entry = entry(outcome.ok()?.as_ref()).ok()?;
-    match entry.class() {
-        ErrorClass::Command | ErrorClass::Execution => Some(instrument(entry)),
-        ErrorClass::Local => Some(Failure::Local { text: entry.text }),
-        ErrorClass::Overflow => Some(Failure::QueueOverflow),
-        ErrorClass::None | ErrorClass::Device | ErrorClass::Query | ErrorClass::Other => None,
+/// Returns true when an error of this class explains why a query has no reply: the instrument did not carry it out.
+fn refuses(class: ErrorClass) -> bool {
+    match class {
+        ErrorClass::Command | ErrorClass::Execution => true,
+        ErrorClass::Local | ErrorClass::Overflow => true,
+        ErrorClass::None | ErrorClass::Device | ErrorClass::Query | ErrorClass::Other => false,
     }
 }
 
@@ -284,27 +276,18 @@ fn same(found: &str, expected: &str) -> bool {
     }
 }
 
-/// Compares the echo; then the next number is left, so that no later echo equals this one.
-fn after_echo(
-    settings: &LinkSettings,
-    nonce: &mut Nonce,
-    raw: Option<&Raw>,
-) -> Result<At, Failure> {
+/// Compares the echo; a number is left anew, so that no later echo equals this one.
+fn after_echo(settings: &LinkSettings, echo: &str, raw: Option<&Raw>) -> Result<At, Failure> {
     let line = raw.and_then(|it| it.text().ok()).unwrap_or_default();
-    match (settings.echo, line.trim_start_matches('+').parse::<u8>()) {
-        (Echo::Identity, _) if line.matches(',').count() >= 2 => Ok(At::End),
-        (Echo::Ese, Ok(found)) if found == nonce.current() => {
-            nonce.advance();
-            Ok(At::Mark)
-        }
-        (Echo::Ese | Echo::Identity, _) => {
-            let command = match settings.echo {
-                Echo::Ese => "*ESE?",
-                Echo::Identity => "*IDN?",
-            };
-            Err(Failure::OutOfStep {
-                command: command.to_owned(),
-            })
-        }
+    match (same(line, echo), settings.echo) {
+        (true, Echo::Ese) => Ok(At::Mark),
+        (true, Echo::Identity) => Ok(At::End),
+        (false, Echo::Ese) => Err(Failure::OutOfStep {
+            command: "*ESE?".to_owned(),
+        }),
+        (false, Echo::Identity) => Err(Failure::Identity {
+            found: line.to_owned(),
+            expected: format!("{echo:?}"),
+        }),
     }
 }

@@ -2,6 +2,7 @@
 //! that ended. Every move has a time limit, and the number of moves of a program is bounded.
 
 use super::failure::Failure;
+use super::framing::Framing;
 use super::nonce::Nonce;
 use super::program::Program;
 use super::reply::{Form, Raw, Reply};
@@ -60,6 +61,21 @@ pub struct Question {
     pub strict: bool,
 }
 
+impl Question {
+    /// Returns a query whose reply must come alone, and, behind an adapter, with the proof of its address.
+    pub fn new(framing: Framing, command: &str, form: Form, limit: Span) -> Self {
+        let (bytes, tail) = framing.proven(framing.ask(command, limit));
+        Self {
+            command: command.to_owned(),
+            bytes,
+            form,
+            limit,
+            tail,
+            strict: true,
+        }
+    }
+}
+
 /// Place in a resynchronisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Phase {
@@ -100,6 +116,10 @@ pub struct Session {
     doing: Doing,
     /// The program that waits for resynchronisation and set-up.
     waiting: Program,
+    /// True when it waits for the set-up too.
+    wants_set_up: bool,
+    /// True when the set-up succeeded after the last resynchronisation.
+    is_set_up: bool,
     in_step: bool,
     is_open: bool,
     generation: u64,
@@ -123,6 +143,8 @@ impl Session {
             settings,
             doing: Doing::Nothing,
             waiting: Program::default(),
+            wants_set_up: true,
+            is_set_up: false,
             in_step: false,
             is_open: false,
             generation: 0,
@@ -155,13 +177,27 @@ impl Session {
         self.bound.as_deref()
     }
 
+    /// Makes the next program begin with a resynchronisation, after a failure outside a program.
+    pub fn doubt(&mut self) {
+        self.in_step = false;
+    }
+
     /// Begins a program. One that was abandoned leaves doubt behind.
     pub fn start(&mut self, program: Program) -> Move {
+        self.begin(program, true)
+    }
+
+    /// Begins a program that makes the instrument safe: after doubt without the set-up, which may be what fails.
+    pub fn start_safe(&mut self, program: Program) -> Move {
+        self.begin(program, false)
+    }
+
+    fn begin(&mut self, program: Program, wants_set_up: bool) -> Move {
         self.in_step &= matches!(self.doing, Doing::Nothing);
         if self.in_step {
             return self.enter(Doing::Program(Run::new(program)));
         }
-        self.waiting = program;
+        (self.waiting, self.wants_set_up) = (program, wants_set_up);
         self.sync(0)
     }
 
@@ -180,20 +216,19 @@ impl Session {
                 None => self.enter(Doing::SetUp(run)),
                 // A set-up that fails leaves an instrument of which nothing is known.
                 Some(Err(failure)) => self.finish(Err(failure), false),
-                Some(Ok(_)) if self.lost_power => {
-                    self.lost_power = false;
-                    self.finish(Err(Failure::PowerCycled), true)
-                }
                 Some(Ok(_)) => {
-                    let program = mem::take(&mut self.waiting);
-                    self.enter(Doing::Program(Run::new(program)))
+                    self.is_set_up = true;
+                    match mem::take(&mut self.lost_power) {
+                        true => self.finish(Err(Failure::PowerCycled), true),
+                        false => self.enter_waiting(),
+                    }
                 }
             },
             Doing::Program(mut run) => match self.advance(&mut run, outcome) {
                 None => self.enter(Doing::Program(run)),
                 Some(result) => {
                     let doubt = result.as_ref().err().is_some_and(Failure::is_doubt);
-                    self.finish(result, !doubt)
+                    self.finish(result, !doubt && self.is_set_up)
                 }
             },
         }
@@ -203,6 +238,11 @@ impl Session {
         self.waiting = Program::default();
         self.in_step = in_step;
         Move::Done(result)
+    }
+
+    fn enter_waiting(&mut self) -> Move {
+        let program = mem::take(&mut self.waiting);
+        self.enter(Doing::Program(Run::new(program)))
     }
 
     /// Makes the move of a place.
@@ -217,7 +257,7 @@ impl Session {
     }
 
     fn sync(&mut self, attempt: u8) -> Move {
-        self.in_step = false;
+        (self.in_step, self.is_set_up) = (false, false);
         self.generation += 1;
         self.previous = None;
         // A serial port stays open at first; what does not cure it may be the port itself.
@@ -233,7 +273,10 @@ impl Session {
             Ok(Some(phase)) => self.enter(Doing::Sync { attempt, phase }),
             Ok(None) => {
                 self.backoff = Span(0);
-                self.enter(Doing::SetUp(Run::new(self.settings.set_up.clone())))
+                match self.wants_set_up {
+                    true => self.enter(Doing::SetUp(Run::new(self.settings.set_up.clone()))),
+                    false => self.enter_waiting(),
+                }
             }
             Err(failure @ Failure::Identity { .. }) => self.finish(Err(failure), false),
             Err(failure) => {
@@ -416,7 +459,14 @@ impl Session {
         if let Ok(Some(raw)) = &outcome {
             self.previous = Some(raw.clone());
         }
-        let result = run.advance(&self.settings, &mut self.nonce, outcome, copy);
+        let echo = match self.settings.echo {
+            Echo::Ese => self.nonce.current().to_string(),
+            Echo::Identity => self.bound.clone().unwrap_or_default(),
+        };
+        let result = run.advance(&self.settings, &echo, outcome, copy);
+        if run.at == At::Mark {
+            self.nonce.advance();
+        }
         self.power_reported |= matches!(result, Some(Err(Failure::PowerCycled)));
         debug_assert!(result.is_none() || run.at == At::End, "a result ends a run");
         result

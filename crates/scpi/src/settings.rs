@@ -46,12 +46,8 @@ impl ExpectedIdentity {
 
 impl fmt::Display for ExpectedIdentity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{} {}",
-            self.makers.join(" or "),
-            self.models.join(" or ")
-        )
+        let (makers, models) = (self.makers.join(" or "), self.models.join(" or "));
+        write!(f, "maker {makers}, model {models}")
     }
 }
 

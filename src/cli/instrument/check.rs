@@ -3,6 +3,7 @@
 use super::{LinkArgs, sentence, text};
 use crate::cli::output::{Fixed, latency_ms, listing, print};
 use anyhow::Context;
+use app::controls::Interrupts;
 use app::exit::Exit;
 use app::instrument::message;
 use bus::instrument::Link;
@@ -19,8 +20,8 @@ use serde_json::json;
   relayrig instrument check --link gpib-serial:/dev/ttyUSB0:115200:9 --profile ac-source-61500 --json
 
 The check sends the set-up of the profile, which may reset the instrument, then the programs of --run, and at the end the \
-commands that make it safe. \
-Exit status: 0 everything is right, 1 something is not, 2 bad input.")]
+commands that make it safe, also after Ctrl-C. \
+Exit status: 0 everything is right, 1 something is not, 2 bad input, 4 after Ctrl-C.")]
 pub struct CheckArgs {
     #[command(flatten)]
     link: LinkArgs,
@@ -78,7 +79,17 @@ pub(super) async fn run(folder: &Folder, args: &CheckArgs) -> anyhow::Result<Exi
     let mut link = args.link.link(Some(&profile));
     let programs = args.run.iter().map(|it| program(&profile, it));
     let programs = programs.collect::<anyhow::Result<Vec<_>>>()?;
-    let rows = rows(&mut link, args, &profile, programs).await;
+    let mut interrupts = Interrupts::listen()?;
+    let mut rows = Vec::new();
+    let interrupted = tokio::select! {
+        () = check(&mut link, args, &profile, programs, &mut rows) => false,
+        () = interrupts.next() => true,
+    };
+    if link.session().identity().is_some() {
+        let safe = link.make_safe(profile.safe()).await;
+        let steps = profile.safe().steps.len();
+        rows.push(Row::new("safe", safe.map(|_| carried_out(steps))));
+    }
     let object = args.json.then_some(object as fn(&Row) -> String);
     print(&listing(&rows, &COLUMNS, "", object))?;
     if args.traffic {
@@ -90,9 +101,10 @@ pub(super) async fn run(folder: &Folder, args: &CheckArgs) -> anyhow::Result<Exi
                 .collect::<String>(),
         )?;
     }
-    Ok(match rows.iter().all(|it| it.is_good) {
-        true => Exit::Done,
-        false => Exit::AnswerIsNo,
+    Ok(match (interrupted, rows.iter().all(|it| it.is_good)) {
+        (true, _) => Exit::Stopped,
+        (false, true) => Exit::Done,
+        (false, false) => Exit::AnswerIsNo,
     })
 }
 
@@ -111,32 +123,29 @@ fn argument(word: &str) -> Option<(&str, f64)> {
     Some((name, value.parse().ok()?))
 }
 
-async fn rows(
+fn carried_out(steps: usize) -> String {
+    format!("{steps} steps, error queue empty")
+}
+
+/// Tries identity, set-up, latency and programs, a row each.
+async fn check(
     link: &mut Link,
     args: &CheckArgs,
     profile: &Profile,
     programs: Vec<(String, Program)>,
-) -> Vec<Row> {
+    rows: &mut Vec<Row>,
+) {
     let begun = link.run(Program::default()).await;
-    let identity = link.session().identity().map(str::to_owned);
-    let set_up = format!(
-        "{} steps, error queue empty",
-        link.session().settings().set_up.steps.len()
-    );
-    let mut rows = Vec::new();
-    match (begun, identity) {
-        (Err(failure), None) => {
-            rows.push(Row::new("identity", Err(failure)));
-            return rows;
-        }
-        (begun, identity) => {
-            rows.push(Row::new("identity", Ok(identity.unwrap_or_default())));
-            let is_down = begun.is_err();
-            rows.push(Row::new("set-up", begun.map(|_| set_up)));
-            if is_down {
-                return rows;
-            }
-        }
+    let Some(identity) = link.session().identity() else {
+        rows.extend(begun.err().map(|it| Row::new("identity", Err(it))));
+        return;
+    };
+    rows.push(Row::new("identity", Ok(identity.to_owned())));
+    let steps = link.session().settings().set_up.steps.len();
+    let is_set_up = begun.is_ok();
+    rows.push(Row::new("set-up", begun.map(|_| carried_out(steps))));
+    if !is_set_up {
+        return;
     }
     rows.push(latency(link, args, profile).await);
     let names: Vec<&str> = profile.programs().collect();
@@ -146,13 +155,6 @@ async fn rows(
         let shown = |it: Vec<Reply>| it.iter().map(text).collect::<Vec<_>>().join(", ");
         rows.push(Row::new(&name, values.map(shown)));
     }
-    let safe = link.run(profile.safe()).await;
-    let steps = profile.safe().steps.len();
-    rows.push(Row::new(
-        "safe",
-        safe.map(|_| format!("{steps} steps, error queue empty")),
-    ));
-    rows
 }
 
 async fn latency(link: &mut Link, args: &CheckArgs, profile: &Profile) -> Row {

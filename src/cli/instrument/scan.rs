@@ -1,14 +1,14 @@
 //! `relayrig instrument scan`: asks links for the identity of their instrument.
 
-use super::LinkArgs;
+use super::{LinkArgs, sentence};
 use crate::cli::output::{Fixed, latency_ms, listing, print};
 use anyhow::bail;
 use app::controls::Interrupts;
 use app::exit::Exit;
 use app::progress::progress;
 use bus::{Histogram, Pace};
-use config::{Folder, instrument_names, load_instrument};
-use scpi::{Failure, Form, Identity, LinkAddress, Transport};
+use config::{ConfigError, Folder, instrument_names, load_instrument};
+use scpi::{Failure, Form, Identity, LinkAddress, Profile, Transport};
 use serde_json::json;
 
 /// Find instruments.
@@ -77,6 +77,7 @@ async fn scan(folder: &Folder, args: &ScanArgs, found: &mut Vec<Found>) {
         .cloned()
         .chain(args.host.iter().flat_map(|it| of_host(it)));
     let links: Vec<LinkAddress> = links.collect();
+    let known = profiles(folder);
     let bar = progress(Some(links.len() as u64), "{bar:30} {pos}/{len} {msg} {eta}");
     let mut unreachable: Option<Transport> = None;
     for link in links {
@@ -88,7 +89,8 @@ async fn scan(folder: &Folder, args: &ScanArgs, found: &mut Vec<Found>) {
         }
         match identify(&link, args.timeout).await {
             Ok((identity, latencies)) => {
-                let profiles = matching(folder, &identity);
+                let fits = known.iter().filter(|it| it.identity.accepts(&identity));
+                let profiles = fits.map(|it| it.name.clone()).collect();
                 found.push(Found {
                     link,
                     identity,
@@ -96,11 +98,16 @@ async fn scan(folder: &Folder, args: &ScanArgs, found: &mut Vec<Found>) {
                     profiles,
                 });
             }
-            Err(Failure::Disconnected { reason }) => {
-                tracing::debug!("{link}: {reason}");
-                unreachable = Some(link.transport);
+            Err(failure) => {
+                // A port of a host is a guess, a link is not.
+                match args.link.contains(&link) {
+                    true => tracing::warn!("{link}: {}", sentence(&failure)),
+                    false => tracing::debug!("{link}: {}", sentence(&failure)),
+                }
+                if let Failure::Disconnected { .. } = failure {
+                    unreachable = Some(link.transport);
+                }
             }
-            Err(failure) => tracing::debug!("{link}: {failure}"),
         }
     }
     bar.finish_and_clear();
@@ -142,11 +149,12 @@ async fn identify(address: &LinkAddress, timeout: u64) -> Result<(Identity, Hist
     Ok((Identity::read(&line), latencies))
 }
 
-fn matching(folder: &Folder, identity: &Identity) -> Vec<String> {
+/// Returns the profiles of the folder; a wrong one brings a warning.
+fn profiles(folder: &Folder) -> Vec<Profile> {
+    let warn = |error: &ConfigError| tracing::warn!("{error}");
     let names = instrument_names(folder).into_iter();
-    let fits =
-        |name: &String| load_instrument(folder, name).is_ok_and(|it| it.identity.accepts(identity));
-    names.filter(fits).collect()
+    let loaded = names.map(|name| load_instrument(folder, &name).inspect_err(warn));
+    loaded.filter_map(Result::ok).collect()
 }
 
 const COLUMNS: [Fixed<Found>; 7] = [

@@ -1,6 +1,6 @@
 //! `relayrig instrument send`: sends one command as typed, shows the reply and the error queue.
 
-use super::{LinkArgs, profile, sentence};
+use super::{LinkArgs, decimal, profile, sentence};
 use crate::cli::output::print;
 use anyhow::bail;
 use app::exit::Exit;
@@ -8,7 +8,7 @@ use app::instrument::message;
 use bus::instrument::Link;
 use bus::{Pace, escaped};
 use config::Folder;
-use scpi::{ErrorEntry, Failure, Form, Raw, number, string};
+use scpi::{ErrorEntry, Failure, Form, Raw, ReplyError, number, string};
 use serde_json::json;
 
 /// One command.
@@ -19,7 +19,7 @@ use serde_json::json;
   relayrig instrument send --link tcp:192.168.1.21:5555 ':WAV:DATA?' --json
 
 The command goes out as typed, without resynchronisation; the error queue is read behind it. Exit status: 0 done, 1 no \
-reply, a damaged one, or an error of the instrument, 2 bad input.")]
+reply, a damaged one, an error of the instrument, or no error queue to read, 2 bad input.")]
 pub struct SendArgs {
     #[command(flatten)]
     link: LinkArgs,
@@ -57,11 +57,11 @@ pub(super) async fn run(folder: &Folder, args: &SendArgs) -> anyhow::Result<Exit
     let form = args.command.contains('?').then_some(Form::Any);
     let outcome = link.exchange(&args.command, form).await;
     let taken_ms = pace.now().since(began).as_seconds() * 1e3;
-    let errors = match (&outcome, args.keep_errors) {
+    let (errors, unread) = match (&outcome, args.keep_errors) {
         (Ok(_) | Err(Failure::Timeout { .. }), false) => errors(&mut link).await,
-        _ => Vec::new(),
+        _ => (Vec::new(), None),
     };
-    let is_good = outcome.is_ok() && errors.is_empty();
+    let is_good = outcome.is_ok() && errors.is_empty() && unread.is_none();
     print(&if args.json {
         let list: Vec<_> = errors
             .iter()
@@ -70,11 +70,17 @@ pub(super) async fn run(folder: &Folder, args: &SendArgs) -> anyhow::Result<Exit
         let reply = outcome.as_ref().ok().and_then(Option::as_ref);
         let object = json!({
             "command": args.command, "reply": reply.map(shown), "meaning": reply.map(meaning), "taken_ms": taken_ms,
-            "failure": outcome.as_ref().err().map(message), "errors": list,
+            "failure": outcome.as_ref().err().or(unread.as_ref()).map(message), "errors": list,
         });
         format!("{object}\n")
     } else {
-        transcript(&args.command, &outcome, taken_ms, &errors)
+        let mut rows = transcript(&args.command, &outcome, taken_ms);
+        let queue = errors.iter();
+        rows.extend(queue.map(|it| format!("  error {}: {}", it.code, it.text)));
+        rows.extend(
+            unread.map(|it| format!("  the error queue cannot be read: {}", sentence(&it))),
+        );
+        rows.join("\n") + "\n"
     })?;
     Ok(if is_good {
         Exit::Done
@@ -83,26 +89,31 @@ pub(super) async fn run(folder: &Folder, args: &SendArgs) -> anyhow::Result<Exit
     })
 }
 
-async fn errors(link: &mut Link) -> Vec<ErrorEntry> {
+/// Reads the error queue; returns its entries, and why it could not be read to its end.
+async fn errors(link: &mut Link) -> (Vec<ErrorEntry>, Option<Failure>) {
     let mut found = Vec::new();
     while found.len() < ENTRIES {
-        let reply = link.exchange("SYST:ERR?", Some(Form::Line)).await;
-        let raw = reply.ok().flatten();
-        let entry = raw.and_then(|it| ErrorEntry::read(it.text().ok()?).ok());
-        match entry.filter(|it| it.code != 0) {
-            Some(entry) => found.push(entry),
-            None => break,
+        match error(link).await {
+            Ok(entry) if entry.code == 0 => break,
+            Ok(entry) => found.push(entry),
+            Err(failure) => return (found, Some(failure)),
         }
     }
-    found
+    (found, None)
 }
 
-fn transcript(
-    command: &str,
-    outcome: &Result<Option<Raw>, Failure>,
-    taken_ms: f64,
-    errors: &[ErrorEntry],
-) -> String {
+async fn error(link: &mut Link) -> Result<ErrorEntry, Failure> {
+    let command = "SYST:ERR?";
+    let raw = link.exchange(command, Some(Form::Line)).await?;
+    let line = raw.as_ref().map_or(Err(ReplyError::Empty), Raw::text);
+    line.and_then(ErrorEntry::read)
+        .map_err(|reason| Failure::Malformed {
+            command: command.to_owned(),
+            reason,
+        })
+}
+
+fn transcript(command: &str, outcome: &Result<Option<Raw>, Failure>, taken_ms: f64) -> Vec<String> {
     let mut rows = vec![format!("> {command}")];
     match outcome {
         Ok(Some(raw)) => {
@@ -112,12 +123,7 @@ fn transcript(
         Ok(None) => {}
         Err(failure) => rows.push(format!("  {}", sentence(failure))),
     }
-    rows.extend(
-        errors
-            .iter()
-            .map(|it| format!("  error {}: {}", it.code, it.text)),
-    );
-    rows.join("\n") + "\n"
+    rows
 }
 
 /// Bytes of a block that are shown.
@@ -136,22 +142,26 @@ fn shown(raw: &Raw) -> String {
 }
 
 fn meaning(raw: &Raw) -> String {
-    let text = match raw {
-        Raw::Block(bytes) => return format!("a block of {} bytes", bytes.len()),
-        Raw::Line(_) => raw.text(),
+    let text = match (raw, raw.text()) {
+        (Raw::Block(bytes), _) => return format!("a block of {} bytes", bytes.len()),
+        (Raw::Line(_), Err(reason)) => return reason.to_string(),
+        (Raw::Line(_), Ok(text)) => text,
     };
-    let meant = text.map(
-        |text| match (number(text), string(text), ErrorEntry::read(text)) {
-            (Ok(value), _, _) => format!("the number {value}"),
-            (Err(reason @ (scpi::ReplyError::OverRange | scpi::ReplyError::NotANumber)), _, _) => {
-                reason.to_string()
-            }
-            (Err(_), Ok(text), _) => format!("the string {text}"),
-            (Err(_), Err(_), Ok(entry)) => {
-                format!("the entry {} of an error queue, {}", entry.code, entry.text)
-            }
-            (Err(_), Err(_), Err(_)) => "text".to_owned(),
-        },
-    );
-    meant.unwrap_or_else(|reason| reason.to_string())
+    match number(text) {
+        Ok(value) => return format!("the number {}", decimal(value)),
+        Err(reason @ (ReplyError::OverRange | ReplyError::NotANumber)) => {
+            return reason.to_string();
+        }
+        Err(_) => {}
+    }
+    match (
+        Form::Numbers.read(raw),
+        string(text),
+        ErrorEntry::read(text),
+    ) {
+        (Ok(numbers), _, _) => super::text(&numbers),
+        (_, Ok(text), _) => format!("the string {text}"),
+        (_, _, Ok(entry)) => format!("the entry {} of an error queue, {}", entry.code, entry.text),
+        (Err(_), Err(_), Err(_)) => "text".to_owned(),
+    }
 }

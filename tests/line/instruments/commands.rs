@@ -114,6 +114,22 @@ fn every_profile_passes_its_check_with_its_programs() {
 }
 
 #[test]
+fn an_interrupted_check_makes_the_instrument_safe() {
+    let bench = Bench::new("instrument_interrupted");
+    let ramp = "ramp,from_v=1,to_v=9,step_v=1,dwell_s=1,points=9";
+    let line = format!(
+        "instrument check --link {} --profile smu-2450 --run {ramp} --json",
+        bench.link("smu")
+    );
+    let said = bench.shop.run_interrupted("4", &line).with_status(4);
+    let last = &said.objects().pop().unwrap();
+    assert_eq!(
+        (&last["check"], &last["ok"]),
+        (&"safe".into(), &true.into())
+    );
+}
+
+#[test]
 fn a_wrong_profile_or_argument_is_named() {
     let bench = Bench::new("instrument_refused");
     let said = bench.run("check", "smu", "--profile dmm-34461a --json");
@@ -123,6 +139,9 @@ fn a_wrong_profile_or_argument_is_named() {
         (1, &"wrong_identity".into()),
         "{said:?}"
     );
+    let words = "--profile smu-2450 --config nowhere";
+    let said = bench.run("check", "smu", words).with_status(2);
+    assert!(said.stderr.contains("nowhere"), "{said:?}");
     let wrong = [
         (
             "current_at_level",
@@ -152,8 +171,17 @@ fn scan_names_every_instrument_and_its_profile() {
         assert_eq!(it["link"], bench.link(name));
         assert_eq!(it["profiles"], serde_json::json!([profile]), "{it}");
     }
+    let broken = "config/instruments/dmm-34461a.toml";
+    bench.shop.change(broken, "class = \"dmm\"", "class = \"meter\"");
     let nobody = bench.shop.run("instrument scan --link tcp:127.0.0.1:1");
-    assert_eq!(nobody.with_status(1).stdout, "no instrument answered\n");
+    let nobody = nobody.with_status(1);
+    assert_eq!(nobody.stdout, "no instrument answered\n");
+    for warning in [
+        "127.0.0.1:1: connection refused",
+        "class: found \"meter\"",
+    ] {
+        assert!(nobody.stderr.contains(warning), "{nobody}");
+    }
 }
 
 #[test]
@@ -166,10 +194,29 @@ fn send_shows_reply_and_error_queue() {
         said.stdout.contains("error -113: Undefined header"),
         "{said:?}"
     );
-    let said = bench.run("send", "smu", "NONSENSE? --timeout 200 --json");
-    let object = &said.with_status(1).objects()[0];
-    assert_eq!(object["failure"]["code"], "timeout", "{object}");
-    assert_eq!(object["errors"][0]["code"], -113, "{object}");
+    for name in ["smu", "ac_source"] {
+        let said = bench.run("send", name, "NONSENSE? --timeout 500 --json");
+        let object = &said.with_status(1).objects()[0];
+        assert_eq!(object["failure"]["code"], "timeout", "{object}");
+        assert_eq!(object["errors"][0]["code"], -113, "{object}");
+    }
+    let said = bench.run("send", "rigol", ":WAV:PRE?").with_status(0);
+    assert!(said.stdout.contains("  10 numbers\n"), "{said:?}");
+}
+
+#[test]
+fn a_command_that_nobody_takes_is_no_success() {
+    let bench = Bench::new("instrument_absent");
+    let (adapter, _) = bench.link("ac_source").rsplit_once(':').unwrap();
+    let mut send = bench.shop.command("instrument send --timeout 300 --link");
+    let sent = send.args([&format!("{adapter}:10"), "*CLS"]).output();
+    let said = sent.unwrap();
+    let stdout = String::from_utf8(said.stdout).unwrap();
+    assert_eq!(said.status.code(), Some(1), "{stdout}");
+    assert!(
+        stdout.contains("the error queue cannot be read: SYST:ERR?"),
+        "{stdout}"
+    );
 }
 
 #[test]

@@ -4,38 +4,78 @@
 mod commands;
 mod storm;
 
-use storm::{WAYS, alone, every_fault, storm};
+use storm::{WAYS, Way, every_fault, storm};
 
-/// Queries of a storm of all faults; `cargo bench --bench link_storm` sends a hundred thousand.
-const TOGETHER: u64 = 600;
-/// Queries of a storm of one fault.
-const ALONE: u64 = 150;
+/// Rig time of a storm of all faults; `cargo bench --bench link_storm` sends a hundred thousand queries.
+const TOGETHER_S: f64 = 100.0;
 
 #[tokio::test(start_paused = true)]
 async fn no_reply_reaches_another_query_under_all_faults() {
     for (seed, way) in (1..).zip(WAYS) {
-        let weather = storm(way, seed, TOGETHER, &every_fault(0.01)).await;
+        let weather = storm(way, seed, &every_fault(0.01, TOGETHER_S), TOGETHER_S).await;
         assert!(weather.is_honest(), "{way:?}: {weather:#?}");
-        assert!(weather.delivered > TOGETHER / 20, "{way:?}: {weather:#?}");
-        assert!(weather.failures.len() >= 5, "{way:?}: {weather:#?}");
+        assert!(!weather.failures.is_empty(), "{way:?}: no fault struck");
     }
 }
 
+/// Each fault, the way on which it strikes, and the names of the first failures that it causes; none when a link must bear
+/// it. Half a command, a busy port and another identity need a connection that ends before them.
+const EACH: [(&str, Way, &[&str]); 24] = [
+    ("reply_lost=1", Way::Network, &["timeout"]),
+    ("reply_late=1/1000", Way::Network, &["timeout"]),
+    ("reply_late=1/1500", Way::Network, &["timeout"]),
+    ("reply_late=1/10000", Way::Network, &["timeout"]),
+    ("reply_twice=1", Way::Network, &["malformed"]),
+    ("reply_joined=1", Way::Network, &["timeout"]),
+    ("reply_split=1", Way::Network, &[]),
+    ("reply_crlf=1", Way::Network, &[]),
+    ("block_cut=1", Way::Blocks, &["malformed"]),
+    ("block_empty=1", Way::Blocks, &["malformed"]),
+    ("block_huge=1", Way::Blocks, &["malformed"]),
+    ("block_newline=1", Way::Blocks, &[]),
+    ("closed_before=1", Way::Network, &["disconnected"]),
+    ("closed_inside=1", Way::Network, &["disconnected"]),
+    ("half_kept=1", Way::Network, &["disconnected"]),
+    ("port_busy=1", Way::Network, &["disconnected", "link_down"]),
+    ("send_paused=1/500", Way::Network, &[]),
+    ("errors_overflow=1", Way::Network, &["queue_overflow"]),
+    ("local=1", Way::Network, &["local"]),
+    ("power_cycle=1", Way::Network, &["timeout", "power_cycled"]),
+    ("over_range=1", Way::Network, &["over_range"]),
+    ("not_a_number=1", Way::Network, &["not_a_number"]),
+    (
+        "wrong_identity=1",
+        Way::Network,
+        &["disconnected", "wrong_identity"],
+    ),
+    ("address_changed=1", Way::Adapter, &["adapter_address"]),
+];
+
 #[tokio::test(start_paused = true)]
-async fn each_fault_alone_is_survived() {
-    for (seed, (way, faults)) in (1..).zip(alone(0.03)) {
-        let weather = storm(way, seed, ALONE, &faults).await;
+async fn each_fault_has_its_name_and_leaves_nothing() {
+    let name = |fault: &str| fault.split_once('=').map_or("", |it| it.0).to_owned();
+    let mut tried: Vec<String> = EACH.iter().map(|it| name(it.0)).collect();
+    tried.dedup();
+    let known = rigsim::fault::instrument::list().into_iter();
+    assert_eq!(tried, known.map(|it| it.name).collect::<Vec<_>>());
+    for (fault, way, names) in EACH {
+        let mut faults = vec![format!("{fault}@0.5..2")];
+        if ["half_kept", "port_busy", "wrong_identity"].contains(&name(fault).as_str()) {
+            faults.push("closed_before=1@0.5..0.6".to_owned());
+        }
+        let mut weather = storm(way, 1, &faults, 2.0).await;
         assert!(weather.is_honest(), "{faults:?}: {weather:#?}");
-        assert!(weather.delivered > ALONE / 4, "{faults:?}: {weather:#?}");
+        weather.failures.dedup();
+        let first = weather.failures.iter().take(names.len().max(1));
+        assert!(first.eq(names), "{faults:?}: {weather:#?}");
     }
 }
 
 #[tokio::test(start_paused = true)]
 async fn a_calm_link_delivers_everything() {
     for way in WAYS {
-        let weather = storm(way, 5, ALONE, &[]).await;
+        let weather = storm(way, 5, &[], 0.0).await;
         assert_eq!(weather.delivered, weather.queries, "{way:?}: {weather:#?}");
         assert!(weather.is_honest(), "{way:?}: {weather:#?}");
-        assert!(weather.failures.is_empty(), "{way:?}: {weather:#?}");
     }
 }

@@ -6,7 +6,10 @@
 //!
 //! - a value must be that of its query (else it is *foreign*);
 //! - a program must end by its deadline (else it *hangs*);
-//! - a failure must have a name and a text in every language (else it is *nameless*).
+//! - a failure must have a name and a text in every language (else it is *nameless*);
+//! - after the last fault at most two programs fail (else the link has not *recovered*): the first meets what the faults
+//!   left behind, such as a late reply or the local mode; the second may find, as it resynchronises, that the instrument
+//!   was switched off.
 
 use bus::instrument::{Link, Opener};
 use bus::{Pace, from_streams};
@@ -15,7 +18,6 @@ use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use rigsim::scpi::{file, serve};
 use scpi::{Echo, Failure, Form, LinkAddress, LinkSettings, Profile, Program, Reply, Step};
-use std::collections::BTreeMap;
 use std::time::Instant;
 use texts::Lang;
 use units::RigTime;
@@ -40,8 +42,12 @@ pub const WAYS: [Way; 5] = [
     Way::Blocks,
 ];
 
-/// Most examples of foreign values.
+/// Most examples of broken rules.
 const EXAMPLES: usize = 5;
+/// Programs after the last fault.
+const CALM: u64 = 20;
+/// Of these the ones that may fail.
+const RECOVERY: u64 = 2;
 
 /// Result of a storm.
 #[derive(Debug, Default)]
@@ -50,15 +56,17 @@ pub struct Weather {
     pub queries: u64,
     /// Values delivered.
     pub delivered: u64,
-    /// Failed programs by the name of the failure.
-    pub failures: BTreeMap<&'static str, u64>,
+    /// Names of the failures, in order.
+    pub failures: Vec<&'static str>,
     /// Values of another query.
     pub foreign: u64,
     /// Programs that ended after their deadline.
     pub hangs: u64,
     /// Failures without a name or a text.
     pub nameless: u64,
-    /// Examples of foreign values.
+    /// Programs that failed long after the last fault.
+    pub unrecovered: u64,
+    /// Examples of broken rules.
     pub examples: Vec<String>,
     /// Rig time, seconds.
     pub rig_s: f64,
@@ -69,12 +77,42 @@ pub struct Weather {
 impl Weather {
     /// Returns true when no rule was broken.
     pub fn is_honest(&self) -> bool {
-        self.foreign + self.hangs + self.nameless == 0
+        self.foreign + self.hangs + self.nameless + self.unrecovered == 0
+    }
+
+    fn judge(&mut self, values: &[Value], replies: &[Reply], taken_us: u64) {
+        let expected: Vec<_> = values.iter().flat_map(|it| it.expected()).collect();
+        self.delivered += values.len() as u64;
+        let own = |(found, expected): (&Reply, &Expected)| expected.is(found);
+        if replies.len() != expected.len() || !replies.iter().zip(&expected).all(own) {
+            self.foreign += 1;
+            self.example(format!("{expected:?} after {taken_us} us: {replies:?}"));
+        }
+    }
+
+    /// Notes a failed program, the one with the number `calm` after the last fault.
+    fn note(&mut self, failure: &Failure, calm: u64) {
+        self.failures.push(failure.code());
+        let message = app::instrument::message(failure);
+        let named = Lang::ALL
+            .iter()
+            .all(|lang| message.try_say(*lang).is_some());
+        self.nameless += u64::from(!named);
+        if calm > RECOVERY {
+            self.unrecovered += 1;
+            self.example(format!("program {calm} after the last fault: {failure}"));
+        }
+    }
+
+    fn example(&mut self, text: String) {
+        if self.examples.len() < EXAMPLES {
+            self.examples.push(text);
+        }
     }
 }
 
-/// Returns every fault of instruments and links at this probability.
-pub fn every_fault(probability: f64) -> Vec<String> {
+/// Returns every fault of instruments and links at this probability, until an instant of rig time.
+pub fn every_fault(probability: f64, until_s: f64) -> Vec<String> {
     let all = rigsim::fault::instrument::list().into_iter();
     let all = all.map(|it| match it.default.split_once('/') {
         Some((_, ms)) => format!("{}={probability}/{ms}", it.name),
@@ -82,27 +120,14 @@ pub fn every_fault(probability: f64) -> Vec<String> {
     });
     // At the time-out of a query, and ten times later.
     let late = [1_000, 10_000].map(|ms| format!("reply_late={probability}/{ms}"));
-    all.chain(late).collect()
+    let all = all.chain(late);
+    all.map(|it| format!("{it}@0..{until_s}")).collect()
 }
 
-/// Returns storms of each fault alone at this probability.
-pub fn alone(probability: f64) -> impl Iterator<Item = (Way, Vec<String>)> {
-    let lost = format!("reply_lost={probability}");
-    every_fault(probability).into_iter().map(move |fault| {
-        let (way, cause) = match fault.split_once('=').map_or("", |it| it.0) {
-            "address_changed" => (Way::Adapter, None),
-            name if name.starts_with("block") => (Way::Blocks, None),
-            // They strike at a new connection, which needs a cause.
-            "half_kept" | "port_busy" | "wrong_identity" => (Way::Network, Some(lost.clone())),
-            _ => (Way::Network, None),
-        };
-        (way, cause.into_iter().chain([fault]).collect())
-    })
-}
-
-/// Sends at least `queries` queries under `faults`. Needs a current-thread runtime with a paused clock.
-pub async fn storm(way: Way, seed: u64, queries: u64, faults: &[String]) -> Weather {
-    let (began, pace) = (Instant::now(), Pace::virtual_time());
+/// Sends programs under `faults`, which end at `until_s` of rig time, and some after them. Needs a current-thread runtime
+/// with a paused clock.
+pub async fn storm(way: Way, seed: u64, faults: &[String], until_s: f64) -> Weather {
+    let (wall, pace) = (Instant::now(), Pace::virtual_time());
     let (profile, settings) = settings(way);
     let bench = file::build_text(instruments(way), seed, faults).expect("known faults");
     let (_, plug) = serve::virtual_time(&bench).remove(0);
@@ -110,7 +135,8 @@ pub async fn storm(way: Way, seed: u64, queries: u64, faults: &[String]) -> Weat
     let mut link = Link::new(opener, settings, pace, seed);
     let mut random = SplitMix64::seed_from_u64(seed);
     let mut weather = Weather::default();
-    while weather.queries < queries {
+    let mut calm = 0;
+    while calm < CALM {
         let first = weather.queries;
         let values: Vec<Value> = (first..=first + random.next_u64() % 4)
             .map(|number| Value { way, number })
@@ -124,6 +150,7 @@ pub async fn storm(way: Way, seed: u64, queries: u64, faults: &[String]) -> Weat
         // The deadline is looked at between the moves, of which each ends within the time of a query.
         let limit = settings.longest(&program) + settings.limit + settings.limit;
         let began = pace.now();
+        calm += u64::from(began.as_seconds() >= until_s);
         let outcome = tokio::select! {
             outcome = link.run(program) => Some(outcome),
             () = pace.sleep_until(began + limit) => None,
@@ -131,35 +158,12 @@ pub async fn storm(way: Way, seed: u64, queries: u64, faults: &[String]) -> Weat
         match outcome {
             None => weather.hangs += 1,
             Some(Ok(replies)) => weather.judge(&values, &replies, pace.now().since(began).0),
-            Some(Err(failure)) => weather.note(&failure),
+            Some(Err(failure)) => weather.note(&failure, calm),
         }
     }
     weather.rig_s = pace.now().since(RigTime(0)).as_seconds();
-    weather.wall_s = began.elapsed().as_secs_f64();
+    weather.wall_s = wall.elapsed().as_secs_f64();
     weather
-}
-
-impl Weather {
-    fn judge(&mut self, values: &[Value], replies: &[Reply], taken_us: u64) {
-        let expected: Vec<_> = values.iter().flat_map(|it| it.expected()).collect();
-        self.delivered += values.len() as u64;
-        let own = |(found, expected): (&Reply, &Expected)| expected.is(found);
-        if replies.len() != expected.len() || !replies.iter().zip(&expected).all(own) {
-            self.foreign += 1;
-            let found = format!("{expected:?} after {taken_us} us: {replies:?}");
-            self.examples
-                .extend((self.examples.len() < EXAMPLES).then_some(found));
-        }
-    }
-
-    fn note(&mut self, failure: &Failure) {
-        *self.failures.entry(failure.code()).or_default() += 1;
-        let message = app::instrument::message(failure);
-        let named = Lang::ALL
-            .iter()
-            .all(|lang| message.try_say(*lang).is_some());
-        self.nameless += u64::from(!named);
-    }
 }
 
 /// The value that a query asks for.

@@ -70,10 +70,26 @@ impl Link {
     /// Fails with the first reason why its values are not certain; then the next program resynchronises first. A program
     /// whose future is dropped counts as a failed one.
     pub async fn run(&mut self, program: Program) -> Result<Vec<Reply>, Failure> {
+        self.carry_out(program, Session::start).await
+    }
+
+    /// Runs a program that makes the instrument safe, also when its set-up fails.
+    ///
+    /// # Errors
+    /// Fails as [`Link::run`] does.
+    pub async fn make_safe(&mut self, program: Program) -> Result<Vec<Reply>, Failure> {
+        self.carry_out(program, Session::start_safe).await
+    }
+
+    async fn carry_out(
+        &mut self,
+        program: Program,
+        start: fn(&mut Session, Program) -> Move,
+    ) -> Result<Vec<Reply>, Failure> {
         self.programs += 1;
         let limit = self.session.settings().longest(&program);
         let deadline = self.pace.now() + limit;
-        let mut next = self.session.start(program);
+        let mut next = start(&mut self.session, program);
         loop {
             let outcome = match next {
                 Move::Done(result) => return result,
@@ -91,13 +107,25 @@ impl Link {
     /// for tools that show what an instrument does by itself. Without `form` there is no reply.
     ///
     /// # Errors
-    /// Fails as [`Link::run`] does.
+    /// Fails as [`Link::run`] does; then the next program resynchronises first.
     pub async fn exchange(
         &mut self,
         command: &str,
         form: Option<Form>,
     ) -> Result<Option<Raw>, Failure> {
         self.programs += 1;
+        let outcome = self.unproven(command, form).await;
+        if outcome.is_err() {
+            self.session.doubt();
+        }
+        outcome
+    }
+
+    async fn unproven(
+        &mut self,
+        command: &str,
+        form: Option<Form>,
+    ) -> Result<Option<Raw>, Failure> {
         let (framing, limit) = (
             self.session.settings().framing,
             self.session.settings().limit,
@@ -112,16 +140,7 @@ impl Link {
             let (bytes, tail) = framing.proven(framing.send(command));
             return self.send(bytes, limit, tail.as_deref()).await;
         };
-        let (bytes, tail) = framing.proven(framing.ask(command, limit));
-        let command = command.to_owned();
-        let question = Question {
-            command,
-            bytes,
-            form,
-            limit,
-            tail,
-            strict: true,
-        };
+        let question = Question::new(framing, command, form, limit);
         self.ask(&question).await.map(Some)
     }
 
@@ -164,7 +183,7 @@ impl Link {
         }
         let Some(tail) = tail else {
             let deadline = self.pace.now() + limit;
-            self.write(&bytes, deadline, limit).await?;
+            self.write(&bytes, deadline).await?;
             return Ok(None);
         };
         let question = Question {
@@ -189,8 +208,7 @@ impl Link {
         let deadline = self.pace.now() + question.limit;
         if !question.bytes.is_empty() {
             self.reader.clear();
-            self.write(&question.bytes, deadline, question.limit)
-                .await?;
+            self.write(&question.bytes, deadline).await?;
         }
         let malformed = |reason| Failure::Malformed {
             command: command(),
@@ -246,15 +264,14 @@ impl Link {
         }
     }
 
-    async fn write(&mut self, bytes: &[u8], deadline: RigTime, limit: Span) -> Result<(), Failure> {
+    /// Writes a message; one that leaves in part ends the connection, so that nothing is added to it.
+    async fn write(&mut self, bytes: &[u8], deadline: RigTime) -> Result<(), Failure> {
         self.note(Direction::Sent, bytes);
         let stream = self.stream.as_mut().ok_or_else(closed)?;
         let written = tokio::select! {
             biased;
             written = stream.write_all(bytes) => written,
-            () = self.timer.until(deadline) => {
-                return Err(Failure::Timeout { command: command(bytes), limit });
-            }
+            () = self.timer.until(deadline) => Err(io::ErrorKind::TimedOut.into()),
         };
         written.map_err(|error| self.broken(&error))
     }

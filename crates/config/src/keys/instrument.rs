@@ -44,7 +44,7 @@ pub const FILE: &[Key] = keys! {
     key("error_depth", whole(1, 255, ""), "scpi", "entries that the error queue holds");
     optional("echo", Form::Choice(&["ese", "identity"]), "scpi",
         "proof that replies are in step: a number in `*ESE`, or `*IDN?` for an instrument without it; `ese` without it");
-    optional("terminator", Form::Choice(&["lf", "cr", "crlf"]), "scpi", "end of a message; `lf` without it");
+    optional("terminator", Form::Choice(&["lf", "crlf"]), "scpi", "end of a command; `lf` without it; a reply ends with a line feed");
     optional("flow", Form::Choice(&["none", "xon", "rts"]), "scpi", "flow control of a serial port; `none` without it");
     optional("remote", Form::Text, "scpi", "command that ends local mode, sent first");
     key("set_up", STEPS, "scpi", "sent at the start and after every doubt");

@@ -74,8 +74,12 @@ fn a_program_gets_its_arguments() {
         "program waveform, argument channel: found 5, expected a number from 1 to 4"
     );
     assert!(wrong(&[("channel", 1.0)]).contains("argument points: found nothing"));
+    assert_eq!(
+        wrong(&[("chanel", 1.0)]),
+        "program waveform: found argument \"chanel\", expected channel or points"
+    );
     assert!(
-        wrong(&[("chanel", 1.0)]).contains("argument chanel: found 1, expected no such argument")
+        wrong(&[("channel", 1.0), ("channel", 2.0)]).contains("channel: found 1 and 2, expected")
     );
     assert!(
         profile
@@ -84,6 +88,17 @@ fn a_program_gets_its_arguments() {
             .to_string()
             .contains("arm, force_trigger, state, waveform")
     );
+}
+
+#[test]
+fn a_setting_is_proven_with_its_argument() {
+    let profile = load_instrument(&folder(), "smu-2450").unwrap();
+    let arguments = [("range_v", 20.0), ("limit_a", 0.05)];
+    let program = profile.program("source_range", &arguments).unwrap();
+    let Some(Step::Ask { expect, .. }) = program.steps.last() else {
+        panic!("{program:?}");
+    };
+    assert_eq!(expect.as_deref(), Some("0.05"));
 }
 
 #[test]
@@ -128,6 +143,18 @@ fn a_wrong_profile_is_refused_with_its_line() {
         "VOLT {level}",
         "{level}",
         "[program].current_at_level.steps[0].send: found \"level\", expected the name of an argument in braces",
+    );
+    refused(
+        "expect = \"{limit_a}\"",
+        "expect = \"{limit}\"",
+        "{limit}",
+        "[program].source_range.steps[2].ask: found \"limit\", expected the name of an argument in braces",
+    );
+    refused(
+        "makers = [\"KEITHLEY\"]",
+        "makers = []",
+        "makers",
+        "makers: found an empty list, expected at least one beginning",
     );
     refused(
         "{ send = \":OUTP ON\" }",

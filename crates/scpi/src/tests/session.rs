@@ -1,6 +1,6 @@
 //! Tests of the state machine alone: its moves against scripted ends.
 
-use crate::{Failure, Form, LinkSettings, Move, Program, Raw, Reply, Session, Step};
+use crate::{Echo, Failure, Form, LinkSettings, Move, Program, Raw, Reply, Session, Step};
 use units::Span;
 
 const IDENTITY: &str = "MAKER,MODEL,1,1";
@@ -11,6 +11,7 @@ struct Bench {
     ese: String,
     events: &'static str,
     errors: Vec<&'static str>,
+    identity: &'static str,
     /// Reply to every other query.
     value: Result<&'static str, Failure>,
     sent: Vec<String>,
@@ -18,11 +19,16 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
+        Self::with_echo(Echo::Ese)
+    }
+
+    fn with_echo(echo: Echo) -> Self {
         let set_up = Program {
             steps: vec![Step::send("SETUP")],
         };
         let settings = LinkSettings {
             set_up,
+            echo,
             ..LinkSettings::default()
         };
         Self {
@@ -30,6 +36,7 @@ impl Bench {
             ese: "0".to_owned(),
             events: "128",
             errors: Vec::new(),
+            identity: IDENTITY,
             value: Ok("1.5"),
             sent: Vec::new(),
         }
@@ -39,7 +46,11 @@ impl Bench {
         let program = Program {
             steps: vec![Step::ask("READ?", Form::Number)],
         };
-        let mut next = self.session.start(program);
+        let next = self.session.start(program);
+        self.carry_out(next)
+    }
+
+    fn carry_out(&mut self, mut next: Move) -> Result<Vec<Reply>, Failure> {
         for _ in 0..1000 {
             let outcome = match next {
                 Move::Done(result) => return result,
@@ -70,7 +81,7 @@ impl Bench {
         let text = match command {
             "*ESE?" => self.ese.clone(),
             "*ESR?" => std::mem::replace(&mut self.events, "0").to_owned(),
-            "*IDN?" => IDENTITY.to_owned(),
+            "*IDN?" => self.identity.to_owned(),
             "SYST:ERR?" => self.errors.pop().unwrap_or("0,\"No error\"").to_owned(),
             _ => self.value.clone()?.to_owned(),
         };
@@ -116,11 +127,40 @@ fn a_time_out_leaves_doubt_and_returns_at_once() {
 }
 
 #[test]
+fn a_failure_outside_a_program_leaves_doubt() {
+    let mut bench = Bench::new();
+    bench.run().unwrap();
+    bench.session.doubt();
+    bench.run().unwrap();
+    assert_eq!(bench.set_ups(), 2);
+}
+
+#[test]
 fn an_unknown_query_is_named_by_the_instrument() {
     let mut bench = Bench::new();
     bench.run().unwrap();
-    (bench.value, bench.errors) = (Err(late()), vec!["-113,\"Undefined header\""]);
+    let queue = vec!["-420,\"Query UNTERMINATED\"", "-113,\"Undefined header\""];
+    (bench.value, bench.errors) = (Err(late()), queue);
+    let (code, text) = (-113, "Undefined header".to_owned());
+    assert_eq!(bench.run(), Err(Failure::Instrument { code, text }));
+    bench.value = Ok("1.5");
+    let next = bench.run();
+    assert_eq!(next, Ok(vec![Reply::Number(1.5)]), "no error is left");
+}
+
+#[test]
+fn a_failed_set_up_keeps_nothing_unsafe() {
+    let mut bench = Bench::new();
+    bench.errors = vec!["-222,\"Data out of range\""];
     assert_eq!(bench.run().unwrap_err().code(), "instrument");
+    let off = Program {
+        steps: vec![Step::send("OFF")],
+    };
+    let next = bench.session.start_safe(off);
+    assert_eq!(bench.carry_out(next), Ok(Vec::new()));
+    assert!(bench.sent.contains(&"OFF".to_owned()) && bench.set_ups() == 1);
+    bench.run().unwrap();
+    assert_eq!(bench.set_ups(), 2, "the next program sets up");
 }
 
 #[test]
@@ -170,6 +210,15 @@ fn the_number_of_another_program_proves_nothing() {
     bench.run().unwrap();
     bench.ese = "128".to_owned();
     assert_eq!(bench.run().unwrap_err().code(), "out_of_step");
+}
+
+#[test]
+fn another_identity_is_no_proof() {
+    let mut bench = Bench::with_echo(Echo::Identity);
+    bench.run().unwrap();
+    assert_eq!(bench.run(), Ok(vec![Reply::Number(1.5)]));
+    bench.identity = "MAKER,MODEL,2,1";
+    assert_eq!(bench.run().unwrap_err().code(), "wrong_identity");
 }
 
 #[test]
