@@ -30,8 +30,11 @@ pub struct Device {
     indefinite: bool,
     /// Query that waits for the end of the measurement.
     waiting: Option<Unit>,
+    /// True after `*OPC` until the measurement ends.
     complete: bool,
     free_us: u64,
+    /// Instant of a power cycle that has not happened yet.
+    cycle_us: Option<u64>,
     /// True while the front panel has control.
     local: bool,
 }
@@ -55,6 +58,7 @@ impl Device {
             waiting: None,
             complete: false,
             free_us: 0,
+            cycle_us: None,
             local: false,
         }
     }
@@ -66,11 +70,9 @@ impl Device {
             self.status.overflow();
         }
         self.local |= strikes(Fault::Local);
-        let cycled = strikes(Fault::PowerCycle);
-        if cycled {
+        if strikes(Fault::PowerCycle) {
             self.clear();
-            self.status = Status::new(DEPTH);
-            self.free_us = at_us + self.instrument.reset(at_us);
+            self.cycle_us = Some(at_us);
             return;
         }
         let units: VecDeque<_> = units(message).into();
@@ -95,6 +97,9 @@ impl Device {
 
     /// Returns the next instant at which something happens inside the instrument.
     pub fn next_us(&self) -> Option<u64> {
+        if self.cycle_us.is_some() {
+            return self.cycle_us;
+        }
         let job = self.instrument.next_us();
         let unit = match (&self.waiting, self.messages.front()) {
             (Some(_), _) => job.is_none().then_some(self.free_us),
@@ -118,6 +123,12 @@ impl Device {
 
     /// Performs what is due at `t_us`.
     pub fn tick(&mut self, t_us: u64, circuit: &mut dyn Circuit, faults: &mut InstrumentFaults) {
+        if self.cycle_us.take().is_some() {
+            self.status = Status::new(DEPTH);
+            self.local = false;
+            self.free_us = t_us + self.instrument.reset(circuit);
+            return;
+        }
         if self.instrument.next_us().is_some_and(|next| next <= t_us) {
             self.instrument.tick(t_us, circuit);
             return;
@@ -130,7 +141,7 @@ impl Device {
             let fetched = match unit.nodes[0].as_str() {
                 "*OPC" => Ok(Outcome::Text("1".into(), 0)),
                 "*WAI" => Ok(Outcome::Done(0)),
-                _ => self.instrument.fetch(&unit, t_us, circuit),
+                _ => self.instrument.fetch(&unit),
             };
             self.conclude(&unit, fetched, t_us, faults);
         } else if self.messages.front().is_some_and(|it| it.at_us <= t_us)
@@ -156,7 +167,7 @@ impl Device {
         t_us: u64,
         circuit: &mut dyn Circuit,
     ) -> Result<Outcome, Failure> {
-        if let Some(outcome) = self.common(unit, t_us)? {
+        if let Some(outcome) = self.common(unit, circuit)? {
             return Ok(outcome);
         }
         if self.local && !unit.query {
@@ -166,7 +177,11 @@ impl Device {
     }
 
     /// Executes the commands that every instrument has.
-    fn common(&mut self, unit: &Unit, t_us: u64) -> Result<Option<Outcome>, Failure> {
+    fn common(
+        &mut self,
+        unit: &Unit,
+        circuit: &mut dyn Circuit,
+    ) -> Result<Option<Outcome>, Failure> {
         let status = &mut self.status;
         let header = unit.nodes.join(":");
         let text = |number: String| Outcome::Text(number, COMMON_US);
@@ -185,7 +200,7 @@ impl Device {
             }
             ("*RST", false) => {
                 self.complete = false;
-                Outcome::Done(self.instrument.reset(t_us))
+                Outcome::Done(self.instrument.reset(circuit))
             }
             ("*ESE", false) => {
                 status.event_enable = mask()?;
