@@ -313,6 +313,23 @@ fn virtual_time_serves_streams_at_their_latency() {
     });
 }
 
+#[test]
+fn a_served_circuit_advances_without_a_host() {
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .start_paused(true)
+        .build()
+        .unwrap();
+    runtime.block_on(async {
+        let shared = bench(SMU);
+        super::serve::real_time(&shared).await.unwrap();
+        tokio::task::yield_now().await;
+        tokio::time::advance(std::time::Duration::from_secs(10)).await;
+        tokio::task::yield_now().await;
+        assert_eq!(shared.lock().now_us, 10_000_000);
+    });
+}
+
 const DC: &str = "[circuit]\nkind = \"dc\"
 [[instrument]]\nname = \"in\"\nmodel = \"2450\"\ntcp = 0\nexact = true
 [[instrument]]\nname = \"out\"\nmodel = \"2450\"\nat = \"output\"\ntcp = 0\nexact = true\n";
