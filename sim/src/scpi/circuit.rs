@@ -1,4 +1,4 @@
-//! Electrical boundary between instruments and what hangs at their terminals.
+//! Electrical boundary between instruments and what they connect to.
 
 use crate::table::read_words;
 
@@ -112,7 +112,7 @@ pub struct Reading {
     pub amps: f64,
 }
 
-/// What hangs at the terminals of the instruments.
+/// What the instruments connect to.
 pub trait Circuit: Send {
     /// Advances to `t_us`, which never decreases.
     fn advance(&mut self, t_us: u64);

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::circuit::Circuit;
-use super::instrument::{Instrument, Outcome};
+use super::instrument::{Instrument, Moment, Outcome};
 use super::message::{Unit, units};
 use super::status::{Failure, OPC, Status};
 use crate::fault::instrument::{InstrumentFault as Fault, InstrumentFaults};
@@ -123,14 +123,18 @@ impl Device {
 
     /// Performs what is due at `t_us`.
     pub fn tick(&mut self, t_us: u64, circuit: &mut dyn Circuit, faults: &mut InstrumentFaults) {
+        let at = &mut Moment {
+            now_us: t_us,
+            circuit,
+        };
         if self.cycle_us.take().is_some() {
             self.status = Status::new(DEPTH);
             self.local = false;
-            self.free_us = t_us + self.instrument.reset(circuit);
+            self.free_us = t_us + self.instrument.reset(at);
             return;
         }
         if self.instrument.next_us().is_some_and(|next| next <= t_us) {
-            self.instrument.tick(t_us, circuit);
+            self.instrument.tick(at);
             return;
         }
         if self.complete && self.instrument.next_us().is_none() {
@@ -152,7 +156,7 @@ impl Device {
         {
             match unit {
                 Ok(unit) => {
-                    let outcome = self.run(&unit, t_us, circuit);
+                    let outcome = self.run(&unit, at);
                     self.conclude(&unit, outcome, t_us, faults);
                 }
                 Err(failure) => self.fail(failure),
@@ -161,27 +165,18 @@ impl Device {
         self.finish(t_us);
     }
 
-    fn run(
-        &mut self,
-        unit: &Unit,
-        t_us: u64,
-        circuit: &mut dyn Circuit,
-    ) -> Result<Outcome, Failure> {
-        if let Some(outcome) = self.common(unit, circuit)? {
+    fn run(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Outcome, Failure> {
+        if let Some(outcome) = self.common(unit, at)? {
             return Ok(outcome);
         }
         if self.local && !unit.query {
             return Err(Failure::LOCAL);
         }
-        self.instrument.execute(unit, t_us, circuit)
+        self.instrument.execute(unit, at)
     }
 
     /// Executes the commands that every instrument has.
-    fn common(
-        &mut self,
-        unit: &Unit,
-        circuit: &mut dyn Circuit,
-    ) -> Result<Option<Outcome>, Failure> {
+    fn common(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Option<Outcome>, Failure> {
         let status = &mut self.status;
         let header = unit.nodes.join(":");
         let text = |number: String| Outcome::Text(number, COMMON_US);
@@ -200,7 +195,7 @@ impl Device {
             }
             ("*RST", false) => {
                 self.complete = false;
-                Outcome::Done(self.instrument.reset(circuit))
+                Outcome::Done(self.instrument.reset(at))
             }
             ("*ESE", false) => {
                 status.event_enable = mask()?;

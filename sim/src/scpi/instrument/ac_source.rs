@@ -4,7 +4,7 @@
 use super::errors::Accuracy;
 use super::settings::{Changed, Kind, Setting};
 use super::window::Window;
-use super::{Body, Instrument, Kit, Outcome};
+use super::{Body, Instrument, Kit, Moment, Outcome};
 use crate::scpi::circuit::{Circuit, Drive, Terminal};
 use crate::scpi::message::{Unit, nr3};
 use crate::scpi::status::Failure;
@@ -114,49 +114,39 @@ impl Instrument for AcSource {
         &mut self.body
     }
 
-    fn reset(&mut self, circuit: &mut dyn Circuit) -> u64 {
+    fn reset(&mut self, at: &mut Moment<'_>) -> u64 {
         self.body.settings.reset();
         (self.job, self.last, self.off_us) = (None, None, None);
-        self.drive(circuit, false);
+        self.drive(at.circuit, false);
         RESET_US
     }
 
-    fn changed(
-        &mut self,
-        changed: Changed,
-        now_us: u64,
-        circuit: &mut dyn Circuit,
-    ) -> Result<u64, Failure> {
+    fn changed(&mut self, changed: Changed, at: &mut Moment<'_>) -> Result<u64, Failure> {
         if !self.is_allowed() {
             self.body.settings.set(changed.key, changed.before);
             return Err(Failure::OUT_OF_RANGE);
         }
         match (changed.key, changed.before != 0.0) {
             ("output", true) if !self.body.settings.on("output") => {
-                self.off_us = Some(self.off_at(now_us, circuit));
+                self.off_us = Some(self.off_at(at.now_us, at.circuit));
             }
             ("output", was_on) => {
                 self.off_us = None;
-                self.drive(circuit, !was_on);
+                self.drive(at.circuit, !was_on);
             }
-            ("volts" | "hz", _) if self.off_us.is_none() => self.drive(circuit, false),
+            ("volts" | "hz", _) if self.off_us.is_none() => self.drive(at.circuit, false),
             _ => {}
         }
         Ok(0)
     }
 
-    fn perform(
-        &mut self,
-        unit: &Unit,
-        now_us: u64,
-        _circuit: &mut dyn Circuit,
-    ) -> Result<Outcome, Failure> {
+    fn perform(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Outcome, Failure> {
         let has = |pattern| unit.matches(pattern).is_some();
         let command_us = self.body.command_us;
         match unit.query {
             true if measured(unit, ":MEASure").is_some() => {
                 let window_us = CYCLES * 1e6 / self.body.settings.number("hz");
-                self.job = Some(Window::open(now_us, window_us, SAMPLES));
+                self.job = Some(Window::open(at.now_us, window_us, SAMPLES));
                 Ok(Outcome::AfterJob)
             }
             true if measured(unit, ":FETCh").is_some() => self.fetch(unit),
@@ -199,14 +189,14 @@ impl Instrument for AcSource {
         Some(self.job?.end_us())
     }
 
-    fn tick(&mut self, now_us: u64, circuit: &mut dyn Circuit) {
-        if self.off_us.is_some_and(|off_us| off_us <= now_us) {
+    fn tick(&mut self, at: &mut Moment<'_>) {
+        if self.off_us.is_some_and(|off_us| off_us <= at.now_us) {
             self.off_us = None;
-            self.drive(circuit, false);
+            self.drive(at.circuit, false);
             return;
         }
         if let Some(window) = &mut self.job
-            && window.take(circuit.at(self.body.at))
+            && window.take(at.circuit.at(self.body.at))
         {
             self.last = self.job.take();
         }

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use super::errors::Accuracy;
 use super::settings::{Changed, Kind, Setting};
-use super::{Body, Channel, Instrument, Kit, Outcome};
+use super::{Body, Channel, Instrument, Kit, Moment, Outcome};
 use crate::scpi::circuit::{Circuit, Terminal};
 use crate::scpi::message::{Unit, block, nr3};
 use crate::scpi::status::Failure;
@@ -344,24 +344,19 @@ impl Instrument for Digitizer {
         &mut self.body
     }
 
-    fn reset(&mut self, _: &mut dyn Circuit) -> u64 {
+    fn reset(&mut self, _: &mut Moment<'_>) -> u64 {
         self.body.settings.reset();
         self.capture = None;
         self.memory.clear();
         400_000
     }
 
-    fn changed(&mut self, changed: Changed, _: u64, _: &mut dyn Circuit) -> Result<u64, Failure> {
+    fn changed(&mut self, changed: Changed, _: &mut Moment<'_>) -> Result<u64, Failure> {
         self.follow(changed);
         Ok(0)
     }
 
-    fn perform(
-        &mut self,
-        unit: &Unit,
-        now_us: u64,
-        _circuit: &mut dyn Circuit,
-    ) -> Result<Outcome, Failure> {
+    fn perform(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Outcome, Failure> {
         let has = |pattern| unit.matches(pattern).is_some();
         let command_us = self.body.command_us;
         let text = |text: String| Ok(Outcome::Text(text, command_us));
@@ -381,12 +376,12 @@ impl Instrument for Digitizer {
             }
             false if has(":SINGle") || has(":RUN") || has(":DIGitize") && !is_rigol => {
                 let auto = self.body.settings.choice("sweep") == "AUTO";
-                self.start(now_us, auto && !has(":SINGle"));
+                self.start(at.now_us, auto && !has(":SINGle"));
                 Ok(done)
             }
             false if has(":TFORce") || has(":TRIGger:FORCe") => {
                 let capture = self.capture.as_mut().ok_or(Failure::TRIGGER_IGNORED)?;
-                capture.force_us = Some(now_us);
+                capture.force_us = Some(at.now_us);
                 Ok(done)
             }
             false if has(":STOP") => {
@@ -416,15 +411,15 @@ impl Instrument for Digitizer {
         Some(capture.next_us + later * capture.step_us)
     }
 
-    fn tick(&mut self, now_us: u64, circuit: &mut dyn Circuit) {
-        let (codes, volts) = self.convert(circuit);
+    fn tick(&mut self, at: &mut Moment<'_>) {
+        let (codes, volts) = self.convert(at.circuit);
         let level = self.body.settings.number("level");
         let above_v = match self.body.settings.choice("slope") {
             "POSitive" => volts - level,
             _ => level - volts,
         };
         if let Some(capture) = &mut self.capture
-            && capture.take(codes, above_v, now_us)
+            && capture.take(codes, above_v, at.now_us)
             && let Some(capture) = self.capture.take()
         {
             (self.step_us, self.before) = (capture.step_us, capture.before);

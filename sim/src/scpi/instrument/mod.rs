@@ -33,36 +33,34 @@ pub enum Outcome {
     AfterJob,
 }
 
+/// Present instant, and the circuit at this instant.
+pub struct Moment<'a> {
+    /// Microseconds since the bench began.
+    pub now_us: u64,
+    /// What the instruments connect to, advanced to this instant.
+    pub circuit: &'a mut dyn Circuit,
+}
+
 /// An instrument behind its command interpreter.
 pub trait Instrument: Send {
     /// Returns identity, settings, latency and errors.
     fn body(&mut self) -> &mut Body;
 
     /// Returns to the settings of `*RST` and disconnects sources; returns the time that it takes, microseconds.
-    fn reset(&mut self, circuit: &mut dyn Circuit) -> u64;
+    fn reset(&mut self, at: &mut Moment<'_>) -> u64;
 
     /// Follows a setting that a command has changed; returns the time that it takes beside that of a command,
     /// microseconds.
     ///
     /// # Errors
     /// Fails with the entry for the error queue.
-    fn changed(
-        &mut self,
-        changed: Changed,
-        now_us: u64,
-        circuit: &mut dyn Circuit,
-    ) -> Result<u64, Failure>;
+    fn changed(&mut self, changed: Changed, at: &mut Moment<'_>) -> Result<u64, Failure>;
 
     /// Performs a command or query that is neither a common one nor a setting.
     ///
     /// # Errors
     /// Fails with the entry for the error queue.
-    fn perform(
-        &mut self,
-        unit: &Unit,
-        now_us: u64,
-        circuit: &mut dyn Circuit,
-    ) -> Result<Outcome, Failure>;
+    fn perform(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Outcome, Failure>;
 
     /// Answers a query that waited for the end of the job.
     ///
@@ -79,26 +77,21 @@ pub trait Instrument: Send {
     }
 
     /// Lets the job act.
-    fn tick(&mut self, now_us: u64, circuit: &mut dyn Circuit);
+    fn tick(&mut self, at: &mut Moment<'_>);
 
     /// Executes a command or query that is no common one.
     ///
     /// # Errors
     /// Fails with the entry for the error queue.
-    fn execute(
-        &mut self,
-        unit: &Unit,
-        now_us: u64,
-        circuit: &mut dyn Circuit,
-    ) -> Result<Outcome, Failure> {
+    fn execute(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Outcome, Failure> {
         let command_us = self.body().command_us;
         match self.body().settings.execute(unit)? {
             Some(Handled::Query(text)) => Ok(Outcome::Text(text, command_us)),
             Some(Handled::Change(changed)) => {
-                let further_us = self.changed(changed, now_us, circuit)?;
+                let further_us = self.changed(changed, at)?;
                 Ok(Outcome::Done(command_us + further_us))
             }
-            None => self.perform(unit, now_us, circuit),
+            None => self.perform(unit, at),
         }
     }
 }
@@ -153,7 +146,7 @@ read_fields!(Channel { at, ratio }, finish);
 /// Settings of one instrument in the file.
 #[derive(Debug, Clone)]
 pub struct Fitting {
-    /// Terminals at which the instrument hangs.
+    /// Terminals to which the instrument connects.
     pub at: Option<Terminal>,
     /// Channels of a digitizer.
     pub channels: Vec<Channel>,
@@ -172,7 +165,7 @@ struct Kit {
     latency_us: u64,
     /// Time of a command, microseconds.
     command_us: u64,
-    /// Terminals at which the instrument hangs, unless the file names others.
+    /// Terminals to which the instrument connects, unless the file names others.
     at: Terminal,
     settings: &'static [Setting],
 }

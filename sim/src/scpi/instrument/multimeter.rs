@@ -3,7 +3,7 @@
 use super::errors::Accuracy;
 use super::settings::{Changed, Kind, Setting};
 use super::window::Window;
-use super::{Body, Instrument, Kit, Outcome};
+use super::{Body, Instrument, Kit, Moment, Outcome};
 use crate::scpi::circuit::{Circuit, Drive, Terminal};
 use crate::scpi::message::{Unit, nr3};
 use crate::scpi::status::Failure;
@@ -277,8 +277,8 @@ impl Instrument for Multimeter {
         &mut self.body
     }
 
-    fn reset(&mut self, circuit: &mut dyn Circuit) -> u64 {
-        self.stop(circuit);
+    fn reset(&mut self, at: &mut Moment<'_>) -> u64 {
+        self.stop(at.circuit);
         self.body.settings.reset();
         self.function = 0;
         self.ranges = [None; FUNCTIONS.len()];
@@ -286,17 +286,12 @@ impl Instrument for Multimeter {
         60_000
     }
 
-    fn changed(&mut self, _: Changed, _: u64, _: &mut dyn Circuit) -> Result<u64, Failure> {
+    fn changed(&mut self, _: Changed, _: &mut Moment<'_>) -> Result<u64, Failure> {
         Ok(0)
     }
 
-    fn perform(
-        &mut self,
-        unit: &Unit,
-        now_us: u64,
-        circuit: &mut dyn Circuit,
-    ) -> Result<Outcome, Failure> {
-        if let Some(outcome) = self.select(unit, circuit)? {
+    fn perform(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Outcome, Failure> {
+        if let Some(outcome) = self.select(unit, at.circuit)? {
             return Ok(outcome);
         }
         let has = |pattern| unit.matches(pattern).is_some();
@@ -305,7 +300,7 @@ impl Instrument for Multimeter {
         let done = Outcome::Done(self.body.command_us);
         match unit.query {
             false if heads("CONF") => {
-                self.configure(unit, circuit)?;
+                self.configure(unit, at.circuit)?;
                 Ok(Outcome::Done(CONFIGURE_US))
             }
             true if has(":CONFigure") => {
@@ -315,12 +310,12 @@ impl Instrument for Multimeter {
                 Ok(Outcome::Text(text, self.body.command_us))
             }
             true if heads("MEAS") => {
-                self.configure(unit, circuit)?;
-                self.start(now_us + CONFIGURE_US, circuit);
+                self.configure(unit, at.circuit)?;
+                self.start(at.now_us + CONFIGURE_US, at.circuit);
                 Ok(Outcome::AfterJob)
             }
             true if has(":READ") && immediate => {
-                self.start(now_us, circuit);
+                self.start(at.now_us, at.circuit);
                 Ok(Outcome::AfterJob)
             }
             true if has(":READ") => Err(Failure::TRIGGER_DEADLOCK),
@@ -330,18 +325,18 @@ impl Instrument for Multimeter {
             }
             false if has(":INITiate[:IMMediate]") => {
                 match immediate {
-                    true => self.start(now_us, circuit),
+                    true => self.start(at.now_us, at.circuit),
                     false => self.armed = true,
                 }
                 Ok(done)
             }
             false if has("*TRG") && self.armed => {
-                self.start(now_us, circuit);
+                self.start(at.now_us, at.circuit);
                 Ok(done)
             }
             false if has("*TRG") => Err(Failure::TRIGGER_IGNORED),
             false if has(":ABORt") => {
-                self.stop(circuit);
+                self.stop(at.circuit);
                 Ok(done)
             }
             true | false => Err(Failure::UNDEFINED_HEADER),
@@ -364,19 +359,19 @@ impl Instrument for Multimeter {
         Some(self.job?.1.end_us())
     }
 
-    fn tick(&mut self, now_us: u64, circuit: &mut dyn Circuit) {
+    fn tick(&mut self, at: &mut Moment<'_>) {
         let Some((left, window)) = &mut self.job else {
             return;
         };
-        if !window.take(circuit.at(self.body.at)) {
+        if !window.take(at.circuit.at(self.body.at)) {
             return;
         }
         let (left, window) = (*left - 1, *window);
         let read = self.reading(&window);
         self.readings.push(read);
         match left {
-            0 => self.stop(circuit),
-            left => self.job = Some((left, self.window(now_us))),
+            0 => self.stop(at.circuit),
+            left => self.job = Some((left, self.window(at.now_us))),
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use super::errors::Accuracy;
 use super::settings::{Changed, Kind, Setting, Settings};
-use super::{Body, Instrument, Kit, Outcome};
+use super::{Body, Instrument, Kit, Moment, Outcome};
 use crate::scpi::circuit::{Circuit, Drive, Pulses, Terminal};
 use crate::scpi::message::Unit;
 use crate::scpi::status::Failure;
@@ -173,29 +173,19 @@ impl Instrument for PulseSource {
         &mut self.body
     }
 
-    fn reset(&mut self, circuit: &mut dyn Circuit) -> u64 {
+    fn reset(&mut self, at: &mut Moment<'_>) -> u64 {
         self.body.settings.reset();
-        self.drive(circuit);
+        self.drive(at.circuit);
         100_000
     }
 
-    fn changed(
-        &mut self,
-        changed: Changed,
-        _now_us: u64,
-        circuit: &mut dyn Circuit,
-    ) -> Result<u64, Failure> {
+    fn changed(&mut self, changed: Changed, at: &mut Moment<'_>) -> Result<u64, Failure> {
         let consistent = self.follow(changed);
-        self.drive(circuit);
+        self.drive(at.circuit);
         consistent.map(|()| 0)
     }
 
-    fn perform(
-        &mut self,
-        unit: &Unit,
-        now_us: u64,
-        circuit: &mut dyn Circuit,
-    ) -> Result<Outcome, Failure> {
+    fn perform(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Outcome, Failure> {
         let has = |pattern| unit.matches(pattern).is_some();
         if unit.query || !(has("*TRG") || has(":TRIGger[:IMMediate]")) {
             return Err(Failure::UNDEFINED_HEADER);
@@ -206,7 +196,7 @@ impl Instrument for PulseSource {
         if !ready || self.burst_end_us.is_some() {
             return Err(Failure::TRIGGER_IGNORED);
         }
-        self.burst(now_us, circuit);
+        self.burst(at.now_us, at.circuit);
         Ok(Outcome::Done(self.body.command_us))
     }
 
@@ -218,7 +208,7 @@ impl Instrument for PulseSource {
         self.burst_end_us
     }
 
-    fn tick(&mut self, _: u64, _: &mut dyn Circuit) {
+    fn tick(&mut self, _: &mut Moment<'_>) {
         self.burst_end_us = None;
     }
 }

@@ -16,7 +16,7 @@ const REVERSE_V: f64 = 0.1;
 /// Reference temperature, degrees Celsius.
 pub(super) const REFERENCE_C: f64 = 25.0;
 
-/// What hangs at the terminals.
+/// What the instruments connect to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Resistors instead of a relay.
@@ -82,6 +82,8 @@ impl Defect {
     pub fn fits(self, kind: Kind) -> bool {
         match self {
             Self::NoZeroCross => kind == Kind::AcZeroCross,
+            // An AC output waits for the line, which hides these delays.
+            Self::SlowTurnOn | Self::SlowTurnOff => kind == Kind::Dc,
             Self::HalfWave | Self::WrongSnubber | Self::OpenSnubber | Self::WeakCommutation => {
                 kind != Kind::Dc
             }
@@ -93,8 +95,6 @@ impl Defect {
             | Self::HighDrop
             | Self::Thermal
             | Self::StuckOn
-            | Self::SlowTurnOn
-            | Self::SlowTurnOff
             | Self::LeakyJunction => true,
         }
     }

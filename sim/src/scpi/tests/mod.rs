@@ -289,6 +289,13 @@ fn an_adapter_reads_only_when_asked() {
     through_adapter(&shared, 8_000_000, text);
     let errors = through_adapter(&shared, 10_000_000, b"SYST:ERR?\n++read eoi\n");
     assert!(errors.contains("-410,"), "{errors}");
+    // A value that is no number is ignored, and answers nothing.
+    let said = through_adapter(&shared, 12_000_000, b"++addr nine\n++addr 31\n++addr\n");
+    assert_eq!(said, "9\r\n");
+    // A connection that ends inside an escaped line leaves nothing of it.
+    shared.receive(0, b"\x1b+", 14_000_000);
+    shared.close(0, 14_000_000);
+    assert_eq!(through_adapter(&shared, 16_000_000, b"++addr\n"), "9\r\n");
 }
 
 #[test]

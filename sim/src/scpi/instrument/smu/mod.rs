@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 use super::errors::Accuracy;
 use super::settings::{Changed, Kind, Setting, Settings};
 use super::window::Window;
-use super::{Body, Instrument, Kit, Outcome};
+use super::{Body, Instrument, Kit, Moment, Outcome};
 use crate::scpi::circuit::{Circuit, Drive, Reading, Terminal};
 use crate::scpi::message::{Unit, nr3};
 use crate::scpi::status::Failure;
@@ -285,20 +285,15 @@ impl Instrument for Smu {
         &mut self.body
     }
 
-    fn reset(&mut self, circuit: &mut dyn Circuit) -> u64 {
+    fn reset(&mut self, at: &mut Moment<'_>) -> u64 {
         self.body.settings.reset();
         self.buffer.clear();
         (self.job, self.sweep) = (None, None);
-        self.drive(circuit);
+        self.drive(at.circuit);
         20_000
     }
 
-    fn changed(
-        &mut self,
-        changed: Changed,
-        _now_us: u64,
-        circuit: &mut dyn Circuit,
-    ) -> Result<u64, Failure> {
+    fn changed(&mut self, changed: Changed, at: &mut Moment<'_>) -> Result<u64, Failure> {
         match changed.key {
             key @ ("volt_range" | "amp_range" | "amp_sense" | "volt_sense" | "ohm_sense") => {
                 let is_auto = |it: &&Setting| it.0.strip_suffix("_auto") == Some(key);
@@ -307,21 +302,16 @@ impl Instrument for Smu {
                     .for_each(|it| self.body.settings.set(it.0, 0.0));
             }
             "source" | "volts" | "amps" | "limit_a" | "limit_v" | "output" => {
-                self.drive(circuit);
+                self.drive(at.circuit);
                 return Ok(SETTLE_US);
             }
-            "sense" | "amp_wires" | "volt_wires" | "ohm_wires" => self.drive(circuit),
+            "sense" | "amp_wires" | "volt_wires" | "ohm_wires" => self.drive(at.circuit),
             _ => {}
         }
         Ok(0)
     }
 
-    fn perform(
-        &mut self,
-        unit: &Unit,
-        now_us: u64,
-        circuit: &mut dyn Circuit,
-    ) -> Result<Outcome, Failure> {
+    fn perform(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Outcome, Failure> {
         let has = |pattern| unit.matches(pattern).is_some();
         let command_us = self.body.command_us;
         let text = |text: String| Ok(Outcome::Text(text, command_us));
@@ -329,9 +319,9 @@ impl Instrument for Smu {
             true if has(":READ") || measured(unit).is_some() => {
                 if let Some(function) = measured(unit) {
                     self.body.settings.set("sense", function);
-                    self.drive(circuit);
+                    self.drive(at.circuit);
                 }
-                self.start(now_us, self.present_level(), 0)?;
+                self.start(at.now_us, self.present_level(), 0)?;
                 return Ok(Outcome::AfterJob);
             }
             true if has(":FETCh") => return self.fetch(unit),
@@ -341,7 +331,7 @@ impl Instrument for Smu {
             true => return text(nr3(self.buffer.statistic(unit)?)),
             false if Sweep::is_in(unit) => self.sweep = Some(Sweep::read(unit)?),
             false if has(":INITiate[:IMMediate]") || has("*TRG") => {
-                self.initiate(now_us, circuit)?;
+                self.initiate(at.now_us, at.circuit)?;
             }
             false if has(":ABORt") => self.job = None,
             false if has(":TRACe:CLEar") => self.buffer.clear(),
@@ -367,11 +357,11 @@ impl Instrument for Smu {
         Some(job.window.end_us() + later * (job.delay_us + job.window.for_us()))
     }
 
-    fn tick(&mut self, now_us: u64, circuit: &mut dyn Circuit) {
+    fn tick(&mut self, at: &mut Moment<'_>) {
         let Some(job) = &mut self.job else {
             return;
         };
-        if !job.window.take(circuit.at(self.body.at)) {
+        if !job.window.take(at.circuit.at(self.body.at)) {
             return;
         }
         let (mean, delay_us) = (job.window.mean(), job.delay_us);
@@ -384,8 +374,8 @@ impl Instrument for Smu {
             self.job = None;
             return;
         }
-        self.next_level(circuit);
-        let window = self.window(now_us + delay_us);
+        self.next_level(at.circuit);
+        let window = self.window(at.now_us + delay_us);
         if let Some(job) = &mut self.job {
             job.window = window;
         }
