@@ -2,20 +2,17 @@
 
 use std::collections::VecDeque;
 
-use super::errors::Accuracy;
+use super::front_end::{CODES, FrontEnd, Range, VERTICAL};
 use super::settings::{Changed, Kind, Setting};
 use super::{Body, Channel, Instrument, Kit, Moment, Outcome};
-use crate::scpi::circuit::{Circuit, Terminal};
+use crate::scpi::circuit::Terminal;
 use crate::scpi::message::{Unit, block, nr3};
 use crate::scpi::status::Failure;
 
 /// Number of channels.
 pub(super) const CHANNELS: usize = 4;
-/// Vertical and horizontal divisions of the range.
-const VERTICAL: f64 = 8.0;
+/// Horizontal divisions of the record.
 const HORIZONTAL: f64 = 10.0;
-/// Codes of the converter.
-const CODES: f64 = 4096.0;
 /// Time to send one byte of a block, microseconds.
 const BYTE_US: f64 = 0.4;
 /// Time after which automatic triggering needs no trigger, microseconds.
@@ -44,7 +41,7 @@ pub(super) const KEYSIGHT: Kit = Kit {
 };
 
 use Kind::{Choice, Ignored, Number, Switch};
-const SOURCES: &[&str] = &["CHANnel1", "CHANnel2", "CHANnel3", "CHANnel4"];
+pub(super) const SOURCES: &[&str] = &["CHANnel1", "CHANnel2", "CHANnel3", "CHANnel4"];
 #[rustfmt::skip]
 const TABLE: &[Setting] = &[
     Setting("shown", ":CHANnel#:DISPlay", Switch(true), CHANNELS),
@@ -101,31 +98,37 @@ struct Capture {
 /// The digitizer with its acquisition and its memory.
 pub(super) struct Digitizer {
     body: Body,
-    channels: Vec<Channel>,
+    channels: [Channel; CHANNELS],
     dialect: Dialect,
+    front_end: FrontEnd,
     capture: Option<Capture>,
     memory: Vec<[u16; CHANNELS]>,
+    /// Front end with which the record in memory ended.
+    recorded: FrontEnd,
     step_us: u64,
     before: usize,
 }
 
 impl Digitizer {
-    pub(super) fn new(body: Body, mut channels: Vec<Channel>, dialect: Dialect) -> Self {
+    /// Creates a digitizer; channels that are not given see one pair of terminals each.
+    pub(super) fn new(body: Body, channels: &[Channel], dialect: Dialect) -> Self {
         let spare = [
             Terminal::Pulse,
             Terminal::Output,
             Terminal::Clamped,
             Terminal::Load,
         ];
-        for at in spare.into_iter().skip(channels.len()) {
-            channels.push(Channel { at, ratio: 1.0 });
-        }
+        let spare = spare.map(|at| Channel { at, ratio: 1.0 });
+        let channels = std::array::from_fn(|n| *channels.get(n).unwrap_or(&spare[n]));
+        let front_end = FrontEnd::new(&body.settings, &channels, dialect);
         Self {
             body,
             channels,
             dialect,
+            front_end,
             capture: None,
             memory: Vec::new(),
+            recorded: front_end,
             step_us: 1,
             before: 0,
         }
@@ -155,58 +158,19 @@ impl Digitizer {
         });
     }
 
-    /// Converts what the channels see now; returns the codes and the volts of the trigger source.
-    fn convert(&mut self, circuit: &mut dyn Circuit) -> ([u16; CHANNELS], f64) {
-        let source = SOURCES
-            .iter()
-            .position(|it| *it == self.body.settings.choice("trigger"));
-        let (mut codes, mut trigger_v) = ([0; CHANNELS], 0.0);
-        for (number, code) in codes.iter_mut().enumerate() {
-            let channel = self.channels[number];
-            let seen = circuit.at(channel.at);
-            let seen = if channel.at == Terminal::Load {
-                seen.amps
-            } else {
-                seen.volts
-            };
-            let full = VERTICAL * self.body.settings.of("scale", number);
-            let accuracy = Accuracy {
-                gain: 3e-3,
-                offset: 1e-3 * full,
-                noise: 4e-4 * full,
-            };
-            let shown = seen * channel.ratio * self.body.settings.of("probe", number);
-            let shown = self.body.errors.apply(number, accuracy, shown);
-            let shown = if self.body.settings.of("inverted", number) != 0.0 {
-                -shown
-            } else {
-                shown
-            };
-            let scaled = (shown + self.offset(number)) / full + 0.5;
-            *code = (scaled * CODES).round().clamp(0.0, CODES - 1.0) as u16;
-            if Some(number) == source {
-                trigger_v = shown;
-            }
-        }
-        (codes, trigger_v)
-    }
-
-    /// Returns the volts that the offset adds before the converter: Keysight centres the screen on its offset.
-    fn offset(&self, channel: usize) -> f64 {
-        let offset = self.body.settings.of("offset", channel);
-        if self.dialect == Dialect::Rigol {
-            offset
-        } else {
-            -offset
-        }
-    }
-
     fn source(&self) -> usize {
         let source = self.body.settings.choice("source");
-        SOURCES
-            .iter()
-            .position(|it| *it == source)
-            .unwrap_or_default()
+        let index = SOURCES.iter().position(|it| *it == source);
+        index.unwrap_or_default()
+    }
+
+    /// Returns the range of the source of waveforms: of the record, before the first one that of the settings.
+    fn range(&self) -> &Range {
+        let front_end = match self.memory.is_empty() {
+            true => &self.front_end,
+            false => &self.recorded,
+        };
+        &front_end.ranges[self.source()]
     }
 
     /// Returns the factor between a code of the converter and a step of the transferred data.
@@ -234,9 +198,8 @@ impl Digitizer {
     }
 
     fn preamble(&self) -> String {
-        let channel = self.source();
-        let full = VERTICAL * self.body.settings.of("scale", channel);
-        let step_v = full / CODES * self.coarse();
+        let range = self.range();
+        let step_v = range.full_v / CODES * self.coarse();
         let middle = CODES / 2.0 / self.coarse();
         let format = match (self.body.settings.choice("format"), self.dialect) {
             ("BYTE", _) => 0,
@@ -248,8 +211,8 @@ impl Digitizer {
         let step_s = self.step_us as f64 * 1e-6;
         let origin_s = -(self.before as f64) * step_s;
         let (origin, reference) = match self.dialect {
-            Dialect::Rigol => ((self.offset(channel) / step_v).round(), middle),
-            Dialect::Keysight => (-self.offset(channel), middle),
+            Dialect::Rigol => ((range.offset_v / step_v).round(), middle),
+            Dialect::Keysight => (-range.offset_v, middle),
         };
         let numbers = [step_s, origin_s, step_v, origin];
         let [dx, x0, dy, y0] = numbers.map(nr3);
@@ -265,11 +228,10 @@ impl Digitizer {
             return Err(Failure::DATA_STALE);
         }
         let channel = self.source();
-        let codes = self.memory[self.window()]
-            .iter()
-            .map(|codes| codes[channel]);
+        let record = self.memory[self.window()].iter();
+        let codes = record.map(|codes| codes[channel]);
         let coarse = self.coarse();
-        let steps = codes.map(|code| (f64::from(code) / coarse) as u16);
+        let steps = codes.clone().map(|code| (f64::from(code) / coarse) as u16);
         let low_first =
             self.body.settings.choice("order") == "LSBFirst" || self.dialect == Dialect::Rigol;
         let bytes: Vec<u8> = match self.body.settings.choice("format") {
@@ -277,12 +239,7 @@ impl Digitizer {
             "WORD" if low_first => steps.flat_map(u16::to_le_bytes).collect(),
             "WORD" => steps.flat_map(u16::to_be_bytes).collect(),
             _ => {
-                let full = VERTICAL * self.body.settings.of("scale", channel);
-                let offset = self.offset(channel);
-                let codes = self.memory[self.window()]
-                    .iter()
-                    .map(|codes| codes[channel]);
-                let volts = codes.map(|code| nr3((f64::from(code) / CODES - 0.5) * full - offset));
+                let volts = codes.map(|code| nr3(self.range().volts(code)));
                 volts.collect::<Vec<_>>().join(",").into_bytes()
             }
         };
@@ -346,6 +303,7 @@ impl Instrument for Digitizer {
 
     fn reset(&mut self, _: &mut Moment<'_>) -> u64 {
         self.body.settings.reset();
+        self.front_end = FrontEnd::new(&self.body.settings, &self.channels, self.dialect);
         self.capture = None;
         self.memory.clear();
         400_000
@@ -353,6 +311,7 @@ impl Instrument for Digitizer {
 
     fn changed(&mut self, changed: Changed, _: &mut Moment<'_>) -> Result<u64, Failure> {
         self.follow(changed);
+        self.front_end = FrontEnd::new(&self.body.settings, &self.channels, self.dialect);
         Ok(0)
     }
 
@@ -362,6 +321,7 @@ impl Instrument for Digitizer {
         let text = |text: String| Ok(Outcome::Text(text, command_us));
         let done = Outcome::Done(command_us);
         let is_rigol = self.dialect == Dialect::Rigol;
+        let is_auto = self.body.settings.choice("sweep") == "AUTO";
         match unit.query {
             true if has(":WAVeform:DATA") => self.data(),
             true if has(":WAVeform:PREamble") => text(self.preamble()),
@@ -374,10 +334,14 @@ impl Instrument for Digitizer {
                 let waits = self.capture.as_ref().is_some_and(|it| !it.is_triggered);
                 text(if waits { "0" } else { "1" }.into())
             }
-            false if has(":SINGle") || has(":RUN") || has(":DIGitize") && !is_rigol => {
-                let auto = self.body.settings.choice("sweep") == "AUTO";
-                self.start(at.now_us, auto && !has(":SINGle"));
+            false if has(":SINGle") || has(":RUN") => {
+                self.start(at.now_us, is_auto && has(":RUN"));
                 Ok(done)
+            }
+            // No further command runs before the record is complete.
+            false if has(":DIGitize") && !is_rigol => {
+                self.start(at.now_us, is_auto);
+                Ok(Outcome::AfterJob)
             }
             false if has(":TFORce") || has(":TRIGger:FORCe") => {
                 let capture = self.capture.as_mut().ok_or(Failure::TRIGGER_IGNORED)?;
@@ -394,7 +358,7 @@ impl Instrument for Digitizer {
     }
 
     fn fetch(&mut self, _: &Unit) -> Result<Outcome, Failure> {
-        self.data()
+        Ok(Outcome::Done(0))
     }
 
     fn next_us(&self) -> Option<u64> {
@@ -412,17 +376,13 @@ impl Instrument for Digitizer {
     }
 
     fn tick(&mut self, at: &mut Moment<'_>) {
-        let (codes, volts) = self.convert(at.circuit);
-        let level = self.body.settings.number("level");
-        let above_v = match self.body.settings.choice("slope") {
-            "POSitive" => volts - level,
-            _ => level - volts,
-        };
+        let (codes, above_v) = self.front_end.convert(&mut self.body.errors, at.circuit);
         if let Some(capture) = &mut self.capture
             && capture.take(codes, above_v, at.now_us)
             && let Some(capture) = self.capture.take()
         {
             (self.step_us, self.before) = (capture.step_us, capture.before);
+            self.recorded = self.front_end;
             self.memory = capture.samples.into();
             self.memory.truncate(capture.points);
         }

@@ -5,6 +5,7 @@
 mod ac_source;
 mod digitizer;
 mod errors;
+mod front_end;
 mod multimeter;
 mod pulse_source;
 mod settings;
@@ -29,7 +30,7 @@ pub enum Outcome {
     Text(String, u64),
     /// The reply is a block.
     Block(Vec<u8>, u64),
-    /// The reply needs the end of the present job; [`Instrument::fetch`] gives it.
+    /// The result needs the end of the present job; [`Instrument::fetch`] gives it.
     AfterJob,
 }
 
@@ -62,7 +63,7 @@ pub trait Instrument: Send {
     /// Fails with the entry for the error queue.
     fn perform(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Outcome, Failure>;
 
-    /// Answers a query that waited for the end of the job.
+    /// Answers a query, or ends a command, that waited for the end of the job.
     ///
     /// # Errors
     /// Fails with the entry for the error queue.
@@ -193,8 +194,12 @@ pub fn build(model: Model, name: &str, seed: u64, fitting: Fitting) -> Box<dyn I
         Model::Smu => Box::new(smu::Smu::new(body)),
         Model::Multimeter => Box::new(multimeter::Multimeter::new(body)),
         Model::AcSource => Box::new(ac_source::AcSource::new(body)),
-        Model::Rigol => Box::new(digitizer::Digitizer::new(body, channels, Dialect::Rigol)),
-        Model::Keysight => Box::new(digitizer::Digitizer::new(body, channels, Dialect::Keysight)),
+        Model::Rigol => Box::new(digitizer::Digitizer::new(body, &channels, Dialect::Rigol)),
+        Model::Keysight => Box::new(digitizer::Digitizer::new(
+            body,
+            &channels,
+            Dialect::Keysight,
+        )),
         Model::PulseSource => Box::new(pulse_source::PulseSource::new(body)),
     }
 }

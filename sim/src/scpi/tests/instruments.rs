@@ -185,12 +185,51 @@ fn automatic_triggering_waits_for_an_edge_first() {
     let file = "[[instrument]]\nname = \"dig\"\nmodel = \"digitizer-keysight\"\ntcp = 0\n";
     let shared = bench(file);
     let bench = &mut *shared.lock();
-    bench.ask(0, ":ACQ:MDEP 100;:TRIG:LEV 5;:DIG");
+    bench.ask(0, ":ACQ:MDEP 100;:TRIG:LEV 5;:WAV:FORM BYTE");
     let from_us = bench.now_us;
-    assert_eq!(bench.ask(0, "*OPC?").unwrap(), "1");
+    // The query waits for the record.
+    let data = bench.ask(0, ":DIG CHAN1;:WAV:DATA?").unwrap();
     let taken_us = bench.now_us - from_us;
     assert!((50_000..70_000).contains(&taken_us), "{taken_us}");
+    assert!(data.starts_with("#800000100"), "{data}");
     bench.ask(0, ":SING");
     bench.advance(bench.now_us + 500_000);
     assert_eq!(bench.ask(0, ":TER?").unwrap(), "0");
+}
+
+#[test]
+fn a_record_keeps_the_scale_with_which_it_was_taken() {
+    for model in ["digitizer-rigol", "digitizer-keysight"] {
+        let dig =
+            format!("[[instrument]]\nname = \"dig\"\nmodel = \"{model}\"\ntcp = 0\nexact = true\n");
+        let shared = bench(&format!("{SMU}{dig}"));
+        let bench = &mut *shared.lock();
+        bench.ask(
+            0,
+            ":SOUR:VOLT 2;:SOUR:VOLT:ILIM 0.05;:SENS:CURR:RSEN ON;:OUTP ON",
+        );
+        bench.ask(1, ":ACQ:MDEP 100;:CHAN1:OFFS 0.5;:RUN");
+        bench.ask(1, "*OPC?");
+        bench.ask(1, ":CHAN1:SCAL 5;OFFS -1;:WAV:FORM BYTE");
+        let preamble = bench.ask(1, ":WAV:PRE?").unwrap();
+        let numbers: Vec<f64> = preamble.split(',').map(value).collect();
+        let [step_v, origin, reference] = numbers[7..] else {
+            panic!("{preamble}")
+        };
+        assert!((step_v - 8.0 / 256.0).abs() < 1e-9, "{model}: {preamble}");
+        bench.ask(1, ":WAV:FORM ASC");
+        let text = bench.ask(1, ":WAV:DATA?").unwrap();
+        let first = text.split(',').nth(1).map(value).unwrap();
+        assert!((first - 2.0).abs() < 0.002, "{model}: {first}");
+        let offset_v = match model {
+            "digitizer-rigol" => origin * step_v,
+            _ => -origin,
+        };
+        let expected = if model == "digitizer-rigol" {
+            0.5
+        } else {
+            -0.5
+        };
+        assert_eq!((offset_v, reference), (expected, 128.0), "{model}");
+    }
 }
