@@ -137,10 +137,11 @@ fn serve_instruments(file: &Path, args: &SimArgs) -> anyhow::Result<Exit> {
         .enable_all()
         .build()?;
     runtime.block_on(async {
+        let mut interrupts = Interrupts::listen()?;
         let links = rigsim::scpi::serve::real_time(&bench).await?;
         let links: BTreeMap<String, String> = links.into_iter().collect();
         println!("{}", json!({ "instruments": links }));
-        Interrupts::listen()?.next().await;
+        interrupts.next().await;
         Ok(Exit::Done)
     })
 }

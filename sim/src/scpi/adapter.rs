@@ -81,7 +81,7 @@ impl Adapter {
     pub fn disconnect(&mut self) {
         self.input.clear();
         self.line.clear();
-        self.escaped = false;
+        (self.escaped, self.literal) = (false, false);
         self.reading = None;
     }
 
@@ -240,7 +240,7 @@ impl Adapter {
     fn command(&mut self, text: &str, at_us: u64, devices: &mut [Device]) -> Option<String> {
         let mut words = text.split_whitespace();
         let name = words.next()?.to_ascii_lowercase();
-        let value: Option<u32> = words.next().and_then(|word| word.parse().ok());
+        let value = words.next();
         let addressed = self.addressed();
         match name.as_str() {
             "read" => self.read(at_us),
@@ -267,17 +267,17 @@ impl Adapter {
         None
     }
 
-    /// Sets a setting to a value in its range, or returns it when the command has no value.
-    fn setting(&mut self, name: &str, value: Option<u32>) -> Option<String> {
+    /// Sets a setting to a value in its range and ignores any other; without a value, returns the present one.
+    fn setting(&mut self, name: &str, value: Option<&str>) -> Option<String> {
         let Some(index) = SETTINGS.iter().position(|it| it.0 == name) else {
             return Some("Unrecognized command".into());
         };
         let (_, least, most, _) = SETTINGS[index];
-        match value {
-            None => return Some(self.settings[index].to_string()),
-            Some(value) if (least..=most).contains(&value) => self.settings[index] = value,
-            Some(_) => {}
-        }
+        let Some(value) = value else {
+            return Some(self.settings[index].to_string());
+        };
+        let fits = value.parse().ok().filter(|it| (least..=most).contains(it));
+        self.settings[index] = fits.unwrap_or(self.settings[index]);
         None
     }
 }

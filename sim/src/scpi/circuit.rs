@@ -1,4 +1,4 @@
-//! Electrical boundary between instruments and what hangs at their terminals.
+//! Electrical boundary between instruments and what they connect to.
 
 use crate::table::read_words;
 
@@ -33,18 +33,20 @@ read_words!(Terminal {
 pub enum Drive {
     /// No connection.
     Open,
-    /// Voltage source with a limit of its current, amperes.
+    /// Voltage source.
     Voltage {
-        /// Volts.
+        /// Volts without load.
         volts: f64,
-        /// Amperes.
+        /// Limit of the current, amperes.
         limit_a: f64,
+        /// Resistance in series with the source, ohms.
+        source_ohm: f64,
     },
-    /// Current source with a limit of its voltage, volts.
+    /// Current source.
     Current {
         /// Amperes.
         amps: f64,
-        /// Volts.
+        /// Limit of the voltage, volts.
         limit_v: f64,
     },
     /// Sine of a line.
@@ -53,10 +55,8 @@ pub enum Drive {
         rms_v: f64,
         /// Hertz.
         hz: f64,
-        /// Phase at the instant of this drive, degrees.
-        phase_deg: f64,
-        /// Limit of the current, amperes rms.
-        limit_a: f64,
+        /// Phase at the instant of this drive, degrees; `None` continues the present phase.
+        phase_deg: Option<f64>,
     },
     /// Rectangular pulses from the instant of this drive on.
     Pulses(Pulses),
@@ -75,19 +75,31 @@ pub struct Pulses {
     pub width_us: f64,
     /// Number of pulses; `None` never ends.
     pub count: Option<u64>,
+    /// Resistance in series with the source, ohms.
+    pub source_ohm: f64,
 }
 
 impl Pulses {
-    /// Returns the volts `since_us` after the start.
+    /// Returns the volts `since_us` after the start, without load.
     pub fn volts(&self, since_us: f64) -> f64 {
-        let number = (since_us / self.period_us).floor();
-        let within = since_us - number * self.period_us < self.width_us;
-        let ended = self.count.is_some_and(|count| number >= count as f64);
-        if within && !ended {
-            self.high_v
-        } else {
-            self.low_v
+        match self.edge_us(since_us) {
+            Some((_, true)) => self.high_v,
+            Some((_, false)) | None => self.low_v,
         }
+    }
+
+    /// Returns the time from `since_us` to the next edge, microseconds, and whether the level is high now; `None` after
+    /// the last pulse.
+    pub fn edge_us(&self, since_us: f64) -> Option<(f64, bool)> {
+        let number = (since_us / self.period_us).floor();
+        if self.count.is_some_and(|count| number >= count as f64) {
+            return None;
+        }
+        let within_us = since_us - number * self.period_us;
+        Some(match within_us < self.width_us {
+            true => (self.width_us - within_us, true),
+            false => (self.period_us - within_us, false),
+        })
     }
 }
 
@@ -100,7 +112,7 @@ pub struct Reading {
     pub amps: f64,
 }
 
-/// What hangs at the terminals of the instruments.
+/// What the instruments connect to.
 pub trait Circuit: Send {
     /// Advances to `t_us`, which never decreases.
     fn advance(&mut self, t_us: u64);
@@ -109,28 +121,41 @@ pub trait Circuit: Send {
     fn drive(&mut self, terminal: Terminal, drive: Drive);
 
     /// Returns voltage and current at the present instant.
-    fn at(&mut self, terminal: Terminal) -> Reading;
+    fn at(&self, terminal: Terminal) -> Reading;
+
+    /// Returns the present phase of the line, 0 to 360 degrees.
+    fn line_deg(&self) -> f64;
 }
 
-/// Returns the operating point of a source over a resistor.
+/// Returns the operating point of a source over a resistor, which may be a short or open (infinite).
 pub fn over_resistor(drive: Drive, ohms: f64) -> Reading {
     match drive {
-        Drive::Voltage { volts, limit_a } => {
-            let amps = (volts / ohms).clamp(-limit_a, limit_a);
-            let volts = if ohms.is_infinite() {
-                volts
-            } else {
-                amps * ohms
+        Drive::Voltage {
+            volts,
+            limit_a,
+            source_ohm,
+        } => {
+            let amps = match volts {
+                0.0 => 0.0,
+                volts => (volts / (ohms + source_ohm)).clamp(-limit_a, limit_a),
+            };
+            let volts = match amps {
+                0.0 => volts,
+                amps => amps * ohms,
             };
             Reading { volts, amps }
         }
-        Drive::Current { amps, limit_v } => {
-            let volts = (amps * ohms).clamp(-limit_v, limit_v);
-            Reading {
-                volts,
-                amps: volts / ohms,
-            }
-        }
+        Drive::Current { amps: 0.0, .. } => Reading::default(),
+        Drive::Current { amps, limit_v } => match (amps * ohms).abs() <= limit_v {
+            true => Reading {
+                volts: amps * ohms,
+                amps,
+            },
+            false => Reading {
+                volts: limit_v.copysign(amps),
+                amps: limit_v.copysign(amps) / ohms,
+            },
+        },
         Drive::Open | Drive::Sine { .. } | Drive::Pulses(_) => Reading::default(),
     }
 }

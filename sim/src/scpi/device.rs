@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::circuit::Circuit;
-use super::instrument::{Instrument, Outcome};
+use super::instrument::{Instrument, Moment, Outcome};
 use super::message::{Unit, units};
 use super::status::{Failure, OPC, Status};
 use crate::fault::instrument::{InstrumentFault as Fault, InstrumentFaults};
@@ -30,8 +30,11 @@ pub struct Device {
     indefinite: bool,
     /// Query that waits for the end of the measurement.
     waiting: Option<Unit>,
+    /// True after `*OPC` until the measurement ends.
     complete: bool,
     free_us: u64,
+    /// Instant of a power cycle that has not happened yet.
+    cycle_us: Option<u64>,
     /// True while the front panel has control.
     local: bool,
 }
@@ -55,6 +58,7 @@ impl Device {
             waiting: None,
             complete: false,
             free_us: 0,
+            cycle_us: None,
             local: false,
         }
     }
@@ -66,11 +70,9 @@ impl Device {
             self.status.overflow();
         }
         self.local |= strikes(Fault::Local);
-        let cycled = strikes(Fault::PowerCycle);
-        if cycled {
+        if strikes(Fault::PowerCycle) {
             self.clear();
-            self.status = Status::new(DEPTH);
-            self.free_us = at_us + self.instrument.reset(at_us);
+            self.cycle_us = Some(at_us);
             return;
         }
         let units: VecDeque<_> = units(message).into();
@@ -95,6 +97,9 @@ impl Device {
 
     /// Returns the next instant at which something happens inside the instrument.
     pub fn next_us(&self) -> Option<u64> {
+        if self.cycle_us.is_some() {
+            return self.cycle_us;
+        }
         let job = self.instrument.next_us();
         let unit = match (&self.waiting, self.messages.front()) {
             (Some(_), _) => job.is_none().then_some(self.free_us),
@@ -118,8 +123,18 @@ impl Device {
 
     /// Performs what is due at `t_us`.
     pub fn tick(&mut self, t_us: u64, circuit: &mut dyn Circuit, faults: &mut InstrumentFaults) {
+        let at = &mut Moment {
+            now_us: t_us,
+            circuit,
+        };
+        if self.cycle_us.take().is_some() {
+            self.status = Status::new(DEPTH);
+            self.local = false;
+            self.free_us = t_us + self.instrument.reset(at);
+            return;
+        }
         if self.instrument.next_us().is_some_and(|next| next <= t_us) {
-            self.instrument.tick(t_us, circuit);
+            self.instrument.tick(at);
             return;
         }
         if self.complete && self.instrument.next_us().is_none() {
@@ -130,7 +145,7 @@ impl Device {
             let fetched = match unit.nodes[0].as_str() {
                 "*OPC" => Ok(Outcome::Text("1".into(), 0)),
                 "*WAI" => Ok(Outcome::Done(0)),
-                _ => self.instrument.fetch(&unit, t_us, circuit),
+                _ => self.instrument.fetch(&unit),
             };
             self.conclude(&unit, fetched, t_us, faults);
         } else if self.messages.front().is_some_and(|it| it.at_us <= t_us)
@@ -141,7 +156,7 @@ impl Device {
         {
             match unit {
                 Ok(unit) => {
-                    let outcome = self.run(&unit, t_us, circuit);
+                    let outcome = self.run(&unit, at);
                     self.conclude(&unit, outcome, t_us, faults);
                 }
                 Err(failure) => self.fail(failure),
@@ -150,23 +165,18 @@ impl Device {
         self.finish(t_us);
     }
 
-    fn run(
-        &mut self,
-        unit: &Unit,
-        t_us: u64,
-        circuit: &mut dyn Circuit,
-    ) -> Result<Outcome, Failure> {
-        if let Some(outcome) = self.common(unit, t_us)? {
+    fn run(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Outcome, Failure> {
+        if let Some(outcome) = self.common(unit, at)? {
             return Ok(outcome);
         }
         if self.local && !unit.query {
             return Err(Failure::LOCAL);
         }
-        self.instrument.execute(unit, t_us, circuit)
+        self.instrument.execute(unit, at)
     }
 
     /// Executes the commands that every instrument has.
-    fn common(&mut self, unit: &Unit, t_us: u64) -> Result<Option<Outcome>, Failure> {
+    fn common(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Option<Outcome>, Failure> {
         let status = &mut self.status;
         let header = unit.nodes.join(":");
         let text = |number: String| Outcome::Text(number, COMMON_US);
@@ -185,7 +195,7 @@ impl Device {
             }
             ("*RST", false) => {
                 self.complete = false;
-                Outcome::Done(self.instrument.reset(t_us))
+                Outcome::Done(self.instrument.reset(at))
             }
             ("*ESE", false) => {
                 status.event_enable = mask()?;

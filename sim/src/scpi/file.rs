@@ -1,21 +1,27 @@
 //! File of instruments: what `sim --instruments` serves.
 
+use std::collections::BTreeSet;
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use super::adapter::Adapter;
 use super::bench::{Bench, SharedBench};
 use super::circuit::Circuit;
 use super::device::Device;
-use super::instrument::{self, Fitting};
-use super::passive::{Line, Passive};
+use super::instrument::{self, Channel, Fitting, Model};
+use super::line::Line;
+use super::passive::Passive;
 use super::port::{Behind, Port};
-use super::relay::{Kind, SolidState, Truth};
+use super::relay::{Defect, Kind, SolidState, Truth};
 use crate::config::ConfigError;
 use crate::error::SimError;
 use crate::fault::instrument::InstrumentFaults;
 use crate::module::setting;
 use crate::shared::{check_targets, split};
 use crate::table::{Entry, Table};
+
+/// Range of the load, ohms; its time constant with a snubber is short against a cycle of the line.
+const LOAD_OHM: RangeInclusive<f64> = 0.1..=10_000.0;
 
 /// Link of a host.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,19 +76,15 @@ fn built(keys: &Table, seed: u64, faults: &[String]) -> Result<SharedBench, SimE
     let adapters: Option<Vec<Table>> = keys.get("adapter")?;
     let instruments: Vec<Table> = keys.get("instrument")?;
     keys.finish()?;
+    let mut names = BTreeSet::new();
     let mut adapters = adapters
         .unwrap_or_default()
         .iter()
-        .map(adapter)
+        .map(|keys| adapter(keys, &mut names))
         .collect::<Result<Vec<_>, _>>()?;
     let (mut devices, mut ports): (Vec<Device>, Vec<Port>) = Default::default();
     for keys in &instruments {
-        let (name, number) = (keys.get::<String>("name")?, devices.len());
-        if devices.iter().any(|known| known.name == name) {
-            return Err(keys
-                .wrong("name", "a name that no other instrument has")
-                .into());
-        }
+        let (name, number) = (name(keys, &mut names)?, devices.len());
         match keys.get::<Option<String>>("adapter")? {
             Some(_) => attach(keys, number, &mut adapters)?,
             None => {
@@ -90,7 +92,8 @@ fn built(keys: &Table, seed: u64, faults: &[String]) -> Result<SharedBench, SimE
                 ports.push(Port::new(name.clone(), link, Behind::Instrument(number)));
             }
         }
-        let instrument = instrument::build(keys.get("model")?, &name, seed, fitting(keys)?);
+        let model = keys.get("model")?;
+        let instrument = instrument::build(model, &name, seed, fitting(keys, model)?);
         keys.finish()?;
         devices.push(Device::new(name, instrument));
     }
@@ -99,9 +102,7 @@ fn built(keys: &Table, seed: u64, faults: &[String]) -> Result<SharedBench, SimE
             .into_iter()
             .map(|(name, link, it)| Port::new(name, link, Behind::Adapter(it))),
     );
-    let faults = active(faults, seed, |target| {
-        devices.iter().any(|it| it.name == target) || ports.iter().any(|it| it.name == target)
-    })?;
+    let faults = active(faults, seed, |target| names.contains(target))?;
     Ok(SharedBench::new(Bench {
         devices,
         ports,
@@ -111,8 +112,20 @@ fn built(keys: &Table, seed: u64, faults: &[String]) -> Result<SharedBench, SimE
     }))
 }
 
-fn adapter(keys: &Table) -> Result<(String, Link, Adapter), ConfigError> {
-    let (name, link) = (keys.get::<String>("name")?, Link::read(keys)?);
+/// Reads a name that no instrument or adapter before has; a fault finds its target by the name.
+fn name(keys: &Table, names: &mut BTreeSet<String>) -> Result<String, ConfigError> {
+    let name: String = keys.get("name")?;
+    match names.insert(name.clone()) {
+        true => Ok(name),
+        false => Err(keys.wrong("name", "a name that no other instrument or adapter has")),
+    }
+}
+
+fn adapter(
+    keys: &Table,
+    names: &mut BTreeSet<String>,
+) -> Result<(String, Link, Adapter), ConfigError> {
+    let (name, link) = (name(keys, names)?, Link::read(keys)?);
     keys.finish()?;
     let adapter = Adapter::new(&name);
     Ok((name, link, adapter))
@@ -140,11 +153,23 @@ fn attach(
     Ok(())
 }
 
-fn fitting(keys: &Table) -> Result<Fitting, ConfigError> {
+/// Reads the keys of a model: a digitizer has channels, any other model one pair of terminals.
+fn fitting(keys: &Table, model: Model) -> Result<Fitting, ConfigError> {
     let latency_ms = setting::number(keys, "latency_ms", 0.0..=1e6)?;
+    let (mut at, mut channels) = (None, Vec::new());
+    if model.is_digitizer() {
+        channels = keys.get_or("channel", channels)?;
+        let fits = |it: &Channel| it.ratio.is_finite() && it.ratio != 0.0;
+        if channels.len() > Model::CHANNELS || !channels.iter().all(fits) {
+            let form = format!("at most {} channels, ratios other than 0", Model::CHANNELS);
+            return Err(keys.wrong("channel", &form));
+        }
+    } else {
+        at = keys.get("at")?;
+    }
     Ok(Fitting {
-        at: keys.get("at")?,
-        channels: keys.get::<Option<_>>("channel")?.unwrap_or_default(),
+        at,
+        channels,
         identity: keys.get("identity")?,
         latency_us: latency_ms.map(|ms| (ms * 1e3) as u64),
         exact: keys.get_or("exact", false)?,
@@ -158,17 +183,20 @@ fn circuit(keys: Option<Table>, seed: u64) -> Result<Box<dyn Circuit>, ConfigErr
         None => Table::parse(Path::new("-"), "")?,
     };
     let kind = keys.get_or("kind", Kind::Passive)?;
-    let ohms =
-        |key, absent| Ok(setting::number(&keys, key, 0.0..=f64::INFINITY)?.unwrap_or(absent));
+    let ohms = |key| Ok(setting::number(&keys, key, 0.0..=f64::INFINITY)?.unwrap_or(1e3));
     let line = Line::new(seed, keys.get_or("distorted", true)?);
-    let load_ohm = ohms("load_ohm", 2_300.0)?;
+    let load_ohm = setting::number(&keys, "load_ohm", LOAD_OHM)?.unwrap_or(2_300.0);
     let circuit: Box<dyn Circuit> = match kind {
         Kind::Passive => {
-            let (input_ohm, output_ohm) = (ohms("input_ohm", 1e3)?, ohms("output_ohm", 1e3)?);
+            let (input_ohm, output_ohm) = (ohms("input_ohm")?, ohms("output_ohm")?);
             Box::new(Passive::new(input_ohm, output_ohm, load_ohm, line))
         }
         Kind::Dc | Kind::AcZeroCross | Kind::AcRandom => {
-            let truth = Truth::draw(kind, keys.get("defect")?, seed);
+            let defect: Option<Defect> = keys.get("defect")?;
+            if defect.is_some_and(|defect| !defect.fits(kind)) {
+                return Err(keys.wrong("defect", "a defect that this kind of relay can have"));
+            }
+            let truth = Truth::draw(kind, defect, seed);
             let load_h = setting::number(&keys, "load_h", 0.0..=1e3)?.unwrap_or(0.0);
             Box::new(SolidState::new(truth, line, load_ohm, load_h))
         }

@@ -5,6 +5,10 @@ use super::status::Failure;
 /// Longest message without its blocks, bytes; a longer one overruns the input buffer.
 const LONGEST: usize = 8_192;
 
+/// Values of SCPI for infinity, which an over-range reading has too, and for no number.
+const INFINITE: f64 = 9.9e37;
+const NOT_A_NUMBER: f64 = 9.91e37;
+
 /// Cuts a byte stream into messages at line feeds outside quotes and definite blocks.
 #[derive(Debug, Default)]
 pub struct Framer {
@@ -194,15 +198,15 @@ impl Unit {
         Ok(text.trim_matches(['"', '\'']).to_ascii_uppercase())
     }
 
-    /// Returns a parameter that selects one of the choices, each in a pattern of short and long form.
+    /// Returns the index of the choice that a parameter selects; each is a pattern of short and long form.
     ///
     /// # Errors
     /// Fails with -109 without a parameter, with -224 when it is no choice.
-    pub fn choice(&self, choices: &[&'static str]) -> Result<&'static str, Failure> {
+    pub fn choice(&self, choices: &[&str]) -> Result<usize, Failure> {
         let word = self.word(0)?;
         let word = word.strip_suffix(":DC").unwrap_or(&word);
-        let known = choices.iter().find(|choice| forms(word, choice));
-        known.copied().ok_or(Failure::ILLEGAL_VALUE)
+        let known = choices.iter().position(|choice| forms(word, choice));
+        known.ok_or(Failure::ILLEGAL_VALUE)
     }
 
     /// Returns a number within limits; `MIN`, `MAX` and `DEF` give the lower, the upper limit and the default.
@@ -313,9 +317,9 @@ fn with_unit(word: &str) -> Option<f64> {
         }
     }
     match word {
-        "INF" | "INFINITY" => return Some(9.9e37),
-        "NINF" => return Some(-9.9e37),
-        "NAN" => return Some(9.91e37),
+        "INF" | "INFINITY" => return Some(INFINITE),
+        "NINF" => return Some(-INFINITE),
+        "NAN" => return Some(NOT_A_NUMBER),
         _ => {}
     }
     let numeric = |c: char| c.is_ascii_digit() || "+-.".contains(c);
@@ -356,8 +360,12 @@ fn scale(unit: &str) -> Option<f64> {
     }
 }
 
-/// Formats a number as NR3 with seven significant digits.
+/// Formats a number as NR3 with eight significant digits; infinity and no number get the values of SCPI.
 pub fn nr3(value: f64) -> String {
+    let value = match value {
+        value if value.is_nan() => NOT_A_NUMBER,
+        value => value.clamp(-INFINITE, INFINITE),
+    };
     let text = format!("{value:+.7E}");
     match text.split_once('E') {
         Some((mantissa, exponent)) => {

@@ -3,7 +3,8 @@
 //! | module | content, in reading order |
 //! |---|---|
 //! | [`message`], [`status`] | program messages, headers, numbers, blocks; registers and error queue |
-//! | [`circuit`], [`passive`], [`relay`] | what the instruments measure |
+//! | [`circuit`], [`line`], [`sources`] | terminals with what instruments connect to them |
+//! | [`passive`], [`relay`] | what the instruments measure |
 //! | [`instrument`] | the instruments |
 //! | [`device`] | an instrument behind its message queue |
 //! | [`adapter`], [`port`] | GPIB adapter; bytes in and out of a link, with its faults |
@@ -16,11 +17,13 @@ pub mod circuit;
 pub mod device;
 pub mod file;
 pub mod instrument;
+pub mod line;
 pub mod message;
 pub mod passive;
 pub mod port;
 pub mod relay;
 pub mod serve;
+pub mod sources;
 pub mod status;
 #[cfg(test)]
 mod tests;

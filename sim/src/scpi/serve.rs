@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt, DuplexStream};
 use tokio::net::{TcpListener, UnixStream};
-use tokio::time::{Instant, sleep_until};
+use tokio::time::{Instant, sleep, sleep_until};
 
 use super::bench::SharedBench;
 use super::file::Link;
@@ -15,8 +15,10 @@ use crate::error::SimError;
 use crate::pace::Pace;
 use crate::pty::tty::Tty;
 
-/// Longest time without a look at the port: a reply may depend on a trigger.
+/// Longest time without a look at the port while a reply is expected: its instant may depend on a trigger.
 const LOOK_US: u64 = 20_000;
+/// Interval at which the circuit advances in real time, so that it never has to catch up on hours.
+const BEAT: Duration = Duration::from_millis(50);
 /// Size of a stream in virtual time, bytes.
 const ROOM: usize = 1 << 16;
 
@@ -59,7 +61,16 @@ pub async fn real_time(bench: &SharedBench) -> Result<Vec<(String, String)>, Sim
         })?;
         links.extend(bench.links(number, &place));
     }
+    tokio::spawn(beat(bench.clone(), clock));
     Ok(links)
+}
+
+/// Advances the bench while no host asks for anything.
+async fn beat(bench: SharedBench, clock: Clock) {
+    loop {
+        sleep(BEAT).await;
+        bench.lock().advance(clock.now_us());
+    }
 }
 
 /// Opens a port and starts to serve it; returns its place.

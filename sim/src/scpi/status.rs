@@ -23,6 +23,7 @@ impl Failure {
     pub(crate) const SUFFIX_OUT_OF_RANGE: Self = Self(-114, "Header suffix out of range");
     pub(crate) const TRIGGER_IGNORED: Self = Self(-211, "Trigger ignored");
     pub(crate) const INIT_IGNORED: Self = Self(-213, "Init ignored");
+    pub(crate) const TRIGGER_DEADLOCK: Self = Self(-214, "Trigger deadlock");
     pub(crate) const SETTINGS_CONFLICT: Self = Self(-221, "Settings conflict");
     pub(crate) const OUT_OF_RANGE: Self = Self(-222, "Data out of range");
     pub(crate) const ILLEGAL_VALUE: Self = Self(-224, "Illegal parameter value");

@@ -5,6 +5,7 @@ mod documents;
 mod imports;
 mod kinds;
 mod places;
+mod prose;
 mod purity;
 mod texts;
 pub mod tree;

@@ -1,19 +1,29 @@
-//! AC source of the 61500 class.
+//! AC source of the 61500 class. It drives a sine without limit of the current; other shapes, couplings and modes are
+//! refused.
 
-use std::ops::ControlFlow;
-
-use super::settings::{Kind, Setting, Settings};
-use super::{Accuracy, Body, Instrument, Outcome, Window};
+use super::errors::Accuracy;
+use super::settings::{Changed, Kind, Setting};
+use super::window::Window;
+use super::{Body, Instrument, Kit, Moment, Outcome};
 use crate::scpi::circuit::{Circuit, Drive, Terminal};
 use crate::scpi::message::{Unit, nr3};
 use crate::scpi::status::Failure;
 
-const COMMAND_US: u64 = 5_000;
 /// Time of `*RST`, microseconds.
 const RESET_US: u64 = 7_000_000;
 /// Cycles and samples of a measurement.
 const CYCLES: f64 = 5.0;
 const SAMPLES: u32 = 500;
+/// Highest voltage of the lower range, volts rms.
+const LOW_V: f64 = 150.0;
+
+pub(super) const KIT: Kit = Kit {
+    identity: "Chroma ATE,61503,61503A001234,1.50",
+    latency_us: 15_000,
+    command_us: 5_000,
+    at: Terminal::Line,
+    settings: TABLE,
+};
 
 use Kind::{Choice, Number, Switch};
 #[rustfmt::skip]
@@ -27,83 +37,75 @@ const TABLE: &[Setting] = &[
     Setting("limit_delay_s", "[:SOURce]:CURRent:DELay", Number(0.0, 5.0, 0.0), 1),
     Setting("phase_on", "[:SOURce]:PHASe:ON", Number(0.0, 360.0, 0.0), 1),
     Setting("phase_off", "[:SOURce]:PHASe:OFF", Number(0.0, 360.0, 360.0), 1),
-    Setting("shape", "[:SOURce]:FUNCtion:SHAPe", Choice(&["A", "B"]), 1),
+    Setting("shape", "[:SOURce]:FUNCtion:SHAPe", Choice(&["A"]), 1),
     Setting("output", ":OUTPut[:STATe]", Switch(false), 1),
-    Setting("coupling", ":OUTPut:COUPling", Choice(&["AC", "DC", "ACDC"]), 1),
-    Setting("mode", ":OUTPut:MODE", Choice(&["FIXed", "LIST", "PULSe", "STEP"]), 1),
+    Setting("coupling", ":OUTPut:COUPling", Choice(&["AC"]), 1),
+    Setting("mode", ":OUTPut:MODE", Choice(&["FIXed"]), 1),
 ];
 
 /// The source with its output and a measurement in work.
 pub(super) struct AcSource {
     body: Body,
-    at: Terminal,
-    settings: Settings,
     job: Option<Window>,
     last: Option<Window>,
     /// Instant at which the output goes off after a command, at the programmed phase.
     off_us: Option<u64>,
-    started_us: u64,
 }
 
 impl AcSource {
-    pub(super) fn new(body: Body, at: Terminal) -> Self {
-        let settings = Settings::new(TABLE);
+    pub(super) fn new(body: Body) -> Self {
         Self {
             body,
-            at,
-            settings,
             job: None,
             last: None,
             off_us: None,
-            started_us: 0,
         }
     }
 
-    fn drive(&mut self, now_us: u64, circuit: &mut dyn Circuit, restart: bool) {
-        let settings = &self.settings;
+    /// Connects the output; `starts` begins at the programmed phase, otherwise the sine goes on.
+    fn drive(&mut self, circuit: &mut dyn Circuit, starts: bool) {
+        let settings = &self.body.settings;
         if !settings.on("output") {
-            circuit.drive(self.at, Drive::Open);
+            circuit.drive(self.body.at, Drive::Open);
             return;
         }
-        let volts = settings.number("volts");
-        let hz = settings.number("hz");
-        if restart {
-            self.started_us = now_us;
-        }
-        let cycles = (now_us - self.started_us) as f64 * 1e-6 * hz;
-        let on = settings.number("phase_on") % 360.0;
-        let phase_deg = (on + 360.0 * cycles) % 360.0;
-        let limit_a = settings.number("limit_a");
         let accuracy = Accuracy {
             gain: 2e-3,
             offset: 0.3,
             noise: 0.0,
         };
-        let rms_v = match volts {
+        let (hz, phase_on) = (settings.number("hz"), settings.number("phase_on"));
+        let rms_v = match settings.number("volts") {
             0.0 => 0.0,
             volts => self.body.errors.apply(0, accuracy, volts).max(0.0),
         };
-        circuit.drive(
-            self.at,
-            Drive::Sine {
-                rms_v,
-                hz,
-                phase_deg,
-                limit_a,
-            },
-        );
+        let phase_deg = starts.then_some(phase_on);
+        let drive = Drive::Sine {
+            rms_v,
+            hz,
+            phase_deg,
+        };
+        circuit.drive(self.body.at, drive);
     }
 
-    /// Returns the instant at which the output reaches the phase at which it goes off.
-    fn off_at(&self, now_us: u64) -> u64 {
-        let phase_off = self.settings.number("phase_off");
+    /// Returns the instant at which the output reaches the phase at which it goes off; 360 degrees mean at once.
+    fn off_at(&self, now_us: u64, circuit: &dyn Circuit) -> u64 {
+        let phase_off = self.body.settings.number("phase_off");
         if phase_off >= 360.0 {
             return now_us;
         }
-        let hz = self.settings.number("hz");
-        let on = self.settings.number("phase_on");
-        let turned = (on + (now_us - self.started_us) as f64 * 360e-6 * hz) % 360.0;
-        now_us + ((phase_off - turned).rem_euclid(360.0) / (360e-6 * hz)) as u64
+        let left_deg = (phase_off - circuit.line_deg()).rem_euclid(360.0);
+        now_us + (left_deg / (360e-6 * self.body.settings.number("hz"))) as u64
+    }
+
+    /// Checks whether voltage and frequency are within the limits that are set.
+    fn is_allowed(&self) -> bool {
+        let settings = &self.body.settings;
+        let most_v = match settings.choice("volt_range") {
+            "LOW" => settings.number("limit_v").min(LOW_V),
+            _ => settings.number("limit_v"),
+        };
+        settings.number("volts") <= most_v && settings.number("hz") <= settings.number("hz_limit")
     }
 }
 
@@ -112,110 +114,96 @@ impl Instrument for AcSource {
         &mut self.body
     }
 
-    fn reset(&mut self, now_us: u64) -> u64 {
-        self.settings.reset();
-        self.job = None;
-        self.off_us = Some(now_us);
+    fn reset(&mut self, at: &mut Moment<'_>) -> u64 {
+        self.body.settings.reset();
+        (self.job, self.last, self.off_us) = (None, None, None);
+        self.drive(at.circuit, false);
         RESET_US
     }
 
-    fn execute(
-        &mut self,
-        unit: &Unit,
-        now_us: u64,
-        circuit: &mut dyn Circuit,
-    ) -> Result<Outcome, Failure> {
-        let was_on = self.settings.on("output");
-        let was_v = self.settings.number("volts");
-        match self.settings.execute(unit)? {
-            ControlFlow::Break(Ok(text)) => return Ok(Outcome::Text(text, COMMAND_US)),
-            ControlFlow::Break(Err(("volts", _)))
-                if self.settings.number("volts") > self.settings.number("limit_v") =>
-            {
-                self.settings.set("volts", was_v);
-                return Err(Failure::OUT_OF_RANGE);
-            }
-            ControlFlow::Break(Err(("output", _))) if was_on && !self.settings.on("output") => {
-                self.off_us = Some(self.off_at(now_us));
-                return Ok(Outcome::Done(COMMAND_US));
-            }
-            ControlFlow::Break(Err(("output" | "volts" | "hz" | "limit_a", _))) => {
-                self.off_us = None;
-                self.drive(now_us, circuit, !was_on);
-                return Ok(Outcome::Done(COMMAND_US));
-            }
-            ControlFlow::Break(Err(_)) => return Ok(Outcome::Done(COMMAND_US)),
-            ControlFlow::Continue(()) => {}
+    fn changed(&mut self, changed: Changed, at: &mut Moment<'_>) -> Result<u64, Failure> {
+        if !self.is_allowed() {
+            self.body.settings.set(changed.key, changed.before);
+            return Err(Failure::OUT_OF_RANGE);
         }
+        match (changed.key, changed.before != 0.0) {
+            ("output", true) if !self.body.settings.on("output") => {
+                self.off_us = Some(self.off_at(at.now_us, at.circuit));
+            }
+            ("output", was_on) => {
+                self.off_us = None;
+                self.drive(at.circuit, !was_on);
+            }
+            ("volts" | "hz", _) if self.off_us.is_none() => self.drive(at.circuit, false),
+            _ => {}
+        }
+        Ok(0)
+    }
+
+    fn perform(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Outcome, Failure> {
         let has = |pattern| unit.matches(pattern).is_some();
+        let command_us = self.body.command_us;
         match unit.query {
-            true if measured(unit).is_some() => {
-                let window_us = CYCLES * 1e6 / self.settings.number("hz");
-                self.job = Some(Window::open(now_us, window_us, SAMPLES));
+            true if measured(unit, ":MEASure").is_some() => {
+                let window_us = CYCLES * 1e6 / self.body.settings.number("hz");
+                self.job = Some(Window::open(at.now_us, window_us, SAMPLES));
                 Ok(Outcome::AfterJob)
             }
+            true if measured(unit, ":FETCh").is_some() => self.fetch(unit),
             true if has(":STATus:QUEStionable:CONDition") => {
-                Ok(Outcome::Text("0".into(), COMMAND_US))
+                Ok(Outcome::Text("0".into(), command_us))
             }
             false if has(":ABORt") => {
                 self.job = None;
-                Ok(Outcome::Done(COMMAND_US))
+                Ok(Outcome::Done(command_us))
             }
             true | false => Err(Failure::UNDEFINED_HEADER),
         }
     }
 
-    fn fetch(&mut self, unit: &Unit, _: u64, _: &mut dyn Circuit) -> Result<Outcome, Failure> {
+    fn fetch(&mut self, unit: &Unit) -> Result<Outcome, Failure> {
+        let what = measured(unit, ":MEASure").or_else(|| measured(unit, ":FETCh"));
         let window = self.last.ok_or(Failure::DATA_STALE)?;
-        let rms = window.rms();
-        let power = window.power / f64::from(window.count.max(1));
-        let (function, value, offset) = match measured(unit).ok_or(Failure::UNDEFINED_HEADER)? {
-            Measured::Volts => (1, rms.volts, 0.6),
-            Measured::Amps => (2, rms.amps, 0.02),
-            Measured::Watts => (3, power, 1.0),
-            Measured::Hertz => {
-                let hz = if self.settings.on("output") {
-                    self.settings.number("hz")
-                } else {
-                    0.0
-                };
-                return Ok(Outcome::Text(nr3(hz), 0));
-            }
-        };
-        let accuracy = Accuracy {
+        let accuracy = |offset| Accuracy {
             gain: 2e-3,
             offset,
             noise: 0.02 * offset,
         };
-        Ok(Outcome::Text(
-            nr3(self.body.errors.apply(function, accuracy, value)),
-            0,
-        ))
+        let (rms, errors) = (window.rms(), &mut self.body.errors);
+        let value = match what.ok_or(Failure::UNDEFINED_HEADER)? {
+            Measured::Volts => errors.apply_rms(1, accuracy(0.6), rms.volts),
+            Measured::Amps => errors.apply_rms(2, accuracy(0.02), rms.amps),
+            Measured::Watts => errors.apply(3, accuracy(1.0), window.power_w()),
+            Measured::Hertz if self.body.settings.on("output") => self.body.settings.number("hz"),
+            Measured::Hertz => 0.0,
+        };
+        Ok(Outcome::Text(nr3(value), 0))
     }
 
     fn next_us(&self) -> Option<u64> {
-        let window = self.job.map(|window| window.next_us);
-        [window, self.off_us].into_iter().flatten().min()
+        let sample = self.job.map(|window| window.next_us());
+        [sample, self.off_us].into_iter().flatten().min()
     }
 
     fn end_us(&self) -> Option<u64> {
         Some(self.job?.end_us())
     }
 
-    fn tick(&mut self, now_us: u64, circuit: &mut dyn Circuit) {
-        if self.off_us.is_some_and(|off_us| off_us <= now_us) {
+    fn tick(&mut self, at: &mut Moment<'_>) {
+        if self.off_us.is_some_and(|off_us| off_us <= at.now_us) {
             self.off_us = None;
-            circuit.drive(self.at, Drive::Open);
+            self.drive(at.circuit, false);
             return;
         }
         if let Some(window) = &mut self.job
-            && window.take(circuit.at(self.at))
+            && window.take(at.circuit.at(self.body.at))
         {
             self.last = self.job.take();
         }
     }
 }
 
+#[derive(Clone, Copy)]
 enum Measured {
     Volts,
     Amps,
@@ -223,18 +211,17 @@ enum Measured {
     Hertz,
 }
 
-fn measured(unit: &Unit) -> Option<Measured> {
-    let has = |quantity: &str| {
-        let measure = format!(":MEASure[:SCALar]:{quantity}");
-        let fetch = format!(":FETCh[:SCALar]:{quantity}");
-        unit.matches(&measure).or(unit.matches(&fetch)).is_some()
-    };
-    [
+/// Returns the quantity of a query that begins with `verb`.
+fn measured(unit: &Unit, verb: &str) -> Option<Measured> {
+    let all = [
         ("VOLTage[:AC]", Measured::Volts),
         ("CURRent[:AC]", Measured::Amps),
         ("POWer[:AC][:REAL]", Measured::Watts),
         ("FREQuency", Measured::Hertz),
-    ]
-    .into_iter()
-    .find_map(|(quantity, what)| has(quantity).then_some(what))
+    ];
+    let asked = |(quantity, _): &(&str, _)| {
+        let pattern = format!("{verb}[:SCALar]:{quantity}");
+        unit.matches(&pattern).is_some()
+    };
+    all.into_iter().find(asked).map(|(_, what)| what)
 }

@@ -1,23 +1,22 @@
-//! Digitizer of 12 bits and four channels, in two dialects.
+//! Digitizer of 12 bits and four channels, in two dialects. Its channels are coupled to DC.
 
 use std::collections::VecDeque;
-use std::ops::ControlFlow;
 
-use super::settings::{Kind, Setting, Settings};
-use super::{Accuracy, Body, Channel, Instrument, Outcome};
-use crate::scpi::circuit::{Circuit, Terminal};
+use super::front_end::{CODES, FrontEnd, Range, VERTICAL};
+use super::settings::{Changed, Kind, Setting};
+use super::{Body, Channel, Instrument, Kit, Moment, Outcome};
+use crate::scpi::circuit::Terminal;
 use crate::scpi::message::{Unit, block, nr3};
 use crate::scpi::status::Failure;
 
-const COMMAND_US: u64 = 300;
-const CHANNELS: usize = 4;
-/// Vertical and horizontal divisions of the range.
-const VERTICAL: f64 = 8.0;
+/// Number of channels.
+pub(super) const CHANNELS: usize = 4;
+/// Horizontal divisions of the record.
 const HORIZONTAL: f64 = 10.0;
-/// Codes of the converter.
-const CODES: f64 = 4096.0;
 /// Time to send one byte of a block, microseconds.
 const BYTE_US: f64 = 0.4;
+/// Time after which automatic triggering needs no trigger, microseconds.
+const AUTO_US: u64 = 50_000;
 
 /// Command set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,8 +27,21 @@ pub(super) enum Dialect {
     Keysight,
 }
 
+pub(super) const RIGOL: Kit = Kit {
+    identity: "RIGOL TECHNOLOGIES,DHO804,DHO8A250100001,00.01.03",
+    latency_us: 1_500,
+    command_us: 300,
+    at: Terminal::Pulse,
+    settings: TABLE,
+};
+
+pub(super) const KEYSIGHT: Kit = Kit {
+    identity: "KEYSIGHT TECHNOLOGIES,DSOX1204G,CN60120001,02.12",
+    ..RIGOL
+};
+
 use Kind::{Choice, Ignored, Number, Switch};
-const SOURCES: &[&str] = &["CHANnel1", "CHANnel2", "CHANnel3", "CHANnel4"];
+pub(super) const SOURCES: &[&str] = &["CHANnel1", "CHANnel2", "CHANnel3", "CHANnel4"];
 #[rustfmt::skip]
 const TABLE: &[Setting] = &[
     Setting("shown", ":CHANnel#:DISPlay", Switch(true), CHANNELS),
@@ -37,7 +49,7 @@ const TABLE: &[Setting] = &[
     Setting("range", ":CHANnel#:RANGe", Number(4e-3, 8e3, 8.0), CHANNELS),
     Setting("offset", ":CHANnel#:OFFSet", Number(-1e3, 1e3, 0.0), CHANNELS),
     Setting("probe", ":CHANnel#:PROBe", Number(1e-3, 1e4, 1.0), CHANNELS),
-    Setting("coupling", ":CHANnel#:COUPling", Choice(&["DC", "AC", "GND"]), CHANNELS),
+    Setting("coupling", ":CHANnel#:COUPling", Choice(&["DC"]), CHANNELS),
     Setting("inverted", ":CHANnel#:INVert", Switch(false), CHANNELS),
     Setting("bandwidth", ":CHANnel#:BWLimit", Ignored, CHANNELS),
     Setting("label", ":CHANnel#:LABel", Ignored, CHANNELS),
@@ -46,10 +58,10 @@ const TABLE: &[Setting] = &[
     Setting("time_offset", ":TIMebase[:MAIN]:OFFSet", Number(-10.0, 10.0, 0.0), 1),
     Setting("position", ":TIMebase:POSition", Number(-10.0, 10.0, 0.0), 1),
     Setting("reference", ":TIMebase:REFerence", Choice(&["CENTer", "LEFT", "RIGHt"]), 1),
-    Setting("time_mode", ":TIMebase:MODE", Choice(&["MAIN", "WINDow", "XY", "ROLL"]), 1),
+    Setting("time_mode", ":TIMebase:MODE", Choice(&["MAIN"]), 1),
     Setting("depth", ":ACQuire:MDEPth", Number(100.0, 1e6, 20_000.0), 1),
     Setting("acquire", ":ACQuire:TYPE", Choice(&["NORMal", "AVERage", "HRESolution", "PEAK"]), 1),
-    Setting("acquire_mode", ":ACQuire:MODE", Choice(&["RTIMe", "SEGMented"]), 1),
+    Setting("acquire_mode", ":ACQuire:MODE", Choice(&["RTIMe"]), 1),
     Setting("trigger_mode", ":TRIGger:MODE", Choice(&["EDGE"]), 1),
     Setting("sweep", ":TRIGger:SWEep", Choice(&["AUTO", "NORMal", "SINGle"]), 1),
     Setting("trigger", ":TRIGger[:EDGE]:SOURce", Choice(SOURCES), 1),
@@ -76,62 +88,64 @@ struct Capture {
     before: usize,
     /// Samples of every channel, oldest first, as converter codes.
     samples: VecDeque<[u16; CHANNELS]>,
+    /// Volts of the sample before above the trigger level.
     previous_v: Option<f64>,
-    /// Samples still to come after the trigger; `None` before it.
-    left: Option<usize>,
-    /// True when the acquisition needs no trigger.
-    forced: bool,
+    is_triggered: bool,
+    /// Instant from which the acquisition needs no trigger; `None` for never.
+    force_us: Option<u64>,
 }
 
 /// The digitizer with its acquisition and its memory.
 pub(super) struct Digitizer {
     body: Body,
-    channels: Vec<Channel>,
+    channels: [Channel; CHANNELS],
     dialect: Dialect,
-    settings: Settings,
+    front_end: FrontEnd,
     capture: Option<Capture>,
     memory: Vec<[u16; CHANNELS]>,
+    /// Front end with which the record in memory ended.
+    recorded: FrontEnd,
     step_us: u64,
     before: usize,
-    stopped: bool,
 }
 
 impl Digitizer {
-    pub(super) fn new(body: Body, mut channels: Vec<Channel>, dialect: Dialect) -> Self {
+    /// Creates a digitizer; channels that are not given see one pair of terminals each.
+    pub(super) fn new(body: Body, channels: &[Channel], dialect: Dialect) -> Self {
         let spare = [
             Terminal::Pulse,
             Terminal::Output,
             Terminal::Clamped,
             Terminal::Load,
         ];
-        for at in spare.into_iter().skip(channels.len()) {
-            channels.push(Channel { at, ratio: 1.0 });
-        }
+        let spare = spare.map(|at| Channel { at, ratio: 1.0 });
+        let channels = std::array::from_fn(|n| *channels.get(n).unwrap_or(&spare[n]));
+        let front_end = FrontEnd::new(&body.settings, &channels, dialect);
         Self {
             body,
             channels,
             dialect,
-            settings: Settings::new(TABLE),
+            front_end,
             capture: None,
             memory: Vec::new(),
+            recorded: front_end,
             step_us: 1,
             before: 0,
-            stopped: true,
         }
     }
 
-    fn start(&mut self, now_us: u64, forced: bool) {
-        let points = self.settings.number("depth") as usize;
-        let range_s = self.settings.number("time_scale") * HORIZONTAL;
+    /// Starts an acquisition; `auto` ends without trigger too.
+    fn start(&mut self, now_us: u64, auto: bool) {
+        let points = self.body.settings.number("depth") as usize;
+        let range_s = self.body.settings.number("time_scale") * HORIZONTAL;
         let step_us = (range_s * 1e6 / points as f64).round().max(1.0) as u64;
-        let reference = match self.settings.choice("reference") {
+        let reference = match self.body.settings.choice("reference") {
             "LEFT" => 0.1,
             "RIGHt" => 0.9,
             _ => 0.5,
         };
-        let offset = self.settings.number("time_offset") * 1e6 / step_us as f64;
+        let offset = self.body.settings.number("time_offset") * 1e6 / step_us as f64;
         let before = (points as f64 * reference - offset).clamp(0.0, points as f64) as usize;
-        self.stopped = false;
         self.capture = Some(Capture {
             next_us: now_us + step_us,
             step_us,
@@ -139,68 +153,29 @@ impl Digitizer {
             before,
             samples: VecDeque::with_capacity(points),
             previous_v: None,
-            left: None,
-            forced,
+            is_triggered: false,
+            force_us: auto.then_some(now_us + AUTO_US),
         });
     }
 
-    /// Converts what the channels see now; returns the codes and the volts of the trigger source.
-    fn convert(&mut self, circuit: &mut dyn Circuit) -> ([u16; CHANNELS], f64) {
-        let source = SOURCES
-            .iter()
-            .position(|it| *it == self.settings.choice("trigger"));
-        let (mut codes, mut trigger_v) = ([0; CHANNELS], 0.0);
-        for (number, code) in codes.iter_mut().enumerate() {
-            let channel = self.channels[number];
-            let seen = circuit.at(channel.at);
-            let seen = if channel.at == Terminal::Load {
-                seen.amps
-            } else {
-                seen.volts
-            };
-            let full = VERTICAL * self.settings.of("scale", number);
-            let accuracy = Accuracy {
-                gain: 3e-3,
-                offset: 1e-3 * full,
-                noise: 4e-4 * full,
-            };
-            let shown = seen * channel.ratio * self.settings.of("probe", number);
-            let shown = self.body.errors.apply(number, accuracy, shown);
-            let shown = if self.settings.of("inverted", number) != 0.0 {
-                -shown
-            } else {
-                shown
-            };
-            let scaled = (shown + self.offset(number)) / full + 0.5;
-            *code = (scaled * CODES).round().clamp(0.0, CODES - 1.0) as u16;
-            if Some(number) == source {
-                trigger_v = shown;
-            }
-        }
-        (codes, trigger_v)
-    }
-
-    /// Returns the volts that the offset adds before the converter: Keysight centres the screen on its offset.
-    fn offset(&self, channel: usize) -> f64 {
-        let offset = self.settings.of("offset", channel);
-        if self.dialect == Dialect::Rigol {
-            offset
-        } else {
-            -offset
-        }
-    }
-
     fn source(&self) -> usize {
-        let source = self.settings.choice("source");
-        SOURCES
-            .iter()
-            .position(|it| *it == source)
-            .unwrap_or_default()
+        let source = self.body.settings.choice("source");
+        let index = SOURCES.iter().position(|it| *it == source);
+        index.unwrap_or_default()
+    }
+
+    /// Returns the range of the source of waveforms: of the record, before the first one that of the settings.
+    fn range(&self) -> &Range {
+        let front_end = match self.memory.is_empty() {
+            true => &self.front_end,
+            false => &self.recorded,
+        };
+        &front_end.ranges[self.source()]
     }
 
     /// Returns the factor between a code of the converter and a step of the transferred data.
     fn coarse(&self) -> f64 {
-        let is_byte = self.settings.choice("format") == "BYTE";
+        let is_byte = self.body.settings.choice("format") == "BYTE";
         match (is_byte, self.dialect) {
             (true, _) => 16.0,
             (false, Dialect::Rigol) => 1.0,
@@ -212,19 +187,21 @@ impl Digitizer {
     fn window(&self) -> std::ops::Range<usize> {
         let many = self.memory.len();
         let (from, to) = match self.dialect {
-            Dialect::Rigol => (self.settings.number("start"), self.settings.number("stop")),
-            Dialect::Keysight => (1.0, self.settings.number("points")),
+            Dialect::Rigol => (
+                self.body.settings.number("start"),
+                self.body.settings.number("stop"),
+            ),
+            Dialect::Keysight => (1.0, self.body.settings.number("points")),
         };
         let to = (to as usize).min(many);
         (from as usize - 1).min(to)..to
     }
 
     fn preamble(&self) -> String {
-        let channel = self.source();
-        let full = VERTICAL * self.settings.of("scale", channel);
-        let step_v = full / CODES * self.coarse();
+        let range = self.range();
+        let step_v = range.full_v / CODES * self.coarse();
         let middle = CODES / 2.0 / self.coarse();
-        let format = match (self.settings.choice("format"), self.dialect) {
+        let format = match (self.body.settings.choice("format"), self.dialect) {
             ("BYTE", _) => 0,
             ("WORD", _) => 1,
             (_, Dialect::Rigol) => 2,
@@ -234,8 +211,8 @@ impl Digitizer {
         let step_s = self.step_us as f64 * 1e-6;
         let origin_s = -(self.before as f64) * step_s;
         let (origin, reference) = match self.dialect {
-            Dialect::Rigol => ((self.offset(channel) / step_v).round(), middle),
-            Dialect::Keysight => (-self.offset(channel), middle),
+            Dialect::Rigol => ((range.offset_v / step_v).round(), middle),
+            Dialect::Keysight => (-range.offset_v, middle),
         };
         let numbers = [step_s, origin_s, step_v, origin];
         let [dx, x0, dy, y0] = numbers.map(nr3);
@@ -251,24 +228,18 @@ impl Digitizer {
             return Err(Failure::DATA_STALE);
         }
         let channel = self.source();
-        let codes = self.memory[self.window()]
-            .iter()
-            .map(|codes| codes[channel]);
+        let record = self.memory[self.window()].iter();
+        let codes = record.map(|codes| codes[channel]);
         let coarse = self.coarse();
-        let steps = codes.map(|code| (f64::from(code) / coarse) as u16);
+        let steps = codes.clone().map(|code| (f64::from(code) / coarse) as u16);
         let low_first =
-            self.settings.choice("order") == "LSBFirst" || self.dialect == Dialect::Rigol;
-        let bytes: Vec<u8> = match self.settings.choice("format") {
+            self.body.settings.choice("order") == "LSBFirst" || self.dialect == Dialect::Rigol;
+        let bytes: Vec<u8> = match self.body.settings.choice("format") {
             "BYTE" => steps.map(|step| step as u8).collect(),
             "WORD" if low_first => steps.flat_map(u16::to_le_bytes).collect(),
             "WORD" => steps.flat_map(u16::to_be_bytes).collect(),
             _ => {
-                let full = VERTICAL * self.settings.of("scale", channel);
-                let offset = self.offset(channel);
-                let codes = self.memory[self.window()]
-                    .iter()
-                    .map(|codes| codes[channel]);
-                let volts = codes.map(|code| nr3((f64::from(code) / CODES - 0.5) * full - offset));
+                let volts = codes.map(|code| nr3(self.range().volts(code)));
                 volts.collect::<Vec<_>>().join(",").into_bytes()
             }
         };
@@ -278,8 +249,8 @@ impl Digitizer {
     }
 
     /// Keeps settings consistent that two commands reach.
-    fn follow(&mut self, (key, channel): (&str, usize)) {
-        let settings = &mut self.settings;
+    fn follow(&mut self, Changed { key, channel, .. }: Changed) {
+        let settings = &mut self.body.settings;
         match key {
             "time_range" => {
                 let scale = settings.number("time_range") / HORIZONTAL;
@@ -313,13 +284,14 @@ impl Digitizer {
 
     fn state(&self) -> &'static str {
         match &self.capture {
-            Some(Capture { left: Some(_), .. }) => "TD",
+            Some(Capture {
+                is_triggered: true, ..
+            }) => "TD",
             Some(Capture {
                 samples, before, ..
             }) if samples.len() < *before => "RUN",
             Some(_) => "WAIT",
-            None if self.stopped => "STOP",
-            None => "TD",
+            None => "STOP",
         }
     }
 }
@@ -329,31 +301,27 @@ impl Instrument for Digitizer {
         &mut self.body
     }
 
-    fn reset(&mut self, _now_us: u64) -> u64 {
-        self.settings.reset();
+    fn reset(&mut self, _: &mut Moment<'_>) -> u64 {
+        self.body.settings.reset();
+        self.front_end = FrontEnd::new(&self.body.settings, &self.channels, self.dialect);
         self.capture = None;
         self.memory.clear();
-        self.stopped = true;
         400_000
     }
 
-    fn execute(
-        &mut self,
-        unit: &Unit,
-        now_us: u64,
-        _circuit: &mut dyn Circuit,
-    ) -> Result<Outcome, Failure> {
-        match self.settings.execute(unit)? {
-            ControlFlow::Break(Ok(text)) => return Ok(Outcome::Text(text, COMMAND_US)),
-            ControlFlow::Break(Err(changed)) => {
-                self.follow(changed);
-                return Ok(Outcome::Done(COMMAND_US));
-            }
-            ControlFlow::Continue(()) => {}
-        }
+    fn changed(&mut self, changed: Changed, _: &mut Moment<'_>) -> Result<u64, Failure> {
+        self.follow(changed);
+        self.front_end = FrontEnd::new(&self.body.settings, &self.channels, self.dialect);
+        Ok(0)
+    }
+
+    fn perform(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Outcome, Failure> {
         let has = |pattern| unit.matches(pattern).is_some();
-        let text = |text: String| Ok(Outcome::Text(text, COMMAND_US));
+        let command_us = self.body.command_us;
+        let text = |text: String| Ok(Outcome::Text(text, command_us));
+        let done = Outcome::Done(command_us);
         let is_rigol = self.dialect == Dialect::Rigol;
+        let is_auto = self.body.settings.choice("sweep") == "AUTO";
         match unit.query {
             true if has(":WAVeform:DATA") => self.data(),
             true if has(":WAVeform:PREamble") => text(self.preamble()),
@@ -363,34 +331,34 @@ impl Instrument for Digitizer {
                 text(if self.capture.is_some() { "8" } else { "0" }.into())
             }
             true if has(":TER") && !is_rigol => {
-                let waits = self.capture.as_ref().is_some_and(|it| it.left.is_none());
+                let waits = self.capture.as_ref().is_some_and(|it| !it.is_triggered);
                 text(if waits { "0" } else { "1" }.into())
             }
-            false if has(":SINGle") || has(":RUN") || has(":DIGitize") && !is_rigol => {
-                // A command that names channels waits for the whole record, as does `*OPC?`.
-                let auto = self.settings.choice("sweep") == "AUTO";
-                self.start(now_us, auto && has(":RUN"));
-                Ok(Outcome::Done(COMMAND_US))
+            false if has(":SINGle") || has(":RUN") => {
+                self.start(at.now_us, is_auto && has(":RUN"));
+                Ok(done)
             }
-            false if has(":TFORce") || has(":TRIGger:FORCe") => match &mut self.capture {
-                Some(capture) => {
-                    capture.forced = true;
-                    Ok(Outcome::Done(COMMAND_US))
-                }
-                None => Err(Failure::TRIGGER_IGNORED),
-            },
+            // No further command runs before the record is complete.
+            false if has(":DIGitize") && !is_rigol => {
+                self.start(at.now_us, is_auto);
+                Ok(Outcome::AfterJob)
+            }
+            false if has(":TFORce") || has(":TRIGger:FORCe") => {
+                let capture = self.capture.as_mut().ok_or(Failure::TRIGGER_IGNORED)?;
+                capture.force_us = Some(at.now_us);
+                Ok(done)
+            }
             false if has(":STOP") => {
                 self.capture = None;
-                self.stopped = true;
-                Ok(Outcome::Done(COMMAND_US))
+                Ok(done)
             }
             false if has(":AUToscale") => Ok(Outcome::Done(1_000_000)),
             true | false => Err(Failure::UNDEFINED_HEADER),
         }
     }
 
-    fn fetch(&mut self, _: &Unit, _: u64, _: &mut dyn Circuit) -> Result<Outcome, Failure> {
-        self.data()
+    fn fetch(&mut self, _: &Unit) -> Result<Outcome, Failure> {
+        Ok(Outcome::Done(0))
     }
 
     fn next_us(&self) -> Option<u64> {
@@ -399,46 +367,43 @@ impl Instrument for Digitizer {
 
     fn end_us(&self) -> Option<u64> {
         let capture = self.capture.as_ref()?;
-        let after = capture.points - capture.before;
-        let left = capture.left.unwrap_or(after).saturating_sub(1) as u64;
-        Some(capture.next_us + left * capture.step_us)
+        let taken = match capture.is_triggered {
+            true => capture.samples.len(),
+            false => capture.before,
+        };
+        let later = (capture.points - taken).saturating_sub(1) as u64;
+        Some(capture.next_us + later * capture.step_us)
     }
 
-    fn tick(&mut self, _: u64, circuit: &mut dyn Circuit) {
-        let (codes, volts) = self.convert(circuit);
-        let level = self.settings.number("level");
-        let rising = self.settings.choice("slope") == "POSitive";
-        let Some(capture) = &mut self.capture else {
-            return;
-        };
-        capture.samples.push_back(codes);
-        capture.next_us += capture.step_us;
-        let sense = |volts: f64| if rising { volts - level } else { level - volts };
-        let was_below = capture
-            .previous_v
-            .is_some_and(|previous| sense(previous) < 0.0);
-        let crossed = was_below && sense(volts) >= 0.0;
-        capture.previous_v = Some(volts);
-        match &mut capture.left {
-            Some(left) => *left = left.saturating_sub(1),
-            None if capture.samples.len() > capture.before && (crossed || capture.forced) => {
-                capture.left = Some(capture.points - capture.before);
-                let stale = capture.samples.len() - 1 - capture.before;
-                capture.samples.drain(..stale);
-            }
-            None if capture.samples.len() > capture.before => {
-                capture.samples.pop_front();
-            }
-            None => {}
-        }
-        if capture.left.is_some()
-            && capture.samples.len() >= capture.points
+    fn tick(&mut self, at: &mut Moment<'_>) {
+        let (codes, above_v) = self.front_end.convert(&mut self.body.errors, at.circuit);
+        if let Some(capture) = &mut self.capture
+            && capture.take(codes, above_v, at.now_us)
             && let Some(capture) = self.capture.take()
         {
             (self.step_us, self.before) = (capture.step_us, capture.before);
+            self.recorded = self.front_end;
             self.memory = capture.samples.into();
             self.memory.truncate(capture.points);
-            self.stopped = true;
         }
+    }
+}
+
+impl Capture {
+    /// Takes a sample, with the volts of the trigger source above the level in the direction of the slope; true when the
+    /// record is complete.
+    fn take(&mut self, codes: [u16; CHANNELS], above_v: f64, now_us: u64) -> bool {
+        self.samples.push_back(codes);
+        self.next_us += self.step_us;
+        let was_below = self.previous_v.replace(above_v).is_some_and(|it| it < 0.0);
+        let crossed = was_below && above_v >= 0.0;
+        let forced = self.force_us.is_some_and(|force_us| force_us <= now_us);
+        if !self.is_triggered && self.samples.len() > self.before {
+            self.is_triggered = crossed || forced;
+            if !self.is_triggered {
+                self.samples.pop_front();
+            }
+        }
+        self.is_triggered && self.samples.len() >= self.points
     }
 }

@@ -4,63 +4,70 @@
 
 mod ac_source;
 mod digitizer;
+mod errors;
+mod front_end;
 mod multimeter;
 mod pulse_source;
 mod settings;
 mod smu;
+mod window;
 
-use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::StandardNormal;
-
-use super::circuit::{Circuit, Reading, Terminal};
+use super::circuit::{Circuit, Terminal};
 use super::message::Unit;
 use super::status::Failure;
 use crate::module::tolerances::stream;
 use crate::table::{read_fields, read_words};
+use digitizer::Dialect;
+use errors::Errors;
+use settings::{Changed, Handled, Setting, Settings};
 
-/// Result of a command or query.
+/// Result of a command or query, with the time that it takes, microseconds.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// Done after so many microseconds, without reply.
+    /// A command without reply.
     Done(u64),
-    /// Reply, ready after so many microseconds.
+    /// A reply.
     Text(String, u64),
-    /// Reply of a block, ready after so many microseconds.
+    /// The reply is a block.
     Block(Vec<u8>, u64),
-    /// The reply needs the end of the present job; [`Instrument::fetch`] gives it.
+    /// The result needs the end of the present job; [`Instrument::fetch`] gives it.
     AfterJob,
+}
+
+/// Present instant, and the circuit at this instant.
+pub struct Moment<'a> {
+    /// Microseconds since the bench began.
+    pub now_us: u64,
+    /// What the instruments connect to, advanced to this instant.
+    pub circuit: &'a mut dyn Circuit,
 }
 
 /// An instrument behind its command interpreter.
 pub trait Instrument: Send {
-    /// Returns identity, latency and errors.
+    /// Returns identity, settings, latency and errors.
     fn body(&mut self) -> &mut Body;
 
-    /// Returns to the settings of `*RST`; returns the time that it takes, microseconds.
-    fn reset(&mut self, now_us: u64) -> u64;
+    /// Returns to the settings of `*RST` and disconnects sources; returns the time that it takes, microseconds.
+    fn reset(&mut self, at: &mut Moment<'_>) -> u64;
 
-    /// Executes a command or query that is no common one.
+    /// Follows a setting that a command has changed; returns the time that it takes beside that of a command,
+    /// microseconds.
     ///
     /// # Errors
     /// Fails with the entry for the error queue.
-    fn execute(
-        &mut self,
-        unit: &Unit,
-        now_us: u64,
-        circuit: &mut dyn Circuit,
-    ) -> Result<Outcome, Failure>;
+    fn changed(&mut self, changed: Changed, at: &mut Moment<'_>) -> Result<u64, Failure>;
 
-    /// Answers a query that waited for the end of the job.
+    /// Performs a command or query that is neither a common one nor a setting.
     ///
     /// # Errors
     /// Fails with the entry for the error queue.
-    fn fetch(
-        &mut self,
-        unit: &Unit,
-        now_us: u64,
-        circuit: &mut dyn Circuit,
-    ) -> Result<Outcome, Failure>;
+    fn perform(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Outcome, Failure>;
+
+    /// Answers a query, or ends a command, that waited for the end of the job.
+    ///
+    /// # Errors
+    /// Fails with the entry for the error queue.
+    fn fetch(&mut self, unit: &Unit) -> Result<Outcome, Failure>;
 
     /// Returns the next instant at which the job acts; `None` without job.
     fn next_us(&self) -> Option<u64>;
@@ -71,7 +78,23 @@ pub trait Instrument: Send {
     }
 
     /// Lets the job act.
-    fn tick(&mut self, now_us: u64, circuit: &mut dyn Circuit);
+    fn tick(&mut self, at: &mut Moment<'_>);
+
+    /// Executes a command or query that is no common one.
+    ///
+    /// # Errors
+    /// Fails with the entry for the error queue.
+    fn execute(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Outcome, Failure> {
+        let command_us = self.body().command_us;
+        match self.body().settings.execute(unit)? {
+            Some(Handled::Query(text)) => Ok(Outcome::Text(text, command_us)),
+            Some(Handled::Change(changed)) => {
+                let further_us = self.changed(changed, at)?;
+                Ok(Outcome::Done(command_us + further_us))
+            }
+            None => self.perform(unit, at),
+        }
+    }
 }
 
 /// Model of an instrument.
@@ -100,6 +123,16 @@ read_words!(Model {
     "pulse-source" => Self::PulseSource,
 });
 
+impl Model {
+    /// Number of channels of a digitizer.
+    pub const CHANNELS: usize = digitizer::CHANNELS;
+
+    /// Checks whether the model is a digitizer, of any dialect.
+    pub fn is_digitizer(self) -> bool {
+        matches!(self, Self::Rigol | Self::Keysight)
+    }
+}
+
 /// Channel of a digitizer: what it sees, and the ratio of its probe or shunt.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Channel {
@@ -114,7 +147,7 @@ read_fields!(Channel { at, ratio }, finish);
 /// Settings of one instrument in the file.
 #[derive(Debug, Clone)]
 pub struct Fitting {
-    /// Terminals at which the instrument hangs.
+    /// Terminals to which the instrument connects.
     pub at: Option<Terminal>,
     /// Channels of a digitizer.
     pub channels: Vec<Channel>,
@@ -126,53 +159,48 @@ pub struct Fitting {
     pub exact: bool,
 }
 
-/// Builds an instrument; `seed` and name draw its errors.
-pub fn build(model: Model, name: &str, seed: u64, fitting: Fitting) -> Box<dyn Instrument> {
-    let rng = stream(seed, name);
-    let latency_us = fitting.latency_us.unwrap_or(match model {
-        Model::Smu => 2_500,
-        Model::Multimeter => 3_000,
-        Model::AcSource => 15_000,
-        Model::Rigol | Model::Keysight => 1_500,
-        Model::PulseSource => 5_000,
-    });
-    let body = Body {
-        identity: fitting.identity.unwrap_or_else(|| identity(model).into()),
-        latency_us,
-        errors: Errors::draw(rng, fitting.exact),
-    };
-    let terminal = |otherwise| fitting.at.unwrap_or(otherwise);
-    match model {
-        Model::Smu => Box::new(smu::Smu::new(body, terminal(Terminal::Input))),
-        Model::Multimeter => Box::new(multimeter::Multimeter::new(
-            body,
-            terminal(Terminal::Output),
-        )),
-        Model::AcSource => Box::new(ac_source::AcSource::new(body, terminal(Terminal::Line))),
-        Model::PulseSource => Box::new(pulse_source::PulseSource::new(
-            body,
-            terminal(Terminal::Pulse),
-        )),
-        Model::Rigol | Model::Keysight => {
-            let dialect = match model {
-                Model::Rigol => digitizer::Dialect::Rigol,
-                _ => digitizer::Dialect::Keysight,
-            };
-            Box::new(digitizer::Digitizer::new(body, fitting.channels, dialect))
-        }
-    }
+/// What distinguishes the models besides their commands.
+struct Kit {
+    identity: &'static str,
+    /// Mean time to a reply, microseconds.
+    latency_us: u64,
+    /// Time of a command, microseconds.
+    command_us: u64,
+    /// Terminals to which the instrument connects, unless the file names others.
+    at: Terminal,
+    settings: &'static [Setting],
 }
 
-fn identity(model: Model) -> &'static str {
+/// Builds an instrument; `seed` and name draw its errors.
+pub fn build(model: Model, name: &str, seed: u64, fitting: Fitting) -> Box<dyn Instrument> {
+    let kit = match model {
+        Model::Smu => smu::KIT,
+        Model::Multimeter => multimeter::KIT,
+        Model::AcSource => ac_source::KIT,
+        Model::Rigol => digitizer::RIGOL,
+        Model::Keysight => digitizer::KEYSIGHT,
+        Model::PulseSource => pulse_source::KIT,
+    };
+    let channels = fitting.channels;
+    let body = Body {
+        identity: fitting.identity.unwrap_or_else(|| kit.identity.into()),
+        at: fitting.at.unwrap_or(kit.at),
+        settings: Settings::new(kit.settings),
+        command_us: kit.command_us,
+        latency_us: fitting.latency_us.unwrap_or(kit.latency_us),
+        errors: Errors::draw(stream(seed, name), fitting.exact),
+    };
     match model {
-        Model::Smu => "KEITHLEY INSTRUMENTS,MODEL 2450,04012345,1.7.12b",
-        Model::Multimeter => {
-            "Keysight Technologies,34461A,MY53201234,A.03.03-03.15-03.03-00.52-03-02"
-        }
-        Model::AcSource => "Chroma ATE,61503,61503A001234,1.50",
-        Model::Rigol => "RIGOL TECHNOLOGIES,DHO804,DHO8A250100001,00.01.03",
-        Model::Keysight => "KEYSIGHT TECHNOLOGIES,DSOX1204G,CN60120001,02.12",
-        Model::PulseSource => "Agilent Technologies,33220A,MY44001234,2.07-2.06-22-2",
+        Model::Smu => Box::new(smu::Smu::new(body)),
+        Model::Multimeter => Box::new(multimeter::Multimeter::new(body)),
+        Model::AcSource => Box::new(ac_source::AcSource::new(body)),
+        Model::Rigol => Box::new(digitizer::Digitizer::new(body, &channels, Dialect::Rigol)),
+        Model::Keysight => Box::new(digitizer::Digitizer::new(
+            body,
+            &channels,
+            Dialect::Keysight,
+        )),
+        Model::PulseSource => Box::new(pulse_source::PulseSource::new(body)),
     }
 }
 
@@ -180,6 +208,9 @@ fn identity(model: Model) -> &'static str {
 pub struct Body {
     /// Reply to `*IDN?`.
     pub identity: String,
+    at: Terminal,
+    settings: Settings,
+    command_us: u64,
     latency_us: u64,
     errors: Errors,
 }
@@ -189,114 +220,5 @@ impl Body {
     pub fn latency_us(&mut self) -> u64 {
         let scatter = 0.1 * self.errors.normal();
         (self.latency_us as f64 * (1.0 + scatter.clamp(-0.5, 1.0))) as u64
-    }
-}
-
-/// Limits of error of one function at one range.
-#[derive(Debug, Clone, Copy)]
-pub struct Accuracy {
-    /// Part of the reading.
-    pub gain: f64,
-    /// Offset, in the unit of the reading.
-    pub offset: f64,
-    /// Standard deviation of the noise, in the unit of the reading.
-    pub noise: f64,
-}
-
-/// Individual errors, as fractions of the maker's limits, and noise.
-struct Errors {
-    rng: ChaCha8Rng,
-    gain: [f64; 4],
-    offset: [f64; 4],
-    exact: bool,
-}
-
-impl Errors {
-    fn draw(mut rng: ChaCha8Rng, exact: bool) -> Self {
-        let mut fractions = || std::array::from_fn(|_| 2.0 * rng.random::<f64>() - 1.0);
-        let (gain, offset) = (fractions(), fractions());
-        Self {
-            rng,
-            gain,
-            offset,
-            exact,
-        }
-    }
-
-    fn normal(&mut self) -> f64 {
-        if self.exact {
-            0.0
-        } else {
-            self.rng.sample(StandardNormal)
-        }
-    }
-
-    /// Adds the errors of a function (0 to 3) to a true value.
-    fn apply(&mut self, function: usize, accuracy: Accuracy, value: f64) -> f64 {
-        if self.exact {
-            return value;
-        }
-        let gain = 1.0 + self.gain[function] * accuracy.gain;
-        let noise = accuracy.noise * self.normal();
-        value * gain + self.offset[function] * accuracy.offset + noise
-    }
-}
-
-/// Means over a window, sample by sample.
-#[derive(Debug, Clone, Copy, Default)]
-struct Window {
-    next_us: u64,
-    step_us: u64,
-    left: u32,
-    count: u32,
-    sum: Reading,
-    squares: Reading,
-    power: f64,
-}
-
-impl Window {
-    /// Opens a window of `for_us` after a wait.
-    fn open(from_us: u64, for_us: f64, samples: u32) -> Self {
-        let step_us = (for_us / f64::from(samples)).ceil().max(1.0) as u64;
-        Self {
-            next_us: from_us + step_us,
-            step_us,
-            left: samples,
-            ..Self::default()
-        }
-    }
-
-    /// Takes a sample; true when it was the last one.
-    fn take(&mut self, reading: Reading) -> bool {
-        self.sum.volts += reading.volts;
-        self.sum.amps += reading.amps;
-        self.squares.volts += reading.volts * reading.volts;
-        self.squares.amps += reading.amps * reading.amps;
-        self.power += reading.volts * reading.amps;
-        self.count += 1;
-        self.left -= 1;
-        self.next_us += self.step_us;
-        self.left == 0
-    }
-
-    /// Returns the instant of the last sample.
-    fn end_us(&self) -> u64 {
-        self.next_us + u64::from(self.left.saturating_sub(1)) * self.step_us
-    }
-
-    fn mean(&self) -> Reading {
-        let count = f64::from(self.count.max(1));
-        Reading {
-            volts: self.sum.volts / count,
-            amps: self.sum.amps / count,
-        }
-    }
-
-    fn rms(&self) -> Reading {
-        let count = f64::from(self.count.max(1));
-        Reading {
-            volts: (self.squares.volts / count).sqrt(),
-            amps: (self.squares.amps / count).sqrt(),
-        }
     }
 }

@@ -1,18 +1,35 @@
 //! Multimeter of the 34461A class.
 
-use std::ops::ControlFlow;
-
-use super::settings::{Kind, Setting, Settings};
-use super::{Accuracy, Body, Instrument, Outcome, Window};
+use super::errors::Accuracy;
+use super::settings::{Changed, Kind, Setting};
+use super::window::Window;
+use super::{Body, Instrument, Kit, Moment, Outcome};
 use crate::scpi::circuit::{Circuit, Drive, Terminal};
 use crate::scpi::message::{Unit, nr3};
 use crate::scpi::status::Failure;
 
-const COMMAND_US: u64 = 500;
-/// Time of a change of function, microseconds.
+/// Time of a change of function, and to choose a range by the reading, microseconds.
 const CONFIGURE_US: u64 = 40_000;
+const RANGING_US: u64 = 10_000;
+/// Time from the trigger to the window, microseconds.
+const TRIGGER_US: u64 = 300;
 /// Window of an AC measurement: ten cycles of 50 Hz, microseconds.
 const AC_US: f64 = 200_000.0;
+/// Source of a resistance measurement.
+const OHMS_SOURCE: Drive = Drive::Current {
+    amps: 1e-3,
+    limit_v: 12.0,
+};
+/// Resistance of the leads, which a two-wire measurement includes, ohms.
+const LEADS_OHM: f64 = 0.2;
+
+pub(super) const KIT: Kit = Kit {
+    identity: "Keysight Technologies,34461A,MY53201234,A.03.03-03.15-03.03-00.52-03-02",
+    latency_us: 3_000,
+    command_us: 500,
+    at: Terminal::Output,
+    settings: TABLE,
+};
 
 /// Functions by header after CONFigure or MEASure, with their choice of the setting, ranges and index of errors.
 const FUNCTIONS: [(&str, &str, &[f64], usize); 6] = [
@@ -47,32 +64,27 @@ const TABLE: &[Setting] = &[
     Setting("preset", ":STATus:PRESet", Ignored, 1),
 ];
 
-/// The meter with its function, range and readings.
+/// The meter with its function, ranges and readings.
 pub(super) struct Multimeter {
     body: Body,
-    at: Terminal,
-    settings: Settings,
     function: usize,
-    /// Upper end of the range; `None` chooses it by the reading.
-    range: Option<f64>,
+    /// Upper end of the range of each function; `None` chooses it by the reading.
+    ranges: [Option<f64>; FUNCTIONS.len()],
+    /// Readings still to come, and the window of the present one.
     job: Option<(u32, Window)>,
     armed: bool,
     readings: Vec<f64>,
 }
 
 impl Multimeter {
-    pub(super) fn new(body: Body, at: Terminal) -> Self {
-        let settings = Settings::new(TABLE);
-        let readings = Vec::new();
+    pub(super) fn new(body: Body) -> Self {
         Self {
             body,
-            at,
-            settings,
             function: 0,
-            range: None,
+            ranges: [None; FUNCTIONS.len()],
             job: None,
             armed: false,
-            readings,
+            readings: Vec::new(),
         }
     }
 
@@ -84,7 +96,7 @@ impl Multimeter {
             "FRES" => "plc_f",
             _ => return 10.0,
         };
-        self.settings.number(key)
+        self.body.settings.number(key)
     }
 
     fn is_ac(&self) -> bool {
@@ -92,22 +104,29 @@ impl Multimeter {
     }
 
     fn start(&mut self, now_us: u64, circuit: &mut dyn Circuit) {
+        self.stop(circuit);
         self.readings.clear();
         if FUNCTIONS[self.function].1.contains("RES") {
-            circuit.drive(
-                self.at,
-                Drive::Current {
-                    amps: 1e-3,
-                    limit_v: 12.0,
-                },
-            );
+            circuit.drive(self.body.at, OHMS_SOURCE);
         }
-        let delay_us = (self.settings.number("trigger_delay_s") * 1e6) as u64;
-        let auto_us = if self.range.is_none() { 10_000 } else { 0 };
+        let settings = &self.body.settings;
+        let delay_us = (settings.number("trigger_delay_s") * 1e6) as u64;
+        let ranging_us = match self.ranges[self.function] {
+            None => RANGING_US,
+            Some(_) => 0,
+        };
         self.job = Some((
-            self.settings.number("count") as u32,
-            self.window(now_us + delay_us + auto_us + 300),
+            settings.number("count") as u32,
+            self.window(now_us + delay_us + ranging_us + TRIGGER_US),
         ));
+    }
+
+    /// Ends the measurement in work, if any, and disconnects the source of a resistance.
+    fn stop(&mut self, circuit: &mut dyn Circuit) {
+        if self.job.take().is_some() && FUNCTIONS[self.function].1.contains("RES") {
+            circuit.drive(self.body.at, Drive::Open);
+        }
+        self.armed = false;
     }
 
     fn window(&self, from_us: u64) -> Window {
@@ -119,27 +138,21 @@ impl Multimeter {
 
     fn reading(&mut self, window: &Window) -> f64 {
         let (_, name, steps, errors) = FUNCTIONS[self.function];
+        let (mean, rms) = (window.mean(), window.rms());
         let value = match name {
-            "VOLT" => window.mean().volts,
-            "CURR" => window.mean().amps,
-            "VOLT:AC" => window.rms().volts,
-            "CURR:AC" => window.rms().amps,
-            name => {
-                let (mean, leads) = (window.mean(), if name == "RES" { 0.2 } else { 0.0 });
-                if mean.amps.abs() < 1e-9 {
-                    9.9e37
-                } else {
-                    mean.volts / mean.amps + leads
-                }
-            }
+            "VOLT" => mean.volts,
+            "CURR" => mean.amps,
+            "VOLT:AC" => rms.volts,
+            "CURR:AC" => rms.amps,
+            _ if mean.amps.abs() < 1e-9 => f64::INFINITY,
+            "RES" => mean.volts / mean.amps + LEADS_OHM,
+            _ => mean.volts / mean.amps,
         };
-        let fits = steps
-            .iter()
-            .find(|step| value.abs() <= **step * 1.2)
-            .copied();
-        let range = self.range.or(fits).unwrap_or(steps[steps.len() - 1]);
+        let fits = steps.iter().find(|step| value.abs() <= **step * 1.2);
+        let most = steps[steps.len() - 1];
+        let range = self.ranges[self.function].unwrap_or(*fits.unwrap_or(&most));
         if value.abs() > 1.2 * range {
-            return 9.9e37_f64.copysign(value);
+            return f64::INFINITY.copysign(value);
         }
         let cycles = self.cycles();
         let noise = if cycles >= 1.0 {
@@ -158,100 +171,105 @@ impl Multimeter {
             offset: offset * range,
             noise: noise * range,
         };
-        self.body.errors.apply(errors, accuracy, value)
+        match self.is_ac() {
+            true => self.body.errors.apply_rms(errors, accuracy, value),
+            false => self.body.errors.apply(errors, accuracy, value),
+        }
     }
 
     /// Sets function and range of CONFigure or MEASure.
-    fn configure(&mut self, unit: &Unit) -> Result<(), Failure> {
-        let name = unit.nodes[1..].join(":");
-        let with_dc = if name.contains(':') || name.contains("RES") {
-            name.clone()
-        } else {
-            format!("{name}:DC")
+    fn configure(&mut self, unit: &Unit, circuit: &mut dyn Circuit) -> Result<(), Failure> {
+        let function = function_of(&unit.nodes[1..].join(":"));
+        let function = function.ok_or(Failure::UNDEFINED_HEADER)?;
+        let range = match unit.word(0) {
+            Err(_) => None,
+            Ok(word) if ["DEF", "DEFAULT", "AUTO"].contains(&word.as_str()) => None,
+            Ok(_) => Some(limit(unit, function)?),
         };
-        let nodes = Unit {
-            nodes: with_dc.split(':').map(str::to_owned).collect(),
-            ..unit.clone()
-        };
-        let found = FUNCTIONS
-            .iter()
-            .position(|(pattern, ..)| nodes.matches(pattern).is_some());
-        self.function = found.ok_or(Failure::UNDEFINED_HEADER)?;
-        self.settings.reset();
-        self.range = match unit.parameters.first() {
-            Some(word)
-                if !["DEF", "AUTO"]
-                    .iter()
-                    .any(|it| word.eq_ignore_ascii_case(it.as_bytes())) =>
-            {
-                Some(self.limit(unit)?)
-            }
-            Some(_) | None => None,
-        };
+        self.stop(circuit);
+        self.body.settings.reset();
+        self.function = function;
+        self.ranges[function] = range;
         Ok(())
     }
 
-    fn limit(&self, unit: &Unit) -> Result<f64, Failure> {
-        let steps = FUNCTIONS[self.function].2;
-        let most = steps[steps.len() - 1];
-        let wanted = unit.number(0, 0.0, most, most)?;
-        let fits = steps.iter().find(|step| wanted <= **step * 1.0001);
-        Ok(fits.copied().unwrap_or(most))
-    }
-
     /// Executes the commands of function and range.
-    fn select(&mut self, unit: &Unit) -> Result<Option<Outcome>, Failure> {
+    fn select(
+        &mut self,
+        unit: &Unit,
+        circuit: &mut dyn Circuit,
+    ) -> Result<Option<Outcome>, Failure> {
+        let command_us = self.body.command_us;
         if unit.matches("[:SENSe]:FUNCtion[:ON]").is_some() {
             if unit.query {
                 let name = FUNCTIONS[self.function].1;
-                return Ok(Some(Outcome::Text(format!("\"{name}\""), COMMAND_US)));
+                return Ok(Some(Outcome::Text(format!("\"{name}\""), command_us)));
             }
-            let word = unit.word(0)?;
-            let word = word.strip_suffix(":DC").unwrap_or(&word);
-            let known = |it: &(&str, &str, _, _)| it.1 == word || it.0.eq_ignore_ascii_case(word);
-            let found = FUNCTIONS.iter().position(known);
-            self.function = found.ok_or(Failure::ILLEGAL_VALUE)?;
-            self.range = None;
+            let function = function_of(&unit.word(0)?).ok_or(Failure::ILLEGAL_VALUE)?;
+            self.stop(circuit);
+            self.function = function;
             return Ok(Some(Outcome::Done(CONFIGURE_US)));
         }
-        for (function, (pattern, ..)) in FUNCTIONS.iter().enumerate() {
-            let stem = pattern.strip_suffix(":DC").unwrap_or(pattern);
-            let dc = if stem.len() < pattern.len() {
-                "[:DC]"
-            } else {
-                ""
-            };
-            let is = |rest| {
-                unit.matches(&format!("[:SENSe]:{stem}{dc}:RANGe{rest}"))
-                    .is_some()
-            };
-            if is(":AUTO") {
-                if unit.query {
-                    let auto = u8::from(self.range.is_none());
-                    return Ok(Some(Outcome::Text(auto.to_string(), COMMAND_US)));
-                }
-                self.function = function;
-                let most = FUNCTIONS[function].2.last().copied();
-                self.range = if unit.boolean()? {
-                    None
-                } else {
-                    self.range.or(most)
-                };
-                return Ok(Some(Outcome::Done(COMMAND_US)));
+        let Some((function, is_auto)) = range_of(unit) else {
+            return Ok(None);
+        };
+        let range = &mut self.ranges[function];
+        let most = *FUNCTIONS[function].2.last().unwrap_or(&0.0);
+        match (unit.query, is_auto) {
+            (true, true) => {
+                let auto = u8::from(range.is_none()).to_string();
+                return Ok(Some(Outcome::Text(auto, command_us)));
             }
-            if is("[:UPPer]") {
-                if unit.query {
-                    let most = FUNCTIONS[function].2.last().copied();
-                    let range = self.range.or(most).unwrap_or_default();
-                    return Ok(Some(Outcome::Text(nr3(range), COMMAND_US)));
-                }
-                self.function = function;
-                self.range = Some(self.limit(unit)?);
-                return Ok(Some(Outcome::Done(COMMAND_US)));
+            (true, false) => {
+                let text = nr3(range.unwrap_or(most));
+                return Ok(Some(Outcome::Text(text, command_us)));
             }
+            (false, true) if unit.boolean()? => *range = None,
+            (false, true) => *range = range.or(Some(most)),
+            (false, false) => *range = Some(limit(unit, function)?),
         }
-        Ok(None)
+        Ok(Some(Outcome::Done(command_us)))
     }
+}
+
+/// Returns the function of a name such as `VOLT`, `VOLTage:DC` or `FRES`.
+fn function_of(name: &str) -> Option<usize> {
+    let name = match name.contains(':') || name.contains("RES") {
+        true => name.to_owned(),
+        false => format!("{name}:DC"),
+    };
+    let nodes = Unit {
+        nodes: name.split(':').map(str::to_owned).collect(),
+        query: false,
+        parameters: Vec::new(),
+    };
+    let named = |(pattern, ..): &(&str, _, _, _)| nodes.matches(pattern).is_some();
+    FUNCTIONS.iter().position(named)
+}
+
+/// Returns the function whose range a header sets, and whether it is that of automatic ranging.
+fn range_of(unit: &Unit) -> Option<(usize, bool)> {
+    let all = FUNCTIONS.iter().enumerate();
+    all.flat_map(|(function, it)| [(function, it.0, true), (function, it.0, false)])
+        .find(|(_, pattern, is_auto)| {
+            let name = match pattern.strip_suffix(":DC") {
+                Some(stem) => format!("{stem}[:DC]"),
+                None => (*pattern).to_owned(),
+            };
+            let rest = if *is_auto { ":AUTO" } else { "[:UPPer]" };
+            let header = format!("[:SENSe]:{name}:RANGe{rest}");
+            unit.matches(&header).is_some()
+        })
+        .map(|(function, _, is_auto)| (function, is_auto))
+}
+
+/// Returns the range that holds the number of a unit.
+fn limit(unit: &Unit, function: usize) -> Result<f64, Failure> {
+    let steps = FUNCTIONS[function].2;
+    let most = steps[steps.len() - 1];
+    let wanted = unit.number(0, 0.0, most, most)?;
+    let fits = steps.iter().find(|step| wanted <= **step * 1.0001);
+    Ok(fits.copied().unwrap_or(most))
 }
 
 impl Instrument for Multimeter {
@@ -259,82 +277,73 @@ impl Instrument for Multimeter {
         &mut self.body
     }
 
-    fn reset(&mut self, _now_us: u64) -> u64 {
-        self.settings.reset();
+    fn reset(&mut self, at: &mut Moment<'_>) -> u64 {
+        self.stop(at.circuit);
+        self.body.settings.reset();
         self.function = 0;
-        self.range = None;
-        self.job = None;
-        self.armed = false;
+        self.ranges = [None; FUNCTIONS.len()];
         self.readings.clear();
         60_000
     }
 
-    fn execute(
-        &mut self,
-        unit: &Unit,
-        now_us: u64,
-        circuit: &mut dyn Circuit,
-    ) -> Result<Outcome, Failure> {
-        match self.settings.execute(unit)? {
-            ControlFlow::Break(Ok(text)) => return Ok(Outcome::Text(text, COMMAND_US)),
-            ControlFlow::Break(Err(_)) => return Ok(Outcome::Done(COMMAND_US)),
-            ControlFlow::Continue(()) => {}
-        }
-        if let Some(outcome) = self.select(unit)? {
+    fn changed(&mut self, _: Changed, _: &mut Moment<'_>) -> Result<u64, Failure> {
+        Ok(0)
+    }
+
+    fn perform(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Outcome, Failure> {
+        if let Some(outcome) = self.select(unit, at.circuit)? {
             return Ok(outcome);
         }
         let has = |pattern| unit.matches(pattern).is_some();
         let heads = |word| unit.nodes.len() > 1 && unit.nodes[0].starts_with(word);
-        let immediate = self.settings.choice("trigger") == "IMMediate";
+        let immediate = self.body.settings.choice("trigger") == "IMMediate";
+        let done = Outcome::Done(self.body.command_us);
         match unit.query {
             false if heads("CONF") => {
-                self.configure(unit)?;
+                self.configure(unit, at.circuit)?;
                 Ok(Outcome::Done(CONFIGURE_US))
             }
             true if has(":CONFigure") => {
                 let name = FUNCTIONS[self.function].1;
-                let range = self.range.map_or("+1.00000000E+01".into(), nr3);
-                Ok(Outcome::Text(
-                    format!("\"{name} {range},+3.00000000E-06\""),
-                    COMMAND_US,
-                ))
+                let range = self.ranges[self.function].unwrap_or(10.0);
+                let text = format!("\"{name} {},{}\"", nr3(range), nr3(3e-7 * range));
+                Ok(Outcome::Text(text, self.body.command_us))
             }
             true if heads("MEAS") => {
-                self.configure(unit)?;
-                self.start(now_us + CONFIGURE_US, circuit);
+                self.configure(unit, at.circuit)?;
+                self.start(at.now_us + CONFIGURE_US, at.circuit);
                 Ok(Outcome::AfterJob)
             }
             true if has(":READ") && immediate => {
-                self.start(now_us, circuit);
+                self.start(at.now_us, at.circuit);
                 Ok(Outcome::AfterJob)
             }
-            true if has(":READ") => Err(Failure::SETTINGS_CONFLICT),
+            true if has(":READ") => Err(Failure::TRIGGER_DEADLOCK),
             true if has(":FETCh") => Ok(Outcome::AfterJob),
             false if has(":INITiate[:IMMediate]") && self.job.is_some() => {
                 Err(Failure::INIT_IGNORED)
             }
             false if has(":INITiate[:IMMediate]") => {
                 match immediate {
-                    true => self.start(now_us, circuit),
+                    true => self.start(at.now_us, at.circuit),
                     false => self.armed = true,
                 }
-                Ok(Outcome::Done(COMMAND_US))
+                Ok(done)
             }
-            false if has("*TRG") && std::mem::take(&mut self.armed) => {
-                self.start(now_us, circuit);
-                Ok(Outcome::Done(COMMAND_US))
+            false if has("*TRG") && self.armed => {
+                self.start(at.now_us, at.circuit);
+                Ok(done)
             }
             false if has("*TRG") => Err(Failure::TRIGGER_IGNORED),
             false if has(":ABORt") => {
-                self.job = None;
-                self.armed = false;
-                Ok(Outcome::Done(COMMAND_US))
+                self.stop(at.circuit);
+                Ok(done)
             }
             true | false => Err(Failure::UNDEFINED_HEADER),
         }
     }
 
-    fn fetch(&mut self, _: &Unit, _: u64, _: &mut dyn Circuit) -> Result<Outcome, Failure> {
+    fn fetch(&mut self, _: &Unit) -> Result<Outcome, Failure> {
         if self.readings.is_empty() {
             return Err(Failure::DATA_STALE);
         }
@@ -343,26 +352,26 @@ impl Instrument for Multimeter {
     }
 
     fn next_us(&self) -> Option<u64> {
-        self.job.map(|(_, window)| window.next_us)
+        self.job.map(|(_, window)| window.next_us())
     }
 
     fn end_us(&self) -> Option<u64> {
         Some(self.job?.1.end_us())
     }
 
-    fn tick(&mut self, now_us: u64, circuit: &mut dyn Circuit) {
+    fn tick(&mut self, at: &mut Moment<'_>) {
         let Some((left, window)) = &mut self.job else {
             return;
         };
-        if !window.take(circuit.at(self.at)) {
+        if !window.take(at.circuit.at(self.body.at)) {
             return;
         }
         let (left, window) = (*left - 1, *window);
         let read = self.reading(&window);
         self.readings.push(read);
-        self.job = (left > 0).then(|| (left, self.window(now_us)));
-        if left == 0 && FUNCTIONS[self.function].1.contains("RES") {
-            circuit.drive(self.at, Drive::Open);
+        match left {
+            0 => self.stop(at.circuit),
+            left => self.job = Some((left, self.window(at.now_us))),
         }
     }
 }

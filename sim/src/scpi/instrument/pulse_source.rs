@@ -1,14 +1,23 @@
-//! Function generator that sends pulses with an exact period.
+//! Function generator that sends pulses with an exact period. Other shapes than pulses, squares and a constant voltage
+//! stay off.
 
-use std::ops::ControlFlow;
-
-use super::settings::{Kind, Setting, Settings};
-use super::{Accuracy, Body, Instrument, Outcome};
+use super::errors::Accuracy;
+use super::settings::{Changed, Kind, Setting, Settings};
+use super::{Body, Instrument, Kit, Moment, Outcome};
 use crate::scpi::circuit::{Circuit, Drive, Pulses, Terminal};
 use crate::scpi::message::Unit;
 use crate::scpi::status::Failure;
 
-const COMMAND_US: u64 = 4_000;
+/// Resistance of the output, ohms.
+const SOURCE_OHM: f64 = 50.0;
+
+pub(super) const KIT: Kit = Kit {
+    identity: "Agilent Technologies,33220A,MY44001234,2.07-2.06-22-2",
+    latency_us: 5_000,
+    command_us: 4_000,
+    at: Terminal::Pulse,
+    settings: TABLE,
+};
 
 use Kind::{Choice, Number, Switch};
 #[rustfmt::skip]
@@ -34,28 +43,21 @@ const TABLE: &[Setting] = &[
     Setting("trigger", ":TRIGger:SOURce", Choice(&["IMMediate", "EXTernal", "BUS"]), 1),
 ];
 
+/// Settings in volts, as they appear over the load that is set.
+const VOLTS: [&str; 4] = ["high_v", "low_v", "peak_v", "offset_v"];
+
 /// The generator with its settings.
 pub(super) struct PulseSource {
     body: Body,
-    at: Terminal,
-    settings: Settings,
-    /// Instant at which a reset disconnects the output, or at which a burst ends.
-    event_us: Option<(u64, Event)>,
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum Event {
-    Disconnect,
-    BurstEnds,
+    /// Instant at which the present burst ends.
+    burst_end_us: Option<u64>,
 }
 
 impl PulseSource {
-    pub(super) fn new(body: Body, at: Terminal) -> Self {
+    pub(super) fn new(body: Body) -> Self {
         Self {
             body,
-            at,
-            settings: Settings::new(TABLE),
-            event_us: None,
+            burst_end_us: None,
         }
     }
 
@@ -65,16 +67,20 @@ impl PulseSource {
             offset: 2e-3,
             noise: 0.0,
         };
-        let (high_v, low_v) = (
-            self.settings.number("high_v"),
-            self.settings.number("low_v"),
-        );
-        let high_v = self.body.errors.apply(0, accuracy, high_v);
-        let low_v = self.body.errors.apply(1, accuracy, low_v);
-        let period_us = self.settings.number("period_s") * 1e6;
-        let width_us = match self.settings.choice("shape") {
-            "SQUare" => period_us * self.settings.number("duty_pct") / 100.0,
-            _ => self.settings.number("width_s") * 1e6,
+        let Body {
+            settings, errors, ..
+        } = &mut self.body;
+        let open = open_circuit(settings.number("load"));
+        let high_v = open * errors.apply(0, accuracy, settings.number("high_v"));
+        let low_v = open * errors.apply(1, accuracy, settings.number("low_v"));
+        let (high_v, low_v) = match settings.choice("polarity") {
+            "INVerted" => (low_v, high_v),
+            _ => (high_v, low_v),
+        };
+        let period_us = settings.number("period_s") * 1e6;
+        let width_us = match settings.choice("shape") {
+            "SQUare" => period_us * settings.number("duty_pct") / 100.0,
+            _ => settings.number("width_s") * 1e6,
         };
         Pulses {
             low_v,
@@ -82,38 +88,38 @@ impl PulseSource {
             period_us,
             width_us: width_us.min(period_us),
             count,
+            source_ohm: SOURCE_OHM,
         }
     }
 
     /// Connects the output: continuous pulses, the level between pulses, a constant voltage, or nothing.
     fn drive(&mut self, circuit: &mut dyn Circuit) {
-        let settings = &self.settings;
-        let drive = if !settings.on("output") {
-            Drive::Open
-        } else if settings.choice("shape") == "DC" {
-            Drive::Voltage {
-                volts: settings.number("offset_v"),
-                limit_a: 0.1,
-            }
-        } else if settings.on("burst") {
-            Drive::Pulses(self.pulses(Some(0)))
-        } else {
-            Drive::Pulses(self.pulses(None))
+        let settings = &self.body.settings;
+        let drive = match settings.choice("shape") {
+            _ if !settings.on("output") => Drive::Open,
+            "SINusoid" => Drive::Open,
+            "DC" => Drive::Voltage {
+                volts: open_circuit(settings.number("load")) * settings.number("offset_v"),
+                limit_a: f64::INFINITY,
+                source_ohm: SOURCE_OHM,
+            },
+            _ if settings.on("burst") => Drive::Pulses(self.pulses(Some(0))),
+            _ => Drive::Pulses(self.pulses(None)),
         };
-        circuit.drive(self.at, drive);
+        self.burst_end_us = None;
+        circuit.drive(self.body.at, drive);
     }
 
     fn burst(&mut self, now_us: u64, circuit: &mut dyn Circuit) {
-        let cycles = self.settings.number("cycles").round();
+        let cycles = self.body.settings.number("cycles").round();
         let pulses = self.pulses(Some(cycles as u64));
-        let ends_us = now_us + (pulses.period_us * cycles).ceil() as u64;
-        self.event_us = Some((ends_us, Event::BurstEnds));
-        circuit.drive(self.at, Drive::Pulses(pulses));
+        self.burst_end_us = Some(now_us + (pulses.period_us * cycles).ceil() as u64);
+        circuit.drive(self.body.at, Drive::Pulses(pulses));
     }
 
     /// Keeps settings consistent that two commands reach.
-    fn follow(&mut self, key: &str) -> Result<(), Failure> {
-        let settings = &mut self.settings;
+    fn follow(&mut self, Changed { key, before, .. }: Changed) -> Result<(), Failure> {
+        let settings = &mut self.body.settings;
         let number = |settings: &Settings, key| settings.number(key);
         match key {
             "hz" => {
@@ -137,16 +143,29 @@ impl PulseSource {
                     return Err(Failure::SETTINGS_CONFLICT);
                 }
             }
+            // The output stays as it is, and so do the volts over the load now set.
+            "load" => {
+                let ratio = open_circuit(before) / open_circuit(number(settings, "load"));
+                for key in VOLTS {
+                    settings.set(key, ratio * number(settings, key));
+                }
+            }
             _ => {}
         }
         let period_s = settings.number("period_s");
         settings.set("hz", 1.0 / period_s);
         settings.set("pulse_period_s", period_s);
-        match settings.number("width_s") > period_s {
+        let is_sine = settings.choice("shape") == "SINusoid" && settings.on("output");
+        match settings.number("width_s") > period_s || is_sine {
             true => Err(Failure::SETTINGS_CONFLICT),
             false => Ok(()),
         }
     }
+}
+
+/// Returns the ratio of the volts without load to those over a load.
+fn open_circuit(load_ohm: f64) -> f64 {
+    1.0 + SOURCE_OHM / load_ohm
 }
 
 impl Instrument for PulseSource {
@@ -154,53 +173,42 @@ impl Instrument for PulseSource {
         &mut self.body
     }
 
-    fn reset(&mut self, now_us: u64) -> u64 {
-        self.settings.reset();
-        self.event_us = Some((now_us, Event::Disconnect));
+    fn reset(&mut self, at: &mut Moment<'_>) -> u64 {
+        self.body.settings.reset();
+        self.drive(at.circuit);
         100_000
     }
 
-    fn execute(
-        &mut self,
-        unit: &Unit,
-        now_us: u64,
-        circuit: &mut dyn Circuit,
-    ) -> Result<Outcome, Failure> {
-        match self.settings.execute(unit)? {
-            ControlFlow::Break(Ok(text)) => return Ok(Outcome::Text(text, COMMAND_US)),
-            ControlFlow::Break(Err((key, _))) => {
-                let consistent = self.follow(key);
-                self.drive(circuit);
-                return consistent.map(|()| Outcome::Done(COMMAND_US));
-            }
-            ControlFlow::Continue(()) => {}
-        }
-        let triggers = unit
-            .matches("*TRG")
-            .or(unit.matches(":TRIGger[:IMMediate]"))
-            .is_some();
-        if unit.query || !triggers {
-            return Err(Failure::UNDEFINED_HEADER);
-        }
-        let ready = self.settings.on("output") && self.settings.on("burst");
-        if !ready || self.event_us.is_some() {
-            return Err(Failure::TRIGGER_IGNORED);
-        }
-        self.burst(now_us, circuit);
-        Ok(Outcome::Done(COMMAND_US))
+    fn changed(&mut self, changed: Changed, at: &mut Moment<'_>) -> Result<u64, Failure> {
+        let consistent = self.follow(changed);
+        self.drive(at.circuit);
+        consistent.map(|()| 0)
     }
 
-    fn fetch(&mut self, _: &Unit, _: u64, _: &mut dyn Circuit) -> Result<Outcome, Failure> {
+    fn perform(&mut self, unit: &Unit, at: &mut Moment<'_>) -> Result<Outcome, Failure> {
+        let has = |pattern| unit.matches(pattern).is_some();
+        if unit.query || !(has("*TRG") || has(":TRIGger[:IMMediate]")) {
+            return Err(Failure::UNDEFINED_HEADER);
+        }
+        let settings = &self.body.settings;
+        let pulsed = ["PULSe", "SQUare"].contains(&settings.choice("shape"));
+        let ready = settings.on("output") && settings.on("burst") && pulsed;
+        if !ready || self.burst_end_us.is_some() {
+            return Err(Failure::TRIGGER_IGNORED);
+        }
+        self.burst(at.now_us, at.circuit);
+        Ok(Outcome::Done(self.body.command_us))
+    }
+
+    fn fetch(&mut self, _: &Unit) -> Result<Outcome, Failure> {
         Err(Failure::DATA_STALE)
     }
 
     fn next_us(&self) -> Option<u64> {
-        self.event_us.map(|(at_us, _)| at_us)
+        self.burst_end_us
     }
 
-    fn tick(&mut self, _: u64, circuit: &mut dyn Circuit) {
-        if let Some((_, Event::Disconnect)) = self.event_us.take() {
-            self.drive(circuit);
-        }
+    fn tick(&mut self, _: &mut Moment<'_>) {
+        self.burst_end_us = None;
     }
 }

@@ -1,7 +1,5 @@
 //! Settings that a command sets and a query returns, as a table.
 
-use std::ops::ControlFlow;
-
 use crate::scpi::message::{Unit, nr3};
 use crate::scpi::status::Failure;
 
@@ -27,8 +25,22 @@ pub(super) struct Settings {
     values: Vec<Vec<f64>>,
 }
 
-/// A setting that a command has changed: its key and channel from 0.
-pub(super) type Changed = (&'static str, usize);
+/// A setting that a command has changed.
+#[derive(Debug, Clone, Copy)]
+pub struct Changed {
+    pub(super) key: &'static str,
+    /// Channel from 0.
+    pub(super) channel: usize,
+    /// Value before; of a choice, its index.
+    pub(super) before: f64,
+}
+
+/// What a unit has done with a setting.
+pub(super) enum Handled {
+    /// Reply to a query.
+    Query(String),
+    Change(Changed),
+}
 
 impl Settings {
     pub(super) fn new(table: &'static [Setting]) -> Self {
@@ -87,48 +99,44 @@ impl Settings {
         self.values[index][channel] = value;
     }
 
-    /// Executes a unit that names a setting: breaks with the reply to a query or the changed setting, continues when
-    /// no setting has this header.
+    /// Executes a unit that names a setting; `None` when no setting has this header.
     ///
     /// # Errors
     /// Fails with the entry for the error queue.
-    pub(super) fn execute(
-        &mut self,
-        unit: &Unit,
-    ) -> Result<ControlFlow<Result<String, Changed>>, Failure> {
-        for (index, Setting(key, pattern, kind, copies)) in self.table.iter().enumerate() {
-            let Some(suffixes) = unit.matches(pattern) else {
-                continue;
-            };
-            let channel = suffixes
-                .first()
-                .map_or(0, |it| *it as usize)
-                .saturating_sub(1);
-            if channel >= *copies {
-                return Err(Failure::SUFFIX_OUT_OF_RANGE);
-            }
-            let value = &mut self.values[index][channel];
-            if unit.query {
-                return shown(unit, *kind, *value).map(|text| ControlFlow::Break(Ok(text)));
-            }
-            *value = match kind {
-                Kind::Number(least, most, reset) => unit.number(0, *least, *most, *reset)?,
-                Kind::Switch(_) => f64::from(u8::from(unit.boolean()?)),
-                Kind::Choice(choices) => {
-                    let chosen = unit.choice(choices)?;
-                    choices
-                        .iter()
-                        .position(|it| *it == chosen)
-                        .unwrap_or_default() as f64
-                }
-                Kind::Ignored => 0.0,
-            };
-            if unit.parameters.len() > 1 && !matches!(kind, Kind::Ignored) {
-                return Err(Failure::PARAMETER_NOT_ALLOWED);
-            }
-            return Ok(ControlFlow::Break(Err((key, channel))));
+    pub(super) fn execute(&mut self, unit: &Unit) -> Result<Option<Handled>, Failure> {
+        let each = self.table.iter().zip(&mut self.values);
+        let mut named = each.filter_map(|(setting, values)| {
+            let suffixes = unit.matches(setting.1)?;
+            Some((setting, values, suffixes.first().copied().unwrap_or(1)))
+        });
+        let Some((Setting(key, _, kind, _), values, suffix)) = named.next() else {
+            return Ok(None);
+        };
+        let channel = (suffix as usize).saturating_sub(1);
+        let value = values
+            .get_mut(channel)
+            .ok_or(Failure::SUFFIX_OUT_OF_RANGE)?;
+        if unit.query {
+            return shown(unit, *kind, *value).map(|text| Some(Handled::Query(text)));
         }
-        Ok(ControlFlow::Continue(()))
+        if unit.parameters.len() > 1 && !matches!(kind, Kind::Ignored) {
+            return Err(Failure::PARAMETER_NOT_ALLOWED);
+        }
+        let before = std::mem::replace(value, taken(unit, *kind)?);
+        Ok(Some(Handled::Change(Changed {
+            key,
+            channel,
+            before,
+        })))
+    }
+}
+
+fn taken(unit: &Unit, kind: Kind) -> Result<f64, Failure> {
+    match kind {
+        Kind::Number(least, most, reset) => unit.number(0, least, most, reset),
+        Kind::Switch(_) => Ok(f64::from(u8::from(unit.boolean()?))),
+        Kind::Choice(choices) => Ok(unit.choice(choices)? as f64),
+        Kind::Ignored => Ok(0.0),
     }
 }
 

@@ -2,31 +2,28 @@
 
 use super::truth::{Kind, REFERENCE_C, Truth};
 use crate::scpi::circuit::{Circuit, Drive, Reading, Terminal, over_resistor};
-use crate::scpi::passive::{Line, pulse_volts};
+use crate::scpi::line::Line;
+use crate::scpi::passive::CLAMP_V;
+use crate::scpi::sources::Sources;
 
-/// Longest step while the line is on, microseconds.
+/// Longest step while the line is on, and while it is off, microseconds.
 const STEP_US: u64 = 20;
+const IDLE_STEP_US: u64 = 100_000;
 /// Time constants of junction and case, seconds, and the resistance of the case, kelvin per watt.
 const JUNCTION_S: f64 = 0.02;
 const CASE_S: f64 = 20.0;
 const CASE_K_PER_W: f64 = 8.0;
 /// Resistance of a shorted output, ohms.
 const SHORT_OHM: f64 = 0.1;
-/// Resistance of the snubber, ohms.
-const SNUBBER_OHM: f64 = 39.0;
+/// Least voltage that returns at a current zero and can fire the output again, volts.
+const COMMUTATION_V: f64 = 50.0;
 
 /// A relay with its sources and its state.
 pub struct SolidState {
     truth: Truth,
-    line: Line,
+    sources: Sources,
     load_ohm: f64,
     load_h: f64,
-    input: Drive,
-    pulse: Drive,
-    pulse_from_us: u64,
-    output: Drive,
-    has_line: bool,
-    now_us: u64,
     /// Light over threshold: fires from 1 up, falls off below the hysteresis.
     light: f64,
     lit: bool,
@@ -34,9 +31,8 @@ pub struct SolidState {
     conducts: f64,
     /// True when the half cycle before conducted, so that this one fires at the retrigger voltage.
     again: bool,
-    /// Half cycle that fires without light after a failed commutation.
+    /// Sign of the half cycle that fires without light after a failed commutation; 0 for none.
     refire: f64,
-    sign: f64,
     load_a: f64,
     junction_k: f64,
     case_k: f64,
@@ -47,21 +43,14 @@ impl SolidState {
     pub fn new(truth: Truth, line: Line, load_ohm: f64, load_h: f64) -> Self {
         Self {
             truth,
-            line,
+            sources: Sources::new(line),
             load_ohm,
             load_h,
-            input: Drive::Open,
-            pulse: Drive::Open,
-            pulse_from_us: 0,
-            output: Drive::Open,
-            has_line: false,
-            now_us: 0,
             light: 0.0,
             lit: false,
             conducts: 0.0,
             again: false,
             refire: 0.0,
-            sign: 0.0,
             load_a: 0.0,
             junction_k: 0.0,
             case_k: 0.0,
@@ -77,44 +66,42 @@ impl SolidState {
         self.truth.kind != Kind::Dc
     }
 
-    fn pulse_v(&self) -> Option<f64> {
-        pulse_volts(self.pulse, (self.now_us - self.pulse_from_us) as f64)
+    fn has_line(&self) -> bool {
+        self.sources.line.is_on()
     }
 
     /// Returns voltage and current at the input.
     fn at_input(&self) -> Reading {
-        let volts_at = |volts: f64| Reading {
-            volts,
-            amps: self.truth.input_a(volts, self.temperature_c()),
+        let (truth, now_c) = (&self.truth, self.temperature_c());
+        let at_voltage = |volts: f64, source_ohm: f64| {
+            let amps = truth.input_a(volts, source_ohm, now_c);
+            let volts = volts - amps * source_ohm;
+            Reading { volts, amps }
         };
-        match self.input {
-            Drive::Voltage { volts, limit_a } => {
-                let free = volts_at(volts);
+        let at_current = |amps: f64| Reading {
+            volts: truth.input_v(amps, now_c),
+            amps,
+        };
+        match self.sources.at_input() {
+            Drive::Voltage {
+                volts,
+                limit_a,
+                source_ohm,
+            } => {
+                let free = at_voltage(volts, source_ohm);
                 match free.amps.abs() > limit_a {
-                    true => Reading {
-                        volts: self.truth.input_v(limit_a),
-                        amps: limit_a,
-                    },
+                    true => at_current(limit_a.copysign(free.amps)),
                     false => free,
                 }
             }
-            Drive::Current { amps, limit_v } if amps > 0.0 => {
-                let volts = if self.truth.open_led {
-                    limit_v
-                } else {
-                    self.truth.input_v(amps)
-                };
-                if volts >= limit_v {
-                    volts_at(limit_v)
-                } else {
-                    Reading { volts, amps }
+            Drive::Current { amps, limit_v } => {
+                let free = at_current(amps);
+                match free.volts.abs() > limit_v {
+                    true => at_voltage(limit_v.copysign(amps), 0.0),
+                    false => free,
                 }
             }
-            Drive::Current { limit_v, .. } => volts_at(-limit_v),
-            Drive::Open | Drive::Sine { .. } | Drive::Pulses(_) => match self.pulse_v() {
-                Some(volts) => volts_at(volts),
-                None => Reading::default(),
-            },
+            Drive::Open | Drive::Sine { .. } | Drive::Pulses(_) => Reading::default(),
         }
     }
 
@@ -146,15 +133,16 @@ impl SolidState {
     }
 
     fn through(&self, output: Reading) -> f64 {
-        if self.has_line {
+        if self.has_line() {
             self.load_a
         } else {
             output.amps
         }
     }
 
-    fn knee_v(&self) -> f64 {
-        let knee_v = self.truth.knee_v[usize::from(self.sign < 0.0)];
+    /// Returns the knee voltage for a sign of the current, volts.
+    fn knee_v(&self, sign: f64) -> f64 {
+        let knee_v = self.truth.knee_v[usize::from(sign < 0.0)];
         knee_v - 1.5e-3 * (self.temperature_c() - REFERENCE_C)
     }
 
@@ -177,56 +165,63 @@ impl SolidState {
             + junction * (volts / 0.1).tanh()
     }
 
+    /// Returns the current of the blocked output in series with the load, amperes. The capacitance charges through the
+    /// load, so the output follows the line by their time constant, which is short against a cycle.
+    fn blocked_a(&self) -> f64 {
+        let lag_us = self.load_ohm * self.truth.capacitance_f * 1e6;
+        let line_v = |ahead_us: f64| self.sources.line.volts(ahead_us - lag_us);
+        let slope_v_per_s = (line_v(0.5) - line_v(-0.5)) / 1e-6;
+        self.leakage_a(line_v(0.0), slope_v_per_s)
+    }
+
     /// Lets the triac fire, conduct or go off, and moves the load current.
     fn commutate(&mut self, dt_s: f64) {
-        let line_v = self.line.volts(0.0);
-        let sign = line_v.signum();
-        let (knee_v, ohms) = (self.knee_v(), self.slope_ohm() + self.load_ohm);
+        let line_v = self.sources.line.volts(0.0);
         if self.truth.shorted {
-            self.conducts = sign;
             self.load_a = line_v / (self.load_ohm + SHORT_OHM);
             return;
         }
+        let ohms = self.slope_ohm() + self.load_ohm;
         if self.conducts != 0.0 {
-            let drop_v = self.conducts * knee_v;
-            self.load_a = match self.load_h > 0.0 {
-                true => {
-                    let final_a = (line_v - drop_v) / ohms;
-                    final_a + (self.load_a - final_a) * (-dt_s * ohms / self.load_h).exp()
-                }
-                false => (line_v - drop_v) / ohms,
+            let final_a = (line_v - self.conducts * self.knee_v(self.conducts)) / ohms;
+            let kept = match self.load_h > 0.0 {
+                true => (-dt_s * ohms / self.load_h).exp(),
+                false => 0.0,
             };
+            self.load_a = final_a + (self.load_a - final_a) * kept;
             if self.load_a * self.conducts < self.truth.holding_a {
                 self.again = true;
-                self.load_a = 0.0;
                 self.conducts = 0.0;
-                let slope = line_v.abs() / (SNUBBER_OHM * self.truth.capacitance_f) * 1e-9;
-                let fails = slope > self.truth.commutation_v_per_us && line_v.abs() > 50.0;
-                self.refire = if fails && !self.lit { sign } else { 0.0 };
+                let fails = !self.lit && self.fails_to_commutate(line_v);
+                self.refire = if fails { line_v.signum() } else { 0.0 };
             }
         }
-        self.sign = sign;
         if self.conducts == 0.0 {
             self.fire(line_v, ohms);
         }
         if self.conducts == 0.0 {
-            let slope = (line_v - self.line.volts(-0.5)) / 0.5e-6;
-            self.load_a = self.leakage_a(line_v, slope);
+            self.load_a = self.blocked_a();
         }
     }
 
+    /// Checks whether the voltage that returns at a current zero rises too fast for the triac to block: an inductive load
+    /// and the capacitance over the output swing it up. Over a resistive load it returns with the line.
+    fn fails_to_commutate(&self, line_v: f64) -> bool {
+        let swing_s = (self.load_h * self.truth.capacitance_f).sqrt();
+        line_v.abs() > COMMUTATION_V
+            && line_v.abs() * 1e-6 > self.truth.commutation_v_per_us * swing_s
+    }
+
     fn fire(&mut self, line_v: f64, ohms: f64) {
-        if !self.lit {
-            self.again &= self.refire != 0.0;
-            if self.refire == 0.0 || self.refire != self.sign {
-                self.refire = 0.0;
-                return;
-            }
-        }
-        if self.truth.half_wave && self.sign < 0.0 {
+        let sign = line_v.signum();
+        if !self.lit && self.refire != sign {
+            (self.again, self.refire) = (false, 0.0);
             return;
         }
-        let amps = (line_v.abs() - self.knee_v()) / ohms;
+        if self.truth.half_wave && sign < 0.0 {
+            return;
+        }
+        let amps = (line_v.abs() - self.knee_v(sign)) / ohms;
         let least_v = if self.again {
             self.truth.retrigger_v
         } else {
@@ -235,46 +230,64 @@ impl SolidState {
         // A half cycle after conduction starts below the inhibit voltage, so that only the first one meets it.
         let enabled = line_v.abs() < self.truth.inhibit_v || self.again;
         if enabled && amps > self.truth.latching_a && line_v.abs() >= least_v {
-            self.conducts = self.sign;
+            self.conducts = sign;
             self.again = true;
             self.load_a = if self.load_h > 0.0 {
-                self.truth.latching_a * self.sign
+                self.truth.latching_a * sign
             } else {
-                amps * self.sign
+                amps * sign
             };
         }
     }
 
-    /// Returns the longest step from now: to the next edge of the pulses, and short while the line is on.
+    /// Returns the longest step from now, microseconds: to the next edge of the pulses, and short while the line is on.
     fn step_us(&self) -> u64 {
-        let by_line = if self.has_line && self.is_ac() {
+        let by_line = if self.has_line() && self.is_ac() {
             STEP_US
         } else {
-            100_000
+            IDLE_STEP_US
         };
-        let Drive::Pulses(pulses) = self.pulse else {
-            return by_line;
-        };
-        let since_us = (self.now_us - self.pulse_from_us) as f64;
-        let within_us = since_us.rem_euclid(pulses.period_us);
-        let edge_us = if within_us < pulses.width_us {
-            pulses.width_us
-        } else {
-            pulses.period_us
-        };
-        by_line.min(((edge_us - within_us).ceil() as u64).max(1))
+        self.sources.edge_us().unwrap_or(by_line).min(by_line)
+    }
+
+    /// Returns the operating point of the output while no line feeds it.
+    fn without_line(&self) -> Reading {
+        let source = self.sources.output;
+        if self.truth.shorted {
+            return over_resistor(source, SHORT_OHM);
+        }
+        if self.lit && !self.is_ac() {
+            return over_resistor(source, self.slope_ohm());
+        }
+        match source {
+            Drive::Voltage { volts, limit_a, .. } => {
+                let amps = self.leakage_a(volts, 0.0).clamp(-limit_a, limit_a);
+                Reading { volts, amps }
+            }
+            Drive::Current { amps, limit_v } => {
+                // Below the leakage at the limit, the voltage is as many times lower as the current.
+                let limit_v = limit_v.copysign(amps);
+                let leakage_a = self.leakage_a(limit_v, 0.0);
+                let part = (amps / leakage_a).min(1.0);
+                Reading {
+                    volts: part * limit_v,
+                    amps: part * leakage_a,
+                }
+            }
+            Drive::Open | Drive::Sine { .. } | Drive::Pulses(_) => Reading::default(),
+        }
     }
 }
 
 impl Circuit for SolidState {
     fn advance(&mut self, t_us: u64) {
-        while self.now_us < t_us {
-            let dt_us = self.step_us().min(t_us - self.now_us);
+        while self.sources.now_us < t_us {
+            let from_us = self.sources.now_us;
+            let dt_us = self.step_us().min(t_us - from_us);
             let dt_s = dt_us as f64 * 1e-6;
             self.shine(dt_s);
-            self.now_us += dt_us;
-            self.line.advance(self.now_us);
-            if self.has_line && self.is_ac() {
+            self.sources.advance(from_us + dt_us);
+            if self.has_line() && self.is_ac() {
                 self.commutate(dt_s);
             }
             self.warm(dt_s);
@@ -282,82 +295,49 @@ impl Circuit for SolidState {
     }
 
     fn drive(&mut self, terminal: Terminal, drive: Drive) {
-        match terminal {
-            Terminal::Input => self.input = drive,
-            Terminal::Pulse => {
-                self.pulse = drive;
-                self.pulse_from_us = self.now_us;
-            }
-            Terminal::Output => self.output = drive,
-            Terminal::Line => {
-                self.has_line = matches!(drive, Drive::Sine { .. });
-                self.line.drive(drive, self.now_us);
-                if !self.has_line {
-                    (self.conducts, self.again, self.load_a) = (0.0, false, 0.0);
-                }
-            }
-            Terminal::Load | Terminal::Clamped => {}
+        self.sources.connect(terminal, drive);
+        if !self.has_line() {
+            (self.conducts, self.again) = (0.0, false);
+            (self.refire, self.load_a) = (0.0, 0.0);
         }
     }
 
-    fn at(&mut self, terminal: Terminal) -> Reading {
+    fn at(&self, terminal: Terminal) -> Reading {
+        let amps = self.load_a;
+        let line_v = self.sources.line.volts(0.0);
         match terminal {
             Terminal::Input | Terminal::Pulse => self.at_input(),
-            Terminal::Output if self.has_line => {
+            Terminal::Output if self.has_line() => {
                 let volts = match (self.truth.shorted, self.conducts) {
-                    (true, _) => SHORT_OHM * self.load_a,
-                    (false, 0.0) => self.line.volts(0.0) - self.load_a * self.load_ohm,
-                    (false, sign) => sign * self.knee_v() + self.slope_ohm() * self.load_a,
+                    (true, _) => SHORT_OHM * amps,
+                    (false, 0.0) => line_v - amps * self.load_ohm,
+                    (false, sign) => sign * self.knee_v(sign) + self.slope_ohm() * amps,
                 };
-                Reading {
-                    volts,
-                    amps: self.load_a,
-                }
+                Reading { volts, amps }
             }
-            Terminal::Output => {
-                let closed = self.truth.shorted || self.lit && !self.is_ac();
-                let ohms = if self.truth.shorted {
-                    SHORT_OHM
-                } else {
-                    self.slope_ohm()
-                };
-                match (closed, self.output) {
-                    (true, drive) => over_resistor(drive, ohms),
-                    (false, Drive::Voltage { volts, limit_a }) => {
-                        let amps = self.leakage_a(volts, 0.0).clamp(-limit_a, limit_a);
-                        Reading { volts, amps }
-                    }
-                    (false, Drive::Current { amps, limit_v }) => {
-                        let volts = limit_v.copysign(amps);
-                        Reading {
-                            volts,
-                            amps: self.leakage_a(volts, 0.0),
-                        }
-                    }
-                    (false, Drive::Open | Drive::Sine { .. } | Drive::Pulses(_)) => {
-                        Reading::default()
-                    }
-                }
-            }
+            Terminal::Output => self.without_line(),
             Terminal::Clamped => {
                 let output = self.at(Terminal::Output);
                 Reading {
-                    volts: output.volts.clamp(-10.0, 10.0),
+                    volts: output.volts.clamp(-CLAMP_V, CLAMP_V),
                     ..output
                 }
             }
             Terminal::Line => Reading {
-                volts: self.line.volts(0.0),
-                amps: self.load_a,
+                volts: line_v,
+                amps,
             },
             Terminal::Load => {
-                let output = self.at(Terminal::Output);
-                let amps = self.through(output);
+                let amps = self.through(self.at(Terminal::Output));
                 Reading {
                     volts: amps * self.load_ohm,
                     amps,
                 }
             }
         }
+    }
+
+    fn line_deg(&self) -> f64 {
+        self.sources.line.phase_deg()
     }
 }

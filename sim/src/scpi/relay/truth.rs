@@ -10,12 +10,13 @@ use crate::table::read_words;
 const SLOPE_V: f64 = 1.8 * 0.02585;
 /// Current at which the forward voltage of the diode is stated, amperes.
 const STATED_A: f64 = 0.01;
-/// Reverse current of the input, amperes.
+/// Reverse current of the input, amperes, and the voltage at which it settles, volts.
 const REVERSE_A: f64 = 1e-6;
+const REVERSE_V: f64 = 0.1;
 /// Reference temperature, degrees Celsius.
 pub(super) const REFERENCE_C: f64 = 25.0;
 
-/// What hangs at the terminals.
+/// What the instruments connect to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Resistors instead of a relay.
@@ -75,6 +76,29 @@ read_words!(Defect {
     "open_snubber" => Self::OpenSnubber,
     "weak_commutation" => Self::WeakCommutation,
 });
+
+impl Defect {
+    /// Checks whether relays of a kind can have the defect.
+    pub fn fits(self, kind: Kind) -> bool {
+        match self {
+            Self::NoZeroCross => kind == Kind::AcZeroCross,
+            // An AC output waits for the line, which hides these delays.
+            Self::SlowTurnOn | Self::SlowTurnOff => kind == Kind::Dc,
+            Self::HalfWave | Self::WrongSnubber | Self::OpenSnubber | Self::WeakCommutation => {
+                kind != Kind::Dc
+            }
+            Self::ShortedOutput
+            | Self::OpenLed
+            | Self::ShortedLed
+            | Self::WrongInputCurrent
+            | Self::AgedLed
+            | Self::HighDrop
+            | Self::Thermal
+            | Self::StuckOn
+            | Self::LeakyJunction => true,
+        }
+    }
+}
 
 /// True values of a relay.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -214,40 +238,55 @@ impl Truth {
         }
     }
 
-    /// Returns the input current at a voltage, amperes.
-    pub fn input_a(&self, volts: f64, temperature_c: f64) -> f64 {
+    /// Returns the input current at the voltage of a source with a series resistance, amperes.
+    pub fn input_a(&self, volts: f64, source_ohm: f64, temperature_c: f64) -> f64 {
         if self.open_led {
             return 0.0;
         }
         if volts <= 0.0 {
-            return -REVERSE_A * (1.0 - (volts / 0.1).exp());
+            return -REVERSE_A * (1.0 - (volts / REVERSE_V).exp());
         }
-        let forward_v = self.forward_v - 1.8e-3 * (temperature_c - REFERENCE_C);
+        let series_ohm = self.series_ohm + source_ohm;
+        let forward_v = self.forward_at(temperature_c);
         let stated = STATED_A.ln();
         // Both the resistor alone and the diode alone draw more than the two in series; from there Newton's method
         // falls monotonically to the current, in the logarithm of the current.
-        let by_resistor = (volts / self.series_ohm).ln();
+        let by_resistor = (volts / series_ohm).ln();
         let mut log_a = by_resistor.min(stated + (volts - forward_v) / SLOPE_V);
         for _ in 0..6 {
             let amps = log_a.exp();
-            let excess_v = self.series_ohm * amps + forward_v + SLOPE_V * (log_a - stated) - volts;
-            log_a -= excess_v / (self.series_ohm * amps + SLOPE_V);
+            let excess_v = series_ohm * amps + forward_v + SLOPE_V * (log_a - stated) - volts;
+            log_a -= excess_v / (series_ohm * amps + SLOPE_V);
         }
         log_a.exp()
     }
 
-    /// Returns the input voltage of a current above 0 at 25 degrees, volts.
-    pub fn input_v(&self, amps: f64) -> f64 {
-        self.series_ohm * amps + self.forward_v + SLOPE_V * (amps / STATED_A).ln()
+    /// Returns the input voltage of a current, volts; infinite where no voltage drives so much.
+    pub fn input_v(&self, amps: f64, temperature_c: f64) -> f64 {
+        if amps == 0.0 {
+            0.0
+        } else if self.open_led {
+            f64::INFINITY.copysign(amps)
+        } else if amps < 0.0 {
+            // The logarithm is not a number below the reverse current.
+            REVERSE_V * (1.0 + amps / REVERSE_A).max(0.0).ln()
+        } else {
+            let forward_v = self.forward_at(temperature_c);
+            (self.series_ohm * amps + forward_v + SLOPE_V * (amps / STATED_A).ln()).max(0.0)
+        }
     }
 
-    /// Returns the voltage at and above which the output turns on, volts.
+    fn forward_at(&self, temperature_c: f64) -> f64 {
+        self.forward_v - 1.8e-3 * (temperature_c - REFERENCE_C)
+    }
+
+    /// Returns the voltage at and above which the output turns on at 25 degrees, volts.
     pub fn v_on(&self) -> f64 {
-        self.input_v(self.threshold_a)
+        self.input_v(self.threshold_a, REFERENCE_C)
     }
 
-    /// Returns the voltage below which the output turns off, volts.
+    /// Returns the voltage below which the output turns off at 25 degrees, volts.
     pub fn v_off(&self) -> f64 {
-        self.input_v(self.threshold_a * self.hysteresis)
+        self.input_v(self.threshold_a * self.hysteresis, REFERENCE_C)
     }
 }

@@ -1,7 +1,7 @@
 //! Bodies, actuators and contact rules of the rig, read from `scene.toml` for the simulated rig alone.
 
 use crate::config::{ConfigError, Files};
-use crate::table::{Entry, Read, read_fields};
+use crate::table::{Entry, Read, read_fields, read_words};
 
 /// A body that is fixed or moves with an actuator.
 #[derive(Debug, Clone)]
@@ -209,15 +209,8 @@ impl Read for Body {
     }
 }
 
-impl Read for Rule {
-    const FORM: &'static str = "forbidden, may_touch or ignore";
-
-    fn read(entry: &Entry) -> Result<Self, ConfigError> {
-        match entry.text() {
-            Some("forbidden") => Ok(Self::Forbidden),
-            Some("may_touch") => Ok(Self::MayTouch),
-            Some("ignore") => Ok(Self::Ignore),
-            Some(_) | None => Err(entry.wrong(Self::FORM)),
-        }
-    }
-}
+read_words!(Rule {
+    "forbidden" => Self::Forbidden,
+    "may_touch" => Self::MayTouch,
+    "ignore" => Self::Ignore,
+});

@@ -1,6 +1,9 @@
 //! Messages, instruments and relays against the numbers that they promise.
 #![allow(clippy::unwrap_used)]
 
+mod instruments;
+mod relays;
+
 use super::bench::{Bench, SharedBench};
 use super::file::build_text;
 use super::message::{Framer, block, nr3, units};
@@ -83,6 +86,8 @@ fn numbers_take_units_and_limits() {
     let unit = units(b"X 12").remove(0).unwrap();
     assert_eq!(unit.number(0, 0.0, 10.0, 0.0), Err(Failure::OUT_OF_RANGE));
     assert_eq!(nr3(-0.00125), "-1.2500000E-03");
+    assert_eq!(nr3(f64::NEG_INFINITY), "-9.9000000E+37");
+    assert_eq!(nr3(f64::NAN), "+9.9100000E+37");
 }
 
 #[test]
@@ -161,12 +166,12 @@ fn an_ac_source_needs_seconds_to_reset() {
 fn an_aged_led_raises_the_threshold_alone() {
     let truth = Truth::draw(Kind::Dc, None, 7);
     for volts in [0.8, 2.0, 4.0, 30.0] {
-        let back = truth.input_v(truth.input_a(volts, 25.0));
+        let back = truth.input_v(truth.input_a(volts, 0.0, 25.0), 25.0);
         assert!((back - volts).abs() < 1e-6, "{volts} {back}");
     }
     let aged = Truth::draw(Kind::Dc, Some(Defect::AgedLed), 7);
     assert!(aged.v_on() > truth.v_on() + 1.0);
-    assert_eq!(aged.input_a(5.0, 25.0), truth.input_a(5.0, 25.0));
+    assert_eq!(aged.input_a(5.0, 0.0, 25.0), truth.input_a(5.0, 0.0, 25.0));
 }
 
 const AC: &str = "[circuit]\nkind = \"ac-zero-cross\"\ndistorted = false\n
@@ -284,6 +289,13 @@ fn an_adapter_reads_only_when_asked() {
     through_adapter(&shared, 8_000_000, text);
     let errors = through_adapter(&shared, 10_000_000, b"SYST:ERR?\n++read eoi\n");
     assert!(errors.contains("-410,"), "{errors}");
+    // A value that is no number is ignored, and answers nothing.
+    let said = through_adapter(&shared, 12_000_000, b"++addr nine\n++addr 31\n++addr\n");
+    assert_eq!(said, "9\r\n");
+    // A connection that ends inside an escaped line leaves nothing of it.
+    shared.receive(0, b"\x1b+", 14_000_000);
+    shared.close(0, 14_000_000);
+    assert_eq!(through_adapter(&shared, 16_000_000, b"++addr\n"), "9\r\n");
 }
 
 #[test]
@@ -305,6 +317,23 @@ fn virtual_time_serves_streams_at_their_latency() {
         let rig_us = start.elapsed().as_millis();
         assert_eq!(&reply, b"1\n");
         assert!((20_000..30_000).contains(&rig_us), "{rig_us}");
+    });
+}
+
+#[test]
+fn a_served_circuit_advances_without_a_host() {
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .start_paused(true)
+        .build()
+        .unwrap();
+    runtime.block_on(async {
+        let shared = bench(SMU);
+        super::serve::real_time(&shared).await.unwrap();
+        tokio::task::yield_now().await;
+        tokio::time::advance(std::time::Duration::from_secs(10)).await;
+        tokio::task::yield_now().await;
+        assert_eq!(shared.lock().now_us, 10_000_000);
     });
 }
 
@@ -340,9 +369,36 @@ fn a_dc_relay_conforms_at_its_true_thresholds() {
     assert!((volts / truth.on_ohm - 1.0).abs() < 0.02, "{volts}");
 }
 
+/// Lets a host come, work and leave within two seconds; returns whether the port opened, what left it after each message,
+/// and the errors.
+fn visit(shared: &SharedBench) -> (bool, Vec<Vec<Out>>, Vec<Out>) {
+    let opened = shared.open(0, 0);
+    let mut heard = Vec::new();
+    for (place, text) in [
+        &b":TRIG:SWE AUTO;:ACQ:MDEP 100;:RUN;*OPC?\n"[..],
+        b":WAV:FORM ASC;DATA?\n",
+        b":WAV:FORM BYTE;DATA?\n",
+        b"READ?\n*IDN?\n",
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let at_us = place as u64 * 400_000;
+        shared.receive(0, text, at_us);
+        heard.push(shared.due(0, at_us + 400_000));
+    }
+    shared.receive(0, b"*ESR?;:SYST:ERR:COUN?\n", 1_600_000);
+    let errors = shared.due(0, 2_000_000);
+    shared.close(0, 2_000_000);
+    (opened, heard, errors)
+}
+
 #[test]
 fn every_fault_strikes_and_the_port_recovers() {
     const RIGOL: &str = "[[instrument]]\nname = \"dig\"\nmodel = \"digitizer-rigol\"\ntcp = 0\n";
+    let usual = visit(&bench(RIGOL));
+    // They strike at an adapter, a measured value, the next connection.
+    let elsewhere = ["address_changed", "over_range", "not_a_number", "half_kept"];
     for fault in crate::fault::instrument::list() {
         let value = fault
             .default
@@ -350,15 +406,35 @@ fn every_fault_strikes_and_the_port_recovers() {
             .map_or("1".to_owned(), |(_, ms)| format!("1/{ms}"));
         let text = format!("{}={value}@0..3", fault.name);
         let shared = build_text(RIGOL, 1, &[text]).unwrap();
-        let _ = shared.open(0, 0);
-        shared.receive(0, b":TRIG:SWE AUTO;:ACQ:MDEP 100;:RUN;*OPC?\n", 0);
-        shared.due(0, 1_000_000);
-        shared.receive(0, b":WAV:DATA?\n*IDN?\n", 1_000_000);
-        shared.due(0, 3_000_000);
-        shared.close(0, 3_000_000);
+        let strikes = visit(&shared) != usual;
+        let expected = !elsewhere.contains(&fault.name.as_str());
+        assert_eq!(strikes, expected, "{}", fault.name);
         assert!(shared.open(0, 3_000_000), "{}", fault.name);
         shared.receive(0, b"\nSYST:REM;*CLS;*ESE 129;*ESE?\n", 3_000_000);
         let out = shared.due(0, 5_000_000);
         assert_eq!(out, [Out::Bytes(b"129\n".to_vec())], "{}", fault.name);
     }
+}
+
+#[test]
+fn measured_values_and_addresses_have_faults_too() {
+    for (fault, reply) in [
+        ("over_range=1", "+9.9000000E+37"),
+        ("not_a_number=1", "+9.9100000E+37"),
+    ] {
+        let shared = build_text(SMU, 1, &[fault.to_owned()]).unwrap();
+        let reply_of = |message| shared.lock().ask(0, message);
+        assert_eq!(reply_of(":READ?").as_deref(), Some(reply), "{fault}");
+        assert_eq!(reply_of("*ESE?").as_deref(), Some("0"), "{fault}");
+    }
+    let shared = build_text(GPIB, 1, &["address_changed=1@0..1".to_owned()]).unwrap();
+    let said = through_adapter(&shared, 0, b"++addr 9\n*ESE?\n++addr\n");
+    assert_eq!(said, "10\r\n");
+    let shared = build_text(SMU, 1, &["half_kept=1@0..1".to_owned()]).unwrap();
+    assert!(shared.open(0, 0));
+    shared.close(0, 10);
+    assert!(shared.open(0, 20));
+    shared.receive(0, b"*ESE?\nSYST:ERR?\n", 30);
+    let out = shared.due(0, 1_000_000);
+    assert_eq!(out, [Out::Bytes(b"-113,\"Undefined header\"\n".to_vec())]);
 }

@@ -1,0 +1,66 @@
+//! Errors of an instrument: individual ones, drawn once, and noise.
+
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
+
+/// Limits of error of one function at one range.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Accuracy {
+    /// Part of the reading.
+    pub(super) gain: f64,
+    /// Offset, in the unit of the reading.
+    pub(super) offset: f64,
+    /// Standard deviation of the noise, in the unit of the reading.
+    pub(super) noise: f64,
+}
+
+/// Individual errors, as fractions of the maker's limits, and noise.
+pub(super) struct Errors {
+    rng: ChaCha8Rng,
+    gain: [f64; 4],
+    offset: [f64; 4],
+    exact: bool,
+}
+
+impl Errors {
+    /// Draws the errors of one instrument; an exact one has none.
+    pub(super) fn draw(mut rng: ChaCha8Rng, exact: bool) -> Self {
+        let mut fractions = || std::array::from_fn(|_| 2.0 * rng.random::<f64>() - 1.0);
+        let (gain, offset) = (fractions(), fractions());
+        Self {
+            rng,
+            gain,
+            offset,
+            exact,
+        }
+    }
+
+    /// Draws from the standard normal distribution; 0 for an exact instrument.
+    pub(super) fn normal(&mut self) -> f64 {
+        if self.exact {
+            0.0
+        } else {
+            self.rng.sample(StandardNormal)
+        }
+    }
+
+    /// Adds the errors of a function (0 to 3) to a true value.
+    pub(super) fn apply(&mut self, function: usize, accuracy: Accuracy, value: f64) -> f64 {
+        if self.exact {
+            return value;
+        }
+        let gain = 1.0 + self.gain[function] * accuracy.gain;
+        let noise = accuracy.noise * self.normal();
+        value * gain + self.offset[function] * accuracy.offset + noise
+    }
+
+    /// Adds the errors of a function to a true root mean square, which stays above 0: the noise has one of its own.
+    pub(super) fn apply_rms(&mut self, function: usize, accuracy: Accuracy, value: f64) -> f64 {
+        if self.exact {
+            return value;
+        }
+        let read = self.apply(function, accuracy, value).max(0.0);
+        read.hypot(accuracy.noise)
+    }
+}
