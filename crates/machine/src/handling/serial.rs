@@ -126,6 +126,8 @@ pub struct Serials {
     read: Vec<String>,
     /// Time at which the part came into the pocket; `None` once no further reading is expected.
     expected_since: Option<RigTime>,
+    /// True from the opening of the escapement until a part is in the pocket, however late.
+    is_released: bool,
 }
 
 impl Serials {
@@ -180,10 +182,13 @@ impl Serials {
     pub fn released(&mut self) {
         self.read.clear();
         self.expected_since = None;
+        self.is_released = true;
     }
 
-    /// Notes that a part has come into the pocket; `expected`: it is fed and has a number.
-    pub fn arrived(&mut self, now: RigTime, expected: bool) {
+    /// Notes that a part has come into the pocket; `of_lot`: it is no reference part. A part that lay there before the
+    /// escapement opened takes no scan.
+    pub fn arrived(&mut self, now: RigTime, of_lot: bool) {
+        let expected = std::mem::take(&mut self.is_released) && of_lot;
         match self.source {
             Source::None | Source::Counted { .. } => {}
             Source::Reader { .. } => {

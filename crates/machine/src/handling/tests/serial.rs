@@ -137,6 +137,24 @@ fn a_scan_goes_to_the_next_part() {
 }
 
 #[test]
+fn a_part_that_lay_in_the_pocket_takes_no_scan() {
+    let (mut serials, ledger) = (
+        Serials::new(Source::Wedge, BTreeSet::new()),
+        Ledger::default(),
+    );
+    assert_eq!(serials.scan("S-1", &ledger), Ok(()));
+    let waiting = |serials: &Serials| serials.waiting().unwrap().count();
+    serials.arrived(RigTime(0), true);
+    assert_eq!(waiting(&serials), 1, "no part was released");
+    serials.released();
+    serials.arrived(RigTime(1), false);
+    assert_eq!(waiting(&serials), 1, "a reference part was released");
+    serials.released();
+    serials.arrived(RigTime(2), true);
+    assert_eq!(waiting(&serials), 0);
+}
+
+#[test]
 fn a_serial_number_is_printable_ascii() {
     assert_eq!(readable(" A 1\r"), Some("A 1"));
     let long = "x".repeat(65);
