@@ -2,7 +2,7 @@
 //!
 //! A code reader looks at the part in the pocket, which lies there from the sensor `pocket_present` to the stroke of the
 //! pusher. Its readings count from the release of the part on, because the reader may be faster than the scan of the
-//! sensor. The pusher waits for a reading, at most [`Source::Reader::patience`] from the arrival on.
+//! sensor. The pusher waits for a reading, at most [`Source::Reader::timeout`] from the arrival on.
 //!
 //! A person scans the code of a part before loading it; the escapement releases a part only while a scan waits, and the
 //! part gets the oldest scan.
@@ -95,7 +95,7 @@ pub enum Source {
     /// A reader looks at the pocket.
     Reader {
         /// Longest wait for a reading, from the arrival of the part on.
-        patience: Span,
+        timeout: Span,
     },
     /// A person scans.
     Wedge,
@@ -218,11 +218,11 @@ impl Serials {
 
     /// Returns true when the pusher need not wait for a reading of the part in the pocket.
     pub fn is_settled(&self, now: RigTime) -> bool {
-        let Source::Reader { patience } = self.source else {
+        let Source::Reader { timeout } = self.source else {
             return true;
         };
         self.expected_since
-            .is_none_or(|since| now.since(since) > patience)
+            .is_none_or(|since| now.since(since) > timeout)
     }
 
     /// Gives the part that has just come into `place` its number, if it is a part of the lot.

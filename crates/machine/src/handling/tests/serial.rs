@@ -9,8 +9,8 @@ use std::collections::BTreeSet;
 use units::{RigTime, Span};
 
 fn reader() -> Serials {
-    let patience = Span::ms(1000);
-    Serials::new(Source::Reader { patience }, BTreeSet::new())
+    let timeout = Span::ms(1000);
+    Serials::new(Source::Reader { timeout }, BTreeSet::new())
 }
 
 /// Moves a part through pocket and nest with these readings; returns it.
