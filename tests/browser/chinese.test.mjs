@@ -221,7 +221,7 @@ for (const fault of ["door", "stuck_lift", "beam_blind", "silence=mech_di_a@32",
       await page.waitForSelector("#standing [data-code] dd");
       await page.waitForSelector("#past tr");
       await none(page, fault, names);
-      await other.until("page, list and log count alike", async () => new Set(await counts(other)).size === 1, 20)
+      await other.until("page, list and log count alike", async () => new Set(await counts(other)).size === 1)
         .catch(async () => found.push("page, list, log: " + await counts(other)));
       await page.click('nav a[href="#operator"]');
       await page.click('#orders [data-order="clear"]', { force: true });

@@ -135,8 +135,11 @@ test("a phone has Stop in view on every page", async () => {
   for (const name of ["operator", "lots", "alarms", "history", "quality", "recipes", "calibration", "bus", "io", "trace"]) {
     await press(page, `nav a[href="#${name}"]`);
     await page.waitForSelector(`main[data-page="${name}"]:not([hidden])`);
-    await page.$eval(`main[data-page="${name}"]`, (it) => { it.scrollTop = it.scrollHeight; });
-    const box = await page.$eval(stop, (it) => it.getBoundingClientRect().toJSON());
+    const box = await page.evaluate(([main, stop]) => {
+      const shown = document.querySelector(main);
+      shown.scrollTop = shown.scrollHeight;
+      return document.querySelector(stop).getBoundingClientRect().toJSON();
+    }, [`main[data-page="${name}"]`, stop]);
     assert.ok(box.height >= 44 && box.top > 600 && box.bottom <= 844, `${name}: ${JSON.stringify(box)}`);
   }
   await rig.until("the lot runs", (view) => view.machine.state === "Execute");

@@ -136,6 +136,6 @@ test("the page of people shows nothing without an engineer", async () => {
   await logIn(page, rig, "operator");
   await page.reload();
   await shown(page, "#p_answer", WORDS["role-operator"].en);
-  assert.equal(await page.$$eval("#p_list tr", (all) => all.length), 0);
+  assert.equal(await page.locator("#p_list tr").count(), 0);
   await leave(page);
 });

@@ -60,7 +60,8 @@ test("a lot waits for an answer, then for scans", async () => {
   await page.locator("body").click({ position: { x: 5, y: 5 } });
   await page.keyboard.type("S-17\n");
   await picture(page, "scan");
-  await rig.until("the part is judged", (view) => view.judged === 1);
+  // Its row is in the history before the fingers open.
+  await rig.until("the part has landed", (view) => Object.values(view.bins).includes(1));
   await page.goto(rig.url + "/#history");
   await page.fill("#h_serial", "S-17");
   await page.click("#h_go");

@@ -1,7 +1,6 @@
 //! Prompts of a recipe, answered on the command line.
 
 use crate::program::Workshop;
-use serde_json::Value;
 
 const RUN: &str = "run --sim --seed 1 --recipe resistor-390 --count 2 --json";
 const PROMPTS: &str = r#"
@@ -32,19 +31,17 @@ fn plant(name: &str) -> Workshop {
 }
 
 #[test]
-fn answers_stand_in_the_orders_of_the_lot() {
+fn the_orders_of_a_lot_hold_its_answers() {
     let workshop = plant("prompts_answered");
     let answers = "--answer nest=changed --answer magazine=emptied --by li";
     workshop
         .run(&format!("{RUN} --lot A {answers}"))
         .with_status(0);
     let orders = workshop.run("history orders --lot A --json").with_status(0);
-    let orders = orders
-        .stdout
-        .lines()
-        .map(|it| serde_json::from_str(it).unwrap());
     let given: Vec<String> = orders
-        .filter(|it: &Value| it["what"]["order"] == "answer" && it["who"] == "li")
+        .objects()
+        .into_iter()
+        .filter(|it| it["what"]["order"] == "answer" && it["who"] == "li")
         .map(|it| format!("{}={}", it["what"]["prompt"], it["what"]["choice"]))
         .collect();
     assert_eq!(given, ["\"nest\"=\"changed\"", "\"magazine\"=\"emptied\""]);

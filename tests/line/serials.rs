@@ -1,6 +1,6 @@
 //! Serial numbers of parts: counted, read by the simulated reader, found again.
 
-use crate::program::{ATTEMPTS, Said, Workshop};
+use crate::program::{ATTEMPTS, Said, Workshop, objects};
 use serde_json::Value;
 
 const RUN: &str = "run --sim --seed 1 --recipe jzc-22f-012 --json";
@@ -19,14 +19,8 @@ fn plant(name: &str, source: &str) -> Workshop {
     workshop
 }
 
-fn objects(text: &str) -> Vec<Value> {
-    text.lines()
-        .map(|it| serde_json::from_str(it).unwrap())
-        .collect()
-}
-
 fn parts(said: &Said) -> Vec<Value> {
-    let all = objects(&said.stdout).into_iter();
+    let all = said.objects().into_iter();
     all.filter(|it| it["type"] == "part").collect()
 }
 
@@ -58,7 +52,7 @@ fn every_part_keeps_the_code_that_the_reader_saw() {
     assert_eq!(truth[3]["serial"], truth[4]["serial"]);
     let serial = truth[7]["serial"].as_str().unwrap();
     let shown = workshop.run(&format!("history part --serial {serial} --json"));
-    assert_eq!(objects(&shown.with_status(0).stdout)[0]["seq"], 8);
+    assert_eq!(shown.with_status(0).objects()[0]["seq"], 8);
     let queried = workshop.run(&format!("history query --serial {serial} --format csv"));
     assert!(
         queried
@@ -101,10 +95,10 @@ fn a_reader_at_real_pace_gives_the_numbers() {
     let parts = parts(&said.with_status(0));
     let truth = objects(&workshop.read("truth.jsonl"));
     let serials = |rows: &[Value]| {
-        rows.iter()
-            .map(|it| it["serial"].clone())
-            .collect::<Vec<_>>()
+        let all = rows.iter().map(|it| it["serial"].as_str());
+        all.map(|it| it.unwrap().to_owned()).collect::<Vec<_>>()
     };
+    assert_eq!(serials(&parts).len(), 2);
     assert_eq!(serials(&parts), serials(&truth));
 }
 

@@ -99,27 +99,21 @@ fn leftover(
     let module = check.module;
     let wired = wiring.module(module);
     let of_references = wiring.mask_of(module, &dut::reference_inputs(wiring));
-    let (what, remedies) = match check.command {
-        Command::Common(_, Common::ReadWatchdogStatus | Common::ReadWatchdog) => {
-            let enable = Common::WriteWatchdog {
-                enabled: wired.watchdog,
-                timeout_tenths: (wiring.bus.host_watchdog_ms / 100.0).round() as u8,
-            };
-            let both = [Common::ClearWatchdogStatus, enable];
-            (Setting::Tripped, both.map(|it| it.to(wired.address)).into())
-        }
-        Command::AnalogIn(_, AnalogIn::ReadMask)
-            if of_references != 0 && *reply == Reply::Byte(of_references) =>
-        {
-            (Setting::Masked, remedy.into_iter().collect())
-        }
-        Command::HostOk
-        | Command::SampleAll
-        | Command::Common(..)
-        | Command::AnalogIn(..)
-        | Command::AnalogOut(..)
-        | Command::Digital(..)
-        | Command::Counter(..) => return None,
+    let masked = of_references != 0 && *reply == Reply::Byte(of_references);
+    let (what, remedies) = if matches!(
+        check.command,
+        Command::Common(_, Common::ReadWatchdogStatus | Common::ReadWatchdog)
+    ) {
+        let enable = Common::WriteWatchdog {
+            enabled: wired.watchdog,
+            timeout_tenths: (wiring.bus.host_watchdog_ms / 100.0).round() as u8,
+        };
+        let both = [Common::ClearWatchdogStatus, enable];
+        (Setting::Tripped, both.map(|it| it.to(wired.address)).into())
+    } else if masked && matches!(check.command, Command::AnalogIn(_, AnalogIn::ReadMask)) {
+        (Setting::Masked, remedy.into_iter().collect())
+    } else {
+        return None;
     };
     Some(Leftover {
         module,

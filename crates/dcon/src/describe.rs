@@ -51,6 +51,7 @@ fn channels(bits: u16, from: u8) -> String {
     }
 }
 
-fn seconds(tenths: u8) -> String {
-    format!("{:.1}", f64::from(tenths) / 10.0)
+/// Writes a number of tenths with one decimal: 15 as `1.5`.
+fn decimal(tenths: impl Into<f64>) -> String {
+    format!("{:.1}", tenths.into() / 10.0)
 }

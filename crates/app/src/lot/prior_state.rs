@@ -67,7 +67,7 @@ fn serials(store: &Store, context: &LotContext) -> anyhow::Result<Serials> {
             given: store.parts_numbered(&order.lot)?,
         },
         SourceName::Reader => Source::Reader {
-            patience: Span::ms(
+            timeout: Span::ms(
                 plant
                     .serial_reader
                     .as_ref()

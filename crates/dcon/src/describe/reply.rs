@@ -1,6 +1,6 @@
 //! Descriptions of replies; the command decides what a byte or a number in its reply means.
 
-use super::{Description, channels, seconds};
+use super::{Description, channels, decimal};
 use crate::{
     Address, AlarmKind, AlarmMode, AlarmState, Alarms, AnalogIn, Bits, Command, Common, Config,
     Counter, GateMode, InputMode, Model, Reading, Readings, Reply, Value,
@@ -33,7 +33,7 @@ impl Command {
                 Some(false) => "watchdog_off",
                 None => "watchdog_timeout",
             })
-            .with("timeout_s", seconds(timeout_tenths)),
+            .with("timeout_s", decimal(timeout_tenths)),
             Reply::Bits(found) => bits(found, model),
             Reply::Sampled {
                 first_read: true,
@@ -96,7 +96,7 @@ impl Command {
     fn describe_number(&self, number: u32) -> Description {
         match self {
             Self::Counter(_, Counter::ReadThreshold(_)) => {
-                Description::new("threshold").with("volts", f64::from(number) / 10.0)
+                Description::new("threshold").with("volts", decimal(number))
             }
             Self::Counter(_, Counter::ReadDisplay) => match number {
                 0..=1 => Description::new("shows_counter").with("counter", number),

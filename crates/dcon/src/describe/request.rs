@@ -1,7 +1,7 @@
 //! Descriptions of requests. Two requests that ask for the same thing, such as `$AA6` and `@AA` of a digital module,
 //! share their code.
 
-use super::{Description, channels, seconds};
+use super::{Description, channels, decimal};
 use crate::{
     AlarmKind, AlarmMode, AnalogIn, AnalogOut, Command, Common, Counter, Digital, Edge, GateMode,
     GroupWrite, InputMode, Stored, UpTo,
@@ -55,7 +55,7 @@ fn common(ask: Common) -> Description {
             true => "write_watchdog_on",
             false => "write_watchdog_off",
         })
-        .with("timeout_s", seconds(timeout_tenths)),
+        .with("timeout_s", decimal(timeout_tenths)),
         Common::ReadResponseDelay => one("read_response_delay"),
         Common::WriteResponseDelay { delay_ms } => {
             one("write_response_delay").with("delay_ms", delay_ms)
@@ -188,7 +188,7 @@ fn counter(ask: Counter) -> Description {
             Edge::High => "write_threshold_high",
             Edge::Low => "write_threshold_low",
         })
-        .with("volts", seconds(tenths.get())),
+        .with("volts", decimal(tenths.get())),
         Counter::ReadAlarm(AlarmMode::PerCounter) => one("read_alarms_mode_0"),
         Counter::ReadAlarm(AlarmMode::HighHigh) => one("read_alarms_mode_1"),
         Counter::ReadAlarmMode => one("read_alarm_mode"),

@@ -53,8 +53,8 @@ impl Feed {
     pub fn step(self, turn: &mut Turn, nest: NestId, wanted: bool, push: bool) -> Feed {
         match self {
             Feed::Empty if wanted && turn.shows(DigitalIn::PocketPresent, true) => {
-                // A part left by an earlier run is fed like any other.
-                turn.enter_pocket(false);
+                // A part left by an earlier run, or one that came after its time.
+                turn.enter_pocket();
                 Feed::Ready
             }
             Feed::Empty if wanted && turn.may_release() && turn.arrived(Move::PusherRetract) => {
@@ -106,7 +106,7 @@ fn releasing(turn: &mut Turn, since: RigTime, attempt: u8) -> Feed {
     if turn.shows(DigitalIn::PocketPresent, true)
         && turn.image.input_at(DigitalIn::PocketPresent) > Some(since)
     {
-        turn.enter_pocket(true);
+        turn.enter_pocket();
         turn.drive(Move::EscapementHold);
         return Feed::Holding;
     }

@@ -81,7 +81,7 @@ impl Recovery {
             HomingStep::Up => {
                 if let Some(seen) = SensedParts::of(turn) {
                     pushed(turn, &seen);
-                    reconcile(turn.ledger, &seen, releasing, turn.trouble);
+                    reconcile(turn, &seen, releasing);
                     self.leave_gripped(turn.ledger);
                     (self.stage, self.requested) = (HomingStep::Home, None);
                 }
@@ -184,34 +184,27 @@ fn pushed(turn: &mut Turn, seen: &SensedParts) {
 }
 
 /// Brings the ledger in line with the sensors, with z up. Interrupts the parts in nest and gripper.
-pub fn reconcile(
-    ledger: &mut Ledger,
-    seen: &SensedParts,
-    releasing: bool,
-    trouble: &mut Vec<Trouble>,
-) {
-    trouble.extend(std::mem::take(&mut ledger.left).missing(seen));
-    hand_over(ledger, seen);
+fn reconcile(turn: &mut Turn, seen: &SensedParts, releasing: bool) {
+    let missing = std::mem::take(&mut turn.ledger.left).missing(seen);
+    turn.trouble.extend(missing);
+    hand_over(turn.ledger, seen);
     let places = [
         (Place::Gripper, seen.gripper),
         (Place::NEST, seen.nest),
         (Place::Pocket, seen.pocket),
     ];
     for (place, is_seen) in places {
-        match (ledger.holds(place), is_seen) {
+        match (turn.ledger.holds(place), is_seen) {
             (true, false) => {
-                ledger.lose(place);
-                trouble.push(Trouble::Lost(place));
+                turn.ledger.lose(place);
+                turn.report(Trouble::Lost(place));
             }
-            (false, true) if releasing && place == Place::Pocket => ledger.enter_pocket(),
-            (false, true) => {
-                ledger.find(place);
-                trouble.push(Trouble::Found(place));
-            }
+            (false, true) if releasing && place == Place::Pocket => turn.enter_pocket(),
+            (false, true) => turn.find(place),
             (true, true) | (false, false) => {}
         }
         assert_eq!(
-            ledger.holds(place),
+            turn.ledger.holds(place),
             is_seen,
             "the ledger differs from the sensors"
         );

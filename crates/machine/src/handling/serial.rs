@@ -2,7 +2,7 @@
 //!
 //! A code reader looks at the part in the pocket, which lies there from the sensor `pocket_present` to the stroke of the
 //! pusher. Its readings count from the release of the part on, because the reader may be faster than the scan of the
-//! sensor. The pusher waits for a reading, at most [`Source::Reader::patience`] from the arrival on.
+//! sensor. The pusher waits for a reading, at most [`Source::Reader::timeout`] from the arrival on.
 //!
 //! A person scans the code of a part before loading it; the escapement releases a part only while a scan waits, and the
 //! part gets the oldest scan.
@@ -95,7 +95,7 @@ pub enum Source {
     /// A reader looks at the pocket.
     Reader {
         /// Longest wait for a reading, from the arrival of the part on.
-        patience: Span,
+        timeout: Span,
     },
     /// A person scans.
     Wedge,
@@ -126,6 +126,8 @@ pub struct Serials {
     read: Vec<String>,
     /// Time at which the part came into the pocket; `None` once no further reading is expected.
     expected_since: Option<RigTime>,
+    /// True from the opening of the escapement until a part is in the pocket, however late.
+    is_released: bool,
 }
 
 impl Serials {
@@ -181,10 +183,13 @@ impl Serials {
     pub fn released(&mut self) {
         self.read.clear();
         self.expected_since = None;
+        self.is_released = true;
     }
 
-    /// Notes that a part has come into the pocket; `expected`: it is fed and has a number.
-    pub fn arrived(&mut self, now: RigTime, expected: bool) {
+    /// Notes that a part has come into the pocket; `of_lot`: it is no reference part. A part that lay there before the
+    /// escapement opened takes no scan.
+    pub fn arrived(&mut self, now: RigTime, of_lot: bool) {
+        let expected = std::mem::take(&mut self.is_released) && of_lot;
         match self.source {
             Source::None | Source::Counted { .. } => {}
             Source::Reader { .. } => {
@@ -214,11 +219,11 @@ impl Serials {
 
     /// Returns true when the pusher need not wait for a reading of the part in the pocket.
     pub fn is_settled(&self, now: RigTime) -> bool {
-        let Source::Reader { patience } = self.source else {
+        let Source::Reader { timeout } = self.source else {
             return true;
         };
         self.expected_since
-            .is_none_or(|since| now.since(since) > patience)
+            .is_none_or(|since| now.since(since) > timeout)
     }
 
     /// Gives the part that has just come into `place` its number, if it is a part of the lot.

@@ -85,11 +85,24 @@ impl Turn<'_> {
         self.serials.assign(self.ledger, Place::Nest(nest));
     }
 
-    /// Adds a part to the empty pocket; `fed` is false for one that lay there already.
-    pub fn enter_pocket(&mut self, fed: bool) {
+    /// Adds a part to the empty pocket.
+    pub fn enter_pocket(&mut self) {
         self.ledger.enter_pocket();
-        let is_reference = !self.reference_serials.is_empty();
-        self.serials.arrived(self.now, fed && !is_reference);
+        self.arrived_in_pocket();
+    }
+
+    /// Adds a part of unknown origin to the empty place.
+    pub fn find(&mut self, place: Place) {
+        self.ledger.find(place);
+        self.report(Trouble::Found(place));
+        if place == Place::Pocket {
+            self.arrived_in_pocket();
+        }
+    }
+
+    fn arrived_in_pocket(&mut self) {
+        let is_of_lot = self.reference_serials.is_empty();
+        self.serials.arrived(self.now, is_of_lot);
     }
 
     /// Returns true when another part may leave the magazine: a reference part, or one whose serial number needs no

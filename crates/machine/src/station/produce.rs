@@ -8,7 +8,7 @@ use crate::handling::feeder::Permits;
 use crate::handling::nest::TestTerms;
 use units::RigTime;
 
-/// PromptMoment of the prompts before the first part.
+/// Moment of the prompts before the first part.
 const FIRST_PART: PromptMoment = PromptMoment::AfterCalibration;
 
 impl Station {

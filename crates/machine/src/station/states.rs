@@ -39,7 +39,8 @@ impl Station {
             State::Stopped | State::Complete | State::Aborted
         );
         let begins = self.machine.state == State::Stopped && self.machine.entered == RigTime(0);
-        let asked = begins && !self.is_between_lots() && self.prompts.asks(PromptMoment::LotStart);
+        let may_ask = self.machine.state == State::Stopped && !self.is_between_lots();
+        let asked = may_ask && self.prompts.asks(PromptMoment::LotStart);
         match (
             self.machine.stopping,
             self.plan.attended,

@@ -6,7 +6,9 @@ use crate::handling::feed::Feed;
 use crate::handling::ledger::PartRole;
 use crate::handling::moves::Move;
 use crate::handling::place::{NestId, Place};
+use crate::handling::serial::{Serials, Source};
 use crate::rig::point::DigitalIn;
+use std::collections::BTreeSet;
 use units::Span;
 
 fn step(feed: Feed, mock: &mut MockRig, wanted: bool) -> Feed {
@@ -101,6 +103,27 @@ fn an_absent_part_is_an_alarm_after_three_attempts() {
         }
         assert_eq!((feed, mock.ledger.came_in), (Feed::Empty, 0));
     }
+}
+
+#[test]
+fn a_part_that_comes_late_takes_its_own_scan() {
+    let mut mock = MockRig::at_rest();
+    mock.serials = Serials::new(Source::Wedge, BTreeSet::new());
+    for serial in ["S-1", "S-2"] {
+        assert_eq!(mock.serials.scan(serial, &mock.ledger), Ok(()));
+    }
+    let feed = step(Feed::Empty, &mut mock, true);
+    mock.carried_out(Move::EscapementRelease);
+    mock.after(1501);
+    let feed = step(feed, &mut mock, true);
+    assert_eq!(feed, Feed::Closing { attempts: 1 });
+    mock.set(DigitalIn::PocketPresent, true);
+    mock.carried_out(Move::EscapementHold);
+    let feed = step(feed, &mut mock, true);
+    assert_eq!(step(feed, &mut mock, true), Feed::Ready);
+    mock.turn().enter_nest(NestId::FIRST);
+    let part = mock.ledger.part(Place::NEST).unwrap();
+    assert_eq!(part.serial.as_deref(), Some("S-1"));
 }
 
 #[test]

@@ -5,9 +5,11 @@ use crate::handling::ledger::{Ledger, PartRole};
 use crate::handling::moves::Move;
 use crate::handling::place::{NestId, Place};
 use crate::handling::recovery::Recovery;
+use crate::handling::serial::{Serials, Source};
 use crate::rig::axis::AxisStation;
 use crate::rig::bin::Bin;
 use crate::rig::point::{DigitalIn, DigitalOut};
+use std::collections::BTreeSet;
 
 const ORDER: [Move; 7] = [
     Move::SortUp,
@@ -37,10 +39,14 @@ fn nothing_home() -> MockRig {
 
 /// Carries out all commands of homing; returns the motions in order.
 fn carried_out(mock: &mut MockRig) -> Vec<Move> {
+    homed(mock, false)
+}
+
+fn homed(mock: &mut MockRig, releasing: bool) -> Vec<Move> {
     let mut recovery = Recovery::default();
     let mut driven = Vec::new();
     for _ in 0..40 {
-        if recovery.step(&mut mock.turn(), false) {
+        if recovery.step(&mut mock.turn(), releasing) {
             break;
         }
         let motions = mock.output.rig.motions.clone();
@@ -53,7 +59,10 @@ fn carried_out(mock: &mut MockRig) -> Vec<Move> {
             mock.carried_out(movement);
         }
     }
-    assert!(recovery.step(&mut mock.turn(), false), "home stays home");
+    assert!(
+        recovery.step(&mut mock.turn(), releasing),
+        "home stays home"
+    );
     driven
 }
 
@@ -77,6 +86,26 @@ fn a_delivered_part_is_neither_lost_nor_found() {
     carried_out(&mut mock);
     assert!(!mock.ledger.holds(Place::Pocket) && mock.ledger.holds(Place::NEST));
     assert_eq!((mock.ledger.lost, mock.ledger.found), (0, 0));
+}
+
+#[test]
+fn a_part_that_came_during_an_abort_takes_its_scan() {
+    for (releasing, serial) in [(true, Some("S-1")), (false, None)] {
+        let mut mock = MockRig::at_rest();
+        mock.serials = Serials::new(Source::Wedge, BTreeSet::new());
+        for serial in ["S-1", "S-2"] {
+            assert_eq!(mock.serials.scan(serial, &mock.ledger), Ok(()));
+        }
+        mock.serials.released();
+        mock.set(DigitalIn::PocketPresent, true);
+        mock.scan();
+        homed(&mut mock, releasing);
+        mock.turn().enter_nest(NestId::FIRST);
+        let part = mock.ledger.part(Place::NEST).unwrap();
+        assert_eq!(part.serial.as_deref(), serial);
+        let waiting: Vec<&String> = mock.serials.waiting().unwrap().collect();
+        assert_eq!(waiting, ["S-2"]);
+    }
 }
 
 #[test]

@@ -9,8 +9,8 @@ use std::collections::BTreeSet;
 use units::{RigTime, Span};
 
 fn reader() -> Serials {
-    let patience = Span::ms(1000);
-    Serials::new(Source::Reader { patience }, BTreeSet::new())
+    let timeout = Span::ms(1000);
+    Serials::new(Source::Reader { timeout }, BTreeSet::new())
 }
 
 /// Moves a part through pocket and nest with these readings; returns it.
@@ -134,6 +134,24 @@ fn a_scan_goes_to_the_next_part() {
     assert_eq!(numbers, [Some("S-1"), Some("S-2"), None]);
     assert_eq!(fault(&parts[2]), Some(SerialFault::Missing));
     assert_eq!(reader().scan("S-3", &ledger), Err(ScanRefused::NotScanned));
+}
+
+#[test]
+fn a_part_that_lay_in_the_pocket_takes_no_scan() {
+    let (mut serials, ledger) = (
+        Serials::new(Source::Wedge, BTreeSet::new()),
+        Ledger::default(),
+    );
+    assert_eq!(serials.scan("S-1", &ledger), Ok(()));
+    let waiting = |serials: &Serials| serials.waiting().unwrap().count();
+    serials.arrived(RigTime(0), true);
+    assert_eq!(waiting(&serials), 1, "no part was released");
+    serials.released();
+    serials.arrived(RigTime(1), false);
+    assert_eq!(waiting(&serials), 1, "a reference part was released");
+    serials.released();
+    serials.arrived(RigTime(2), true);
+    assert_eq!(waiting(&serials), 0);
 }
 
 #[test]

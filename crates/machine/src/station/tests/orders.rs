@@ -1,6 +1,7 @@
 //! Orders from a screen: accepted or refused with a reason, and their effects.
 
 use super::machine::{Machine, Specimen};
+use crate::handling::serial::ScanRefused;
 use crate::rig::bin::Bin;
 use crate::rig::point::{DigitalIn, DigitalOut};
 use crate::station::catalogue::{AlarmCode, ClearedBy, Reaction};
@@ -339,6 +340,14 @@ fn every_refusal_has_a_text_in_both_languages() {
         Refused::StartWithoutLot,
         Refused::NotOfTheRig,
         Refused::ShelveWithoutReason,
+        Refused::NotArrived,
+        Refused::PromptOpen,
+        Refused::NoPrompt,
+        Refused::NoSuchChoice,
+        Refused::Scan(ScanRefused::NotScanned),
+        Refused::Scan(ScanRefused::Unreadable),
+        Refused::Scan(ScanRefused::Repeated),
+        Refused::Scan(ScanRefused::TooMany),
     ];
     for refused in every {
         let [en, zh] = Lang::ALL.map(|lang| refused.message().say(lang));

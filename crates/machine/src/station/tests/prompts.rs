@@ -105,21 +105,33 @@ fn first_part_and_end_wait_for_their_answers() {
 
 #[test]
 fn an_aborted_prompt_opens_again() {
-    let mut machine = lot(&[PromptMoment::AfterCalibration]);
-    opened(&mut machine);
-    machine.order(Order::Command(Command::Abort)).unwrap();
-    machine.turn();
-    assert!(machine.station.prompt().is_none());
-    for command in [Command::Clear, Command::Reset, Command::Start] {
-        for _ in 0..6000 {
-            if machine.station.may(command).is_ok() {
-                break;
-            }
-            machine.turn();
+    let moments = [PromptMoment::LotStart, PromptMoment::AfterCalibration];
+    for (moment, way_back) in moments.into_iter().zip([
+        &[Command::Clear][..],
+        &[Command::Clear, Command::Reset, Command::Start],
+    ]) {
+        let mut machine = lot(&[moment]);
+        opened(&mut machine);
+        give(&mut machine, Command::Abort);
+        machine.turn();
+        assert!(machine.station.prompt().is_none());
+        for command in way_back {
+            give(&mut machine, *command);
         }
-        machine.order(Order::Command(command)).unwrap();
+        assert_eq!(opened(&mut machine), "0");
+        rests(&mut machine);
     }
-    assert_eq!(opened(&mut machine), "0");
+}
+
+/// Gives a command as soon as the state allows it.
+fn give(machine: &mut Machine, command: Command) {
+    for _ in 0..6000 {
+        if machine.station.may(command).is_ok() {
+            break;
+        }
+        machine.turn();
+    }
+    machine.order(Order::Command(command)).unwrap();
 }
 
 #[test]
