@@ -99,7 +99,7 @@ function showScans() {
   const scans = view.machine ? view.machine.scans : null;
   at("scan").hidden = scans === null;
   if (scans === null) return;
-  const first = scans.slice(0, 3).join(", ") + (scans.length > 3 ? " + " + (scans.length - 3) : "");
+  const first = scans.slice(0, 3).join(comma()) + (scans.length > 3 ? " + " + (scans.length - 3) : "");
   at("scan_waiting").textContent = scans.length ? word("scan-waiting") + " " + first : word("scan-none");
   at("scan_undo").disabled = scans.length === 0;
 }
