@@ -145,8 +145,9 @@ impl AdmissionError {
 /// Checks that a lot may run; returns its recipe.
 ///
 /// # Errors
-/// Fails when the plant wants an approval that the recipe lacks, when the lot is held, when it is complete and the order is no retest, when it began with another recipe, when
-/// a retest has no earlier run, or when this plant cannot measure the recipe.
+/// Fails when the plant wants an approval that the recipe lacks, when the lot is held, when it is complete and the order
+/// is no retest, when it began with another recipe, when a retest has no earlier run, or when this plant cannot measure
+/// the recipe.
 pub fn admit(
     db: &Path,
     plant: &Plant,
