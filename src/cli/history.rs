@@ -153,7 +153,7 @@ fn dispatch(files: &Files, command: Command) -> anyhow::Result<Exit> {
         Command::Import(args) => return import::run(db, &args),
         Command::Generate(args) => return generate::run(config, db, &args),
         Command::Check => return check(db),
-        Command::Restore(args) => return restore::run(config, db, &args),
+        Command::Restore(args) => return restore::run(files, &args),
         Command::Prune(args) => return prune::run(db, &args),
         Command::List(args) => lots::run(&Archive::open(db)?, &args)?,
         Command::Show(args) => show::run(&Archive::open(db)?, &args)?,
