@@ -75,7 +75,9 @@ const COLUMNS: [Column<Entry>; 4] = [
     ("role", |it| it.person.role.to_string()),
     ("name", |it| it.person.name.clone()),
     ("since", |it| it.since.local()),
-    ("locked_until", |it| text(it.locked_until.map(Moment::local))),
+    ("locked_until", |it| {
+        text(it.locked_until.map(Moment::local))
+    }),
 ];
 
 /// Runs the command.
