@@ -91,12 +91,9 @@ fn shares(classes: Option<&Histogram>, values: &[f64]) -> Vec<f64> {
     let Some(classes) = classes else {
         return Vec::new();
     };
-    assert!(classes.width > 0.0, "classes of width {}", classes.width);
     let mut shares = vec![0.0; classes.counts.len()];
     for value in values {
-        let class = ((value - classes.from) / classes.width).floor().max(0.0) as usize;
-        let class = class.min(shares.len() - 1);
-        shares[class] += 1.0 / values.len() as f64;
+        shares[classes.class(*value)] += 1.0 / values.len() as f64;
     }
     shares
 }
