@@ -53,6 +53,10 @@ pub fn compare(archive: &Archive, param: &str, lots: &[String]) -> Result<Compar
         let reason = format!("found {}, expected 2 to 8 lots", lots.len());
         return Err(InquiryError::member("lots", reason));
     }
+    if let Some(twice) = (1..lots.len()).find(|at| lots[..*at].contains(&lots[*at])) {
+        let reason = format!("found {:?} twice, expected different lots", lots[twice]);
+        return Err(InquiryError::member("lots", reason));
+    }
     checks::parameters(archive, Some(param))?;
     let of_lot = |lot: &String| {
         let filter = Filter {

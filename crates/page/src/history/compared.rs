@@ -18,8 +18,8 @@ use utoipa::IntoParams;
 /// Own member of a comparison.
 #[derive(Debug, Deserialize, IntoParams)]
 pub(crate) struct OfLots {
-    /// Two to eight names of lots, as a JSON array.
-    #[param(example = r#"["L-1122","L-1122"]"#)]
+    /// Names of two to eight different lots, as a JSON array.
+    #[param(example = r#"["L-1121","L-1122"]"#)]
     lots: String,
 }
 
