@@ -435,7 +435,7 @@ async fn lots_compare_and_rejects_are_ranked() {
     let compared = fixture.get(&format!("/api/history/compare?{both}")).await;
     let compared = compared.json();
     assert_eq!(compared["lots"][1]["n"], 10);
-    // (7.105 V - 7.055 V)^2 over the variances of 1 to 20 and 1 to 10, in hundredths of a volt, of a mean each.
+    // F = t^2: the means differ by 0.05 V; the variances are those of 1 to 20 and of 1 to 10 hundredths of a volt.
     let f = 0.05_f64.powi(2) / (35e-4 / 20.0 + 55e-4 / 6.0 / 10.0);
     assert!((compared["means"]["f"].as_f64().unwrap() - f).abs() < 1e-6);
     let page = fixture
