@@ -49,7 +49,9 @@ fn a_spreadsheet_reads_back_with_charts_without_formula() {
         sheet.part(&part(7.704_22)).unwrap();
     }
     let mut exact = part(9.5);
-    exact.uncertainty.insert("operate_voltage_v".into(), 0.into());
+    exact
+        .uncertainty
+        .insert("operate_voltage_v".into(), 0.into());
     sheet.part(&exact).unwrap();
     let about = SheetFacts {
         facts: vec![("Lot".into(), LOT.into())],
