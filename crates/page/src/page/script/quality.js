@@ -40,6 +40,8 @@ async function readQuality() {
     figures("/api/history/report/lot" + query({lot, lang: language}), "figure.pareto, .figures figure"),
     ask("/api/history/stats" + query({lot, param})).then((it) => it.json()), showStoredCycles(lot)];
   const [charts, histograms, stats, cycles] = await Promise.allSettled(read);
+  // A later choice shows its own figures.
+  if (lot !== at("q_lot").value || param !== at("q_param").value) return;
   at("q_charts").replaceChildren(...(charts.value || []));
   const [paretos, classes] = [true, false].map((is) => (histograms.value || []).filter((it) => it.matches(".pareto") === is));
   at("q_paretos").replaceChildren(...paretos);
@@ -59,7 +61,11 @@ function showCapability(stats, unit) {
 
 // --- lots side by side, and a gauge study from a file ---
 
+// Path of the last comparison asked for.
+let comparison = "";
+
 async function readComparison() {
+  comparison = "";
   const others = Array.from(at("q_others").selectedOptions, (it) => it.value);
   const lots = [...new Set([at("q_lot").value, ...others])];
   at("q_compare_print").hidden = lots.length < 2;
@@ -68,8 +74,10 @@ async function readComparison() {
   if (lots.length < 2) return;
   const path = "/api/history/report/comparison" + query({param: at("q_param").value, lots: JSON.stringify(lots), lang: language});
   at("q_compare_print").href = path;
+  comparison = path;
   try {
-    at("q_compared").replaceChildren(...await figures(path, "figure, table.compared"));
+    const found = await figures(path, "figure, table.compared");
+    if (comparison === path) at("q_compared").replaceChildren(...found);
   } catch (error) {
     at("q_compare_trouble").textContent = error.message;
   }
