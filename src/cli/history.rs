@@ -139,9 +139,13 @@ pub fn run(files: &Files, args: HistoryArgs) -> anyhow::Result<Exit> {
     super::unless_pipe_closed(done, Exit::Done)
 }
 
-/// Names the command line option in an error that names a member of the filter.
+/// Names the command line option in an error that names a member of the filter; lots to compare have none.
 fn by_option(error: anyhow::Error) -> anyhow::Error {
     match error.downcast_ref::<InquiryError>() {
+        Some(InquiryError::Member {
+            field: "lots",
+            reason,
+        }) => anyhow::anyhow!("{reason}"),
         Some(InquiryError::Member { field, reason }) => anyhow::anyhow!("--{field}: {reason}"),
         _ => error,
     }

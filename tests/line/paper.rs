@@ -57,6 +57,13 @@ fn lots_compare_and_rejects_are_ranked() {
         workshop.read("compared.html").matches("<polyline").count(),
         2
     );
+    let twice = compare.replace("G1-00002", "G1-00001");
+    let said = workshop.run(&twice).with_status(2);
+    assert!(
+        said.stderr
+            .ends_with("found \"G1-00001\" twice, expected different lots\n"),
+        "{said}"
+    );
     let nothing = compare.replace("G1-00002", "nothing");
     workshop.run(&nothing).with_status(2);
     let ranked = workshop.run("history pareto --json").with_status(0);

@@ -461,6 +461,26 @@ async fn lots_compare_and_rejects_are_ranked() {
 }
 
 #[tokio::test]
+async fn a_refused_member_has_a_chinese_name() {
+    let fixture = with_parts(1);
+    for (query, name) in [
+        ("query?verdict=good", "判定"),
+        ("query?kind=odd", "类别"),
+        ("query?param=colour", "项目"),
+        ("query?min=1", "下限"),
+        ("query?param=operate_voltage_v&max=NaN", "上限"),
+        ("compare?param=operate_voltage_v&lots=A", "批次"),
+        ("report/lot?lot=A&ideal_cycle_s=0", "最短节拍"),
+        ("spc?param=operate_voltage_v&subgroup=11", "子组"),
+    ] {
+        let answer = fixture.get(&format!("/api/history/{query}")).await;
+        answer.refused(400);
+        let said = format!("查询条件“{name}”无效");
+        assert_eq!(answer.json()["reason_zh"], said, "{query}");
+    }
+}
+
+#[tokio::test]
 async fn a_gauge_study_is_evaluated_from_csv() {
     let fixture = Fixture::new();
     let rows = (0..18).map(|n| {
