@@ -547,7 +547,7 @@ member-lot = lot
 member-lots = lots
 member-kind = kind
 member-verdict = verdict
-member-ideal-cycle-s = ideal-cycle-s
+member-ideal_cycle_s = ideal_cycle_s
 
 ## Characteristics
 

@@ -532,7 +532,7 @@ member-lot = 批次
 member-lots = 批次
 member-kind = 类别
 member-verdict = 判定
-member-ideal-cycle-s = 最短节拍
+member-ideal_cycle_s = 最短节拍
 
 ## Characteristics
 

@@ -146,7 +146,9 @@ fn by_option(error: anyhow::Error) -> anyhow::Error {
             field: "lots",
             reason,
         }) => anyhow::anyhow!("{reason}"),
-        Some(InquiryError::Member { field, reason }) => anyhow::anyhow!("--{field}: {reason}"),
+        Some(InquiryError::Member { field, reason }) => {
+            anyhow::anyhow!("--{}: {reason}", field.replace('_', "-"))
+        }
         _ => error,
     }
 }

@@ -477,6 +477,11 @@ async fn a_refused_member_has_a_chinese_name() {
         answer.refused(400);
         let said = format!("查询条件“{name}”无效");
         assert_eq!(answer.json()["reason_zh"], said, "{query}");
+        let member = answer.json()["args"]["member"].clone();
+        assert!(
+            query.contains(member.as_str().unwrap()),
+            "{query}: {member}"
+        );
     }
 }
 
