@@ -537,17 +537,17 @@ detail-calibration_not_verified = { $said }
 
 ## Members of a history query
 
-member-since = since
-member-until = until
 member-min = min
 member-max = max
 member-param = param
 member-recipe = recipe
-member-seq = seq
 member-limit = limit
-member-lang = lang
-member-offset = offset
 member-subgroup = subgroup
+member-lot = lot
+member-lots = lots
+member-kind = kind
+member-verdict = verdict
+member-ideal_cycle_s = ideal_cycle_s
 
 ## Characteristics
 

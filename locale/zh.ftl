@@ -522,17 +522,17 @@ detail-calibration_not_verified = { $at } 的校准最近一次核验未通过�
 
 ## Members of a question to the history
 
-member-since = 起始时间
-member-until = 结束时间
 member-min = 下限
 member-max = 上限
 member-param = 项目
 member-recipe = 配方
-member-seq = 件号
 member-limit = 条数
-member-lang = 语言
-member-offset = 页次
 member-subgroup = 子组
+member-lot = 批次
+member-lots = 批次
+member-kind = 类别
+member-verdict = 判定
+member-ideal_cycle_s = 最短节拍
 
 ## Characteristics
 

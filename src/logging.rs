@@ -17,7 +17,7 @@ const JSON: &str = "json";
 const LEVELS: [&str; 6] = ["off", "error", "warn", "info", "debug", "trace"];
 
 /// Modules that `--log` knows: the crates of this program, and libraries that serve the page.
-const MODULES: [&str; 21] = [
+const MODULES: [&str; 22] = [
     "relayrig",
     "app",
     "bus",
@@ -30,6 +30,7 @@ const MODULES: [&str; 21] = [
     "page",
     "quality",
     "rigsim",
+    "scpi",
     "studies",
     "texts",
     "units",
@@ -120,6 +121,15 @@ fn is_journal() -> bool {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+
+    #[test]
+    fn every_crate_of_the_program_is_a_known_module() {
+        let crates = concat!(env!("CARGO_MANIFEST_DIR"), "/crates");
+        for entry in std::fs::read_dir(crates).unwrap() {
+            let name = entry.unwrap().file_name().into_string().unwrap();
+            assert!(name == "manuals" || check(&name).is_ok(), "{name}");
+        }
+    }
 
     #[test]
     fn an_unknown_filter_is_refused_with_the_nearest() {

@@ -156,6 +156,9 @@ fn shown(it: &RevisionEntry) -> String {
     let lines: String = it.lines.iter().map(|line| format!("\n  {line}")).collect();
     format!(
         "revision {}, {}, {}{role}: {}{lines}",
-        it.revision, it.at, it.who, it.reason
+        it.revision,
+        it.at.local(),
+        it.who,
+        it.reason
     )
 }

@@ -139,10 +139,16 @@ pub fn run(files: &Files, args: HistoryArgs) -> anyhow::Result<Exit> {
     super::unless_pipe_closed(done, Exit::Done)
 }
 
-/// Names the command line option in an error that names a member of the filter.
+/// Names the command line option in an error that names a member of the filter; lots to compare have none.
 fn by_option(error: anyhow::Error) -> anyhow::Error {
     match error.downcast_ref::<InquiryError>() {
-        Some(InquiryError::Member { field, reason }) => anyhow::anyhow!("--{field}: {reason}"),
+        Some(InquiryError::Member {
+            field: "lots",
+            reason,
+        }) => anyhow::anyhow!("{reason}"),
+        Some(InquiryError::Member { field, reason }) => {
+            anyhow::anyhow!("--{}: {reason}", field.replace('_', "-"))
+        }
         _ => error,
     }
 }
@@ -153,7 +159,7 @@ fn dispatch(files: &Files, command: Command) -> anyhow::Result<Exit> {
         Command::Import(args) => return import::run(db, &args),
         Command::Generate(args) => return generate::run(config, db, &args),
         Command::Check => return check(db),
-        Command::Restore(args) => return restore::run(config, db, &args),
+        Command::Restore(args) => return restore::run(files, &args),
         Command::Prune(args) => return prune::run(db, &args),
         Command::List(args) => lots::run(&Archive::open(db)?, &args)?,
         Command::Show(args) => show::run(&Archive::open(db)?, &args)?,

@@ -6,7 +6,7 @@ use anyhow::bail;
 use app::exit::Exit;
 use app::order::{Files, LotOrder};
 use app::service::Service;
-use page::{Door, DoorError, Tls};
+use page::{ListenError, Listener, Tls};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
@@ -45,10 +45,10 @@ pub struct PageArgs {
 }
 
 impl PageArgs {
-    fn door(&self) -> Result<Door, DoorError> {
+    fn listener(&self) -> Result<Listener, ListenError> {
         let files = self.tls_cert.as_ref().zip(self.tls_key.as_ref());
         let tls = files.map(|(cert, key)| Tls::load(cert, key)).transpose()?;
-        Door::open(self.listen, tls)
+        Listener::open(self.listen, tls)
     }
 }
 
@@ -62,7 +62,7 @@ pub fn run(files: &Files, args: &ServeArgs, first: Option<LotOrder>) -> anyhow::
             "--pace virtual: found without --speed, expected both: an idle rig in virtual time runs ahead of the clock"
         );
     }
-    let service = Service::open(files, rig.source(None)?, args.page.door()?, first)?;
+    let service = Service::open(files, rig.source(None)?, args.page.listener()?, first)?;
     if let Some(code) = service.setup_code() {
         eprintln!(
             "relayrig: no engineer yet: press log in at the page and give the set-up code {code}, or run \

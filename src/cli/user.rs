@@ -5,6 +5,7 @@
 use super::output::{Column, FormatArgs, Output, text};
 use super::{first_line_of_stdin, person};
 use app::exit::Exit;
+use history::Moment;
 use page::access::{AccessError, Entry, PersonChange, Register, Role, access_path, audited};
 use std::path::Path;
 
@@ -73,8 +74,10 @@ enum Action {
 const COLUMNS: [Column<Entry>; 4] = [
     ("role", |it| it.person.role.to_string()),
     ("name", |it| it.person.name.clone()),
-    ("since", |it| it.since.to_string()),
-    ("locked_until", |it| text(it.locked_until)),
+    ("since", |it| it.since.local()),
+    ("locked_until", |it| {
+        text(it.locked_until.map(Moment::local))
+    }),
 ];
 
 /// Runs the command.

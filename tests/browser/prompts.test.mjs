@@ -57,6 +57,10 @@ test("a lot waits for an answer, then for scans", async () => {
   await page.click("#prompt_choices button");
   await page.waitForSelector("#prompt", { state: "hidden" });
   await rig.until("the line waits for a scan", (view) => view.machine.state === "Execute" && view.machine.scans?.length === 0);
+  await page.focus("#language");
+  await page.keyboard.press("Space");
+  await shown(page, "#language", "English");
+  await page.click("#language");
   await page.locator("body").click({ position: { x: 5, y: 5 } });
   await page.keyboard.type("S-17\n");
   await picture(page, "scan");

@@ -40,10 +40,12 @@ fn lots_compare_and_rejects_are_ranked() {
     let compare = "history compare G1-00001 G1-00002 --param operate_voltage_v";
     let said = workshop.run(&format!("{compare} --json")).with_status(0);
     let compared = &said.objects()[0];
-    for test in ["means", "spreads"] {
-        let p = compared[test]["p"].as_f64().unwrap();
-        assert!((0.0..=1.0).contains(&p), "{said}");
-    }
+    let of = |lot: usize, key: &str| compared["lots"][lot][key].as_f64().unwrap();
+    let [first, second] = [0, 1].map(|lot| of(lot, "sd").powi(2) / of(lot, "n"));
+    let squared_t = (of(0, "mean") - of(1, "mean")).powi(2) / (first + second);
+    let f = compared["means"]["f"].as_f64().unwrap();
+    assert!((f / squared_t - 1.0).abs() < 1e-6, "{said}");
+    assert_eq!(compared["spreads"]["df1"], 1.0, "{said}");
     let shares = compared["lots"][1]["shares"].as_array().unwrap();
     let all: f64 = shares.iter().map(|it| it.as_f64().unwrap()).sum();
     assert!((all - 1.0).abs() < 1e-9, "{said}");
@@ -54,6 +56,13 @@ fn lots_compare_and_rejects_are_ranked() {
     assert_eq!(
         workshop.read("compared.html").matches("<polyline").count(),
         2
+    );
+    let twice = compare.replace("G1-00002", "G1-00001");
+    let said = workshop.run(&twice).with_status(2);
+    assert!(
+        said.stderr
+            .ends_with("found \"G1-00001\" twice, expected different lots\n"),
+        "{said}"
     );
     let nothing = compare.replace("G1-00002", "nothing");
     workshop.run(&nothing).with_status(2);

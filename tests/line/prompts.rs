@@ -69,6 +69,10 @@ fn a_run_without_its_answers_is_refused() {
             "found \"perhaps\" for prompt \"nest\"",
         ),
         ("--answer door=shut --by li", "found \"door\""),
+        (
+            "--answer nest=changed --answer nest=stop --by li",
+            "prompt \"nest\" twice",
+        ),
     ] {
         let said = workshop
             .run(&format!("{RUN} --lot A {answers}"))

@@ -16,6 +16,7 @@ use machine::dut::prompt::Prompt;
 use machine::handling::serial::SourceName;
 use machine::station::trouble::Alarm;
 use machine::station::turn::Ending;
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 use texts::{Lang, Message};
@@ -112,6 +113,12 @@ pub enum AdmissionError {
         /// Name as given.
         found: String,
     },
+    /// A prompt has two answers.
+    #[error("--answer: found prompt \"{prompt}\" twice, expected one answer for it")]
+    AnsweredTwice {
+        /// Name of the prompt.
+        prompt: String,
+    },
     /// The history cannot be read.
     #[error(transparent)]
     History(#[from] HistoryError),
@@ -134,9 +141,10 @@ impl AdmissionError {
                 .with("recipe", &standing.recipe),
             Self::NothingToRetest { lot } => refusal("nothing_to_retest").with("lot", lot),
             Self::Recipe(_) => refusal("recipe_faulty").with("said", self),
-            Self::NeedsScreen | Self::Unanswered { .. } | Self::NoSuchPrompt { .. } => {
-                refusal("needs_screen")
-            }
+            Self::NeedsScreen
+            | Self::Unanswered { .. }
+            | Self::NoSuchPrompt { .. }
+            | Self::AnsweredTwice { .. } => refusal("needs_screen"),
             Self::History(_) => refusal("program_trouble").with("said", self),
         }
     }
@@ -145,8 +153,9 @@ impl AdmissionError {
 /// Checks that a lot may run; returns its recipe.
 ///
 /// # Errors
-/// Fails when the plant wants an approval that the recipe lacks, when the lot is held, when it is complete and the order is no retest, when it began with another recipe, when
-/// a retest has no earlier run, or when this plant cannot measure the recipe.
+/// Fails when the plant wants an approval that the recipe lacks, when the lot is held, when it is complete and the order
+/// is no retest, when it began with another recipe, when a retest has no earlier run, or when this plant cannot measure
+/// the recipe.
 pub fn admit(
     db: &Path,
     plant: &Plant,
@@ -185,7 +194,7 @@ fn check_approval(db: &Path, plant: &Plant, recipe: &Recipe) -> Result<(), Admis
 /// Checks that a run without a screen can carry out a lot.
 ///
 /// # Errors
-/// Fails when a person must scan the parts, when a prompt has no answer, and for an answer that fits no prompt.
+/// Fails when a person must scan the parts, when a prompt has no answer or two, and for an answer that fits no prompt.
 pub fn check_unattended(
     plant: &Plant,
     recipe: &Recipe,
@@ -200,6 +209,11 @@ pub fn check_unattended(
     if let Some((found, _)) = answers.given.iter().find(unknown) {
         let found = found.clone();
         return Err(AdmissionError::NoSuchPrompt { found });
+    }
+    let mut names = BTreeSet::new();
+    if let Some((prompt, _)) = answers.given.iter().find(|it| !names.insert(&it.0)) {
+        let prompt = prompt.clone();
+        return Err(AdmissionError::AnsweredTwice { prompt });
     }
     let answer = |it: &Prompt| answers.choice(it).map(str::to_owned);
     let fits = |it: &&Prompt| answer(it).is_some_and(|choice| it.choice(&choice).is_some());

@@ -124,9 +124,11 @@ impl Folder {
             "svg" => "image/svg+xml",
             _other => return None,
         };
-        let is_plain = Path::new(name).file_name()?.to_str()? == name;
+        if Path::new(name).file_name()? != name {
+            return None;
+        }
         let bytes = std::fs::read(dir.join("pictures").join(name)).ok()?;
-        is_plain.then_some((media, bytes))
+        Some((media, bytes))
     }
 
     /// Returns the names of the TOML files directly in `below`, without their ending, sorted; none when it cannot be

@@ -152,7 +152,8 @@ impl Change {
 /// Writes the next revision of a recipe of `plant`, or a new recipe.
 ///
 /// # Errors
-/// Fails when a value or the name of the new recipe is refused, when `change` is not based on the newest revision, or when a file cannot be written.
+/// Fails when a value or the name of the new recipe is refused, when `change` is not based on the newest revision, or
+/// when a file cannot be written.
 pub fn revise(plant: &Plant, change: &Change) -> Result<Revision, ConfigError> {
     let alone = plant.folder.alone(|| write_next(plant, change));
     alone.map_err(|source| unwritten(plant, change, source))?

@@ -1,4 +1,4 @@
-//! Serial numbers that the parts of a lot have.
+//! Reads the serial numbers of the parts of a lot.
 
 use super::Store;
 use super::error::{Doing, Result};
@@ -7,7 +7,8 @@ use std::collections::BTreeSet;
 const DOING: &str = "reading the serial numbers of a lot";
 
 impl Store {
-    /// Returns the sum over the runs of a lot of the number of their last part: as many numbers are given.
+    /// Returns how many serial numbers the rig has given to parts of a lot: each run gave one to every part up to its
+    /// last.
     pub fn parts_numbered(&self, lot: &str) -> Result<u64> {
         let sql = "SELECT ifnull(sum(last), 0) FROM (
               SELECT max(part.seq) AS last FROM part

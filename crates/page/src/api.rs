@@ -117,8 +117,6 @@ pub(super) struct Route {
 
 /// Statuses of a route that reads the history: not found, failed, locked.
 const OF_HISTORY: &[u16] = &[404, 500, 503];
-/// Statuses of a route that reads files of the configuration: not found, failed.
-const OF_FILES: &[u16] = &[404, 500];
 
 impl Route {
     fn new<T, H: Endpoint<T>>(
@@ -368,13 +366,14 @@ fn of_recipes() -> Vec<Route> {
             "/api/recipes",
             "Every recipe with its newest revision, or the error that keeps it from loading.",
             recipes::list,
-        ),
+        )
+        .refuses(&[500, 503]),
         Route::get(
             "/api/recipes/show",
             "A revision: every key with form, unit, range and value.",
             recipes::show,
         )
-        .refuses(OF_FILES),
+        .refuses(OF_HISTORY),
         Route::get(
             "/api/recipes/revisions",
             "Who changed the recipe, when, why, and every key with its old and new value; latest first.",
@@ -382,7 +381,7 @@ fn of_recipes() -> Vec<Route> {
         )
         .refuses(OF_HISTORY),
         Route::get("/api/recipes/card", "Operation process card for A4.", recipes::card)
-            .refuses(OF_FILES),
+            .refuses(&[404, 500]),
         Route::post(
             "/api/recipes/revise",
             "Saves the next revision of a recipe, which applies from the next run on, or with `save_as` a new recipe; 400 with \

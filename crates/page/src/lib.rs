@@ -4,7 +4,7 @@
 //!   in its next turn.
 //! - The view comes through a watch channel, so that the cycle never waits for a client: a slow one skips to the latest
 //!   view, and views do not queue.
-//! - An answer in the range 4xx or 5xx is always JSON: `{"error": "<word>", "reason": "<sentence>"}`.
+//! - A route refuses with JSON: the status in words, the reason in English and Chinese, its code (`error.rs`).
 //! - A body has at most 16 kB. The server limits connections in number and time (`server.rs`). A request that changes
 //!   anything must not come from a page of another site.
 //! - When the program ends, every event stream ends, and connections still open are cut after [`GRACE`].
@@ -57,7 +57,7 @@ pub use approval::approve_with_password;
 use config::Folder;
 use machine::view::{Mimic, OrderRequest};
 pub use orders::WAITING;
-pub use server::{Door, DoorError, Tls, serve};
+pub use server::{ListenError, Listener, Tls, serve};
 pub use sessions::Sessions;
 pub use trace::Traffic;
 

@@ -2,9 +2,9 @@
 //!
 //! The audit of orders gets every change that a logged-in person tries, with its outcome, and no password.
 
-use super::access::{Entry, PersonChange, Role, audited};
+use super::access::{Entry, PersonChange, Role};
 use super::asked::{Author, Body};
-use super::error::{ApiError, JsonResult};
+use super::error::JsonResult;
 use super::router::App;
 use super::sessions::{now_us, require_role};
 use axum::Json;
@@ -25,7 +25,7 @@ pub(super) async fn list(State(app): App, Author { person, .. }: Author) -> Json
     let entries = app
         .shared
         .sessions
-        .with(|register, _| register.entries(now_us()));
+        .with(|register| register.entries(now_us()));
     entries.await.map(Json)
 }
 
@@ -35,13 +35,10 @@ pub(super) async fn change(
     author: Author,
     Body(change): Body<PersonChange>,
 ) -> JsonResult<Changed> {
-    let sessions = &app.shared.sessions;
-    let done = sessions.with(move |register, history| {
-        let (by, what) = (author.by(), |_: Option<&_>| change.what());
-        audited(history, by, what, ApiError::message, || {
-            require_role(&author.person, Role::Engineer)?;
-            Ok(change.apply(register, now_us())?)
-        })?
+    let (by, what) = (author.by(), change.what());
+    let done = app.shared.sessions.audited(by, what, move |register| {
+        require_role(&author.person, Role::Engineer)?;
+        Ok(change.apply(register, now_us())?)
     });
     let password = done.await?;
     Ok(Json(Changed { password }))

@@ -10,7 +10,7 @@
 //! So 500 connections that never finish a request delay no order: a new one takes the place of the oldest of them.
 
 mod connections;
-mod door;
+mod listener;
 #[cfg_attr(not(feature = "tls"), path = "server/no_tls.rs")]
 mod tls;
 
@@ -22,11 +22,11 @@ use axum::body::Body;
 use axum::extract::ConnectInfo;
 use axum::http::{Request, Response};
 use connections::{Connections, Lost, Place, Rank};
-pub use door::{Door, DoorError};
 use hyper::body::Incoming;
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper_util::rt::{TokioIo, TokioTimer};
+pub use listener::{ListenError, Listener};
 use std::convert::Infallible;
 use std::net::SocketAddr;
 use std::pin::pin;

@@ -16,12 +16,16 @@ mod proof;
 
 pub(super) use proof::Session;
 
-use super::access::{AccessError, Person, Register, Role, SESSION_S, SetupCode, access_path};
+use super::access::{
+    AccessError, Person, Register, Role, SESSION_S, SetupCode, access_path, audited,
+};
 use super::error::{ApiError, blocking};
 use super::origin;
 use axum::http::{HeaderMap, header};
+use machine::view::By;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 const COOKIE: &str = "relayrig_session";
 
@@ -60,7 +64,7 @@ impl Sessions {
 
     /// Returns true while a set-up code may add the first engineer.
     pub(super) async fn needs_setup(&self) -> Result<bool, ApiError> {
-        let engineer = self.with(|register, _| register.has_engineer()).await?;
+        let engineer = self.with(|register| register.has_engineer()).await?;
         Ok(self.0.setup.is_some() && !engineer)
     }
 
@@ -69,7 +73,7 @@ impl Sessions {
         let Some(token) = token(headers) else {
             return Ok(());
         };
-        self.with(move |register, _| register.log_out(&token)).await
+        self.with(move |register| register.log_out(&token)).await
     }
 
     /// Returns the person of the session; `None` without a valid one.
@@ -77,7 +81,7 @@ impl Sessions {
         let Some(token) = token(headers) else {
             return Ok(None);
         };
-        self.with(move |register, _| register.holder(&token, now_us()))
+        self.with(move |register| register.holder(&token, now_us()))
             .await
     }
 
@@ -87,23 +91,40 @@ impl Sessions {
         self.who(headers).await?.ok_or(ApiError::NotLoggedIn)
     }
 
-    /// Runs `work` over the file of people and the path of the history, on a blocking thread.
+    /// Runs `work` over the file of people, on a blocking thread.
     pub(super) async fn with<T, E>(
         &self,
-        work: impl FnOnce(&mut Register, &Path) -> Result<T, E> + Send + 'static,
+        work: impl FnOnce(&mut Register) -> Result<T, E> + Send + 'static,
     ) -> Result<T, ApiError>
     where
         T: Send + 'static,
         E: Into<ApiError> + Send + 'static,
     {
         let inner = Arc::clone(&self.0);
+        blocking(move || work(&mut inner.register())).await
+    }
+
+    /// Runs `work` over the file of people, and notes it in the audit of orders as [`audited`] does. While the audit waits
+    /// for a locked history, other requests find their sessions.
+    pub(super) async fn audited<T: Send + 'static>(
+        &self,
+        by: By,
+        what: Value,
+        work: impl FnOnce(&mut Register) -> Result<T, ApiError> + Send + 'static,
+    ) -> Result<T, ApiError> {
+        let inner = Arc::clone(&self.0);
         blocking(move || {
-            // A holder that panicked left no data half changed.
-            let register = inner.register.lock();
-            let mut register = register.unwrap_or_else(PoisonError::into_inner);
-            work(&mut register, &inner.history)
+            let work = || work(&mut inner.register());
+            audited(&inner.history, by, |_| what, ApiError::message, work)?
         })
         .await
+    }
+}
+
+impl Inner {
+    /// Locks the file of people, even after another holder panicked: none leaves data half changed.
+    fn register(&self) -> MutexGuard<'_, Register> {
+        self.register.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

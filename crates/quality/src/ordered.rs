@@ -21,6 +21,20 @@ pub struct Histogram {
     pub counts: Vec<u64>,
 }
 
+impl Histogram {
+    /// Returns the index of the class of a value; of the nearest class for a value outside of all.
+    pub fn class(&self, value: f64) -> usize {
+        let class = ((value - self.from) / self.width).floor().max(0.0) as usize;
+        class.min(self.counts.len() - 1)
+    }
+
+    /// Counts a value in its class.
+    pub(super) fn add(&mut self, value: f64) {
+        let class = self.class(value);
+        self.counts[class] += 1;
+    }
+}
+
 impl Ordered {
     /// Sorts a copy of the finite values; leaves out the others.
     pub fn of(values: &[f64]) -> Self {
@@ -60,16 +74,15 @@ impl Ordered {
         let width = round_step((high - low) / classes.max(1) as f64)?;
         let from = (low / width).floor() * width;
         let last = ((high - from) / width).floor() as usize;
-        let mut counts = vec![0; last + 1];
-        for value in &self.0 {
-            let class = ((value - from) / width).floor().max(0.0) as usize;
-            counts[class.min(last)] += 1;
-        }
-        Some(Histogram {
+        let mut histogram = Histogram {
             from,
             width,
-            counts,
-        })
+            counts: vec![0; last + 1],
+        };
+        for value in &self.0 {
+            histogram.add(*value);
+        }
+        Some(histogram)
     }
 }
 

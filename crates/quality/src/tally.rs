@@ -44,10 +44,8 @@ impl Tally {
             self.classes = Ordered::of(&self.shard).histogram(CLASSES).map(wider);
         }
         if let Some(classes) = &mut self.classes {
-            let last = classes.counts.len() - 1;
             for value in &self.shard {
-                let class = ((value - classes.from) / classes.width).floor().max(0.0);
-                classes.counts[(class as usize).min(last)] += 1;
+                classes.add(*value);
             }
         }
         self.shard.clear();

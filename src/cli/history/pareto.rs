@@ -4,8 +4,7 @@ use super::filter::{RunArgs, SpanArgs};
 use crate::cli::output::{Column, FormatArgs, Output, text};
 use clap::Args;
 use history::Archive;
-use history::inquiry::{checks, pareto};
-use pareto::Ranked;
+use history::inquiry::pareto::{self, Ranked};
 
 #[derive(Debug, Args)]
 pub(super) struct ParetoArgs {
@@ -34,10 +33,7 @@ const COLUMNS: [Column<Ranked>; 4] = [
 pub(super) fn run(archive: &Archive, args: &ParetoArgs) -> anyhow::Result<()> {
     let filter = args.span.within(args.runs.filter());
     let ranked = match args.alarms {
-        true => {
-            checks::known_runs(archive, &filter)?;
-            pareto::alarms(&archive.alarms(&filter)?)
-        }
+        true => pareto::alarms(archive, &filter)?,
         false => pareto::rejects(archive, &filter, 0)?.reasons,
     };
     Output::stdout().list(args.format.format(), &ranked, &COLUMNS)

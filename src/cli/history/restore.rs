@@ -4,8 +4,7 @@ use crate::cli::output::Output;
 use app::exit::Exit;
 use app::order::Files;
 use app::restore::Contents;
-use config::Folder;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Arguments of `history restore`.
 #[derive(Debug, clap::Args)]
@@ -21,7 +20,7 @@ pub struct RestoreArgs {
 }
 
 /// Runs the command; a fault that the check of the backup finds is an answer (status 1).
-pub fn run(config: &Folder, db: &Path, args: &RestoreArgs) -> anyhow::Result<Exit> {
+pub fn run(files: &Files, args: &RestoreArgs) -> anyhow::Result<Exit> {
     let backup = Contents::find(&args.backup)?;
     let mut out = Output::stdout();
     out.line(&backup.at.display().to_string())?;
@@ -36,14 +35,10 @@ pub fn run(config: &Folder, db: &Path, args: &RestoreArgs) -> anyhow::Result<Exi
         return Ok(Exit::AnswerIsNo);
     }
     if !args.check {
-        let files = Files {
-            config: config.clone(),
-            db: db.to_owned(),
-        };
-        for old in backup.restore(&files, args.replace)? {
+        for old in backup.restore(files, args.replace)? {
             eprintln!("{}: kept", old.display());
         }
-        out.line(&format!("restored; the history is {}", db.display()))?;
+        out.line(&format!("restored; the history is {}", files.db.display()))?;
     }
     Ok(Exit::Done)
 }

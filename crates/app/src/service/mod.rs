@@ -36,7 +36,7 @@ use super::order_queue::OrderQueue;
 use super::source::RigSource;
 #[cfg(feature = "sim")]
 use super::{simulated, simulated::LiveRig};
-use ::page::Door;
+use ::page::Listener;
 use ::page::access::SetupCode;
 use anyhow::bail;
 use config::{Folder, Plant, load_recipe, recipe_names};
@@ -68,14 +68,14 @@ pub struct Service {
 }
 
 impl Service {
-    /// Opens the rig and serves its page at `door`; the day begins with lot `first`, if given.
+    /// Opens the rig and serves its page at `listener`; the day begins with lot `first`, if given.
     ///
     /// # Errors
     /// Fails for a faulty configuration, for a lot that the rig refuses, and when the rig cannot be opened.
     pub fn open(
         files: &Files,
         source: RigSource,
-        door: Door,
+        listener: Listener,
         first: Option<LotOrder>,
     ) -> anyhow::Result<Self> {
         let plant = Arc::new(Plant::load(&files.config)?);
@@ -96,7 +96,7 @@ impl Service {
         let (orders, asked) = mpsc::channel(::page::WAITING);
         let mimic = mimic(&plant, &recipe)?;
         let source = with_live_rig(source, &plant, &order)?;
-        let page = Page::start(door, files, &controls, orders, mimic)?;
+        let page = Page::start(listener, files, &controls, orders, mimic)?;
         Ok(Self {
             router: OrderRouter::new(&files.db, &plant, &source),
             source,

@@ -4,7 +4,7 @@ use crate::controls::Controls;
 use crate::order::Files;
 use anyhow::Context;
 use machine::view::{Mimic, OrderRequest};
-use page::Door;
+use page::Listener;
 use page::access::SetupCode;
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -20,13 +20,13 @@ pub(super) struct Page {
 
 impl Page {
     pub fn start(
-        door: Door,
+        listener: Listener,
         files: &Files,
         controls: &Controls,
         orders: mpsc::Sender<OrderRequest>,
         mimic: Mimic,
     ) -> anyhow::Result<Self> {
-        let (listener, tls) = door.into_parts();
+        let (listener, tls) = listener.into_parts();
         listener
             .set_nonblocking(true)
             .context("the page's socket")?;

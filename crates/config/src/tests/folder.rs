@@ -53,6 +53,35 @@ fn the_compiled_in_configuration_loads_as_its_directory() {
 }
 
 #[test]
+fn a_picture_lies_directly_in_its_folder() {
+    let plant = tempfile::tempdir().unwrap();
+    fs::create_dir_all(plant.path().join("pictures/old")).unwrap();
+    for file in [
+        "pictures/nest.svg",
+        "pictures/old/nest.svg",
+        "nest.svg",
+        "pictures/nest.txt",
+    ] {
+        fs::write(plant.path().join(file), "x").unwrap();
+    }
+    let folder = Folder::from(plant.path());
+    let found = folder.picture("nest.svg");
+    assert_eq!(found, Some(("image/svg+xml", b"x".to_vec())));
+    for other in [
+        "old/nest.svg",
+        "../nest.svg",
+        "nest.svg/",
+        "nest.txt",
+        "none.svg",
+        "svg",
+        "",
+    ] {
+        assert_eq!(folder.picture(other), None, "{other}");
+    }
+    assert_eq!(Folder::built_in().picture("nest.svg"), None);
+}
+
+#[test]
 fn revisions_in_memory_last_as_long_as_the_folder() {
     let plant = Plant::load(&Folder::built_in()).unwrap();
     let first = revision(&plant.folder, NAME, None).unwrap();

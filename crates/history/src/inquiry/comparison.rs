@@ -53,6 +53,10 @@ pub fn compare(archive: &Archive, param: &str, lots: &[String]) -> Result<Compar
         let reason = format!("found {}, expected 2 to 8 lots", lots.len());
         return Err(InquiryError::member("lots", reason));
     }
+    if let Some(twice) = (1..lots.len()).find(|at| lots[..*at].contains(&lots[*at])) {
+        let reason = format!("found {:?} twice, expected different lots", lots[twice]);
+        return Err(InquiryError::member("lots", reason));
+    }
     checks::parameters(archive, Some(param))?;
     let of_lot = |lot: &String| {
         let filter = Filter {
@@ -91,12 +95,9 @@ fn shares(classes: Option<&Histogram>, values: &[f64]) -> Vec<f64> {
     let Some(classes) = classes else {
         return Vec::new();
     };
-    assert!(classes.width > 0.0, "classes of width {}", classes.width);
     let mut shares = vec![0.0; classes.counts.len()];
     for value in values {
-        let class = ((value - classes.from) / classes.width).floor().max(0.0) as usize;
-        let class = class.min(shares.len() - 1);
-        shares[class] += 1.0 / values.len() as f64;
+        shares[classes.class(*value)] += 1.0 / values.len() as f64;
     }
     shares
 }

@@ -51,7 +51,7 @@ pub fn lot_report(
     };
     if let Some(ideal) = ideal_cycle_s.filter(|it| !(it.is_finite() && *it > 0.0)) {
         let reason = format!("found {ideal}, expected more than 0");
-        return Err(InquiryError::member("ideal-cycle-s", reason));
+        return Err(InquiryError::member("ideal_cycle_s", reason));
     }
     checks::known_runs(archive, filter)?;
     let runs = archive.lots(filter)?;

@@ -82,8 +82,14 @@ pub fn rejects(archive: &Archive, filter: &Filter, listed: usize) -> Result<Reje
     })
 }
 
+/// Returns the alarms that the filter selects by code, see [`by_code`].
+pub fn alarms(archive: &Archive, filter: &Filter) -> Result<Vec<Ranked>> {
+    checks::known_runs(archive, filter)?;
+    Ok(by_code(&archive.alarms(filter)?))
+}
+
 /// Returns the alarms by code, the most frequent first. One that has not been cleared adds no time.
-pub fn alarms(alarms: &[Alarm]) -> Vec<Ranked> {
+pub fn by_code(alarms: &[Alarm]) -> Vec<Ranked> {
     let mut counts = BTreeMap::<[String; 2], (u64, Option<f64>)>::new();
     for alarm in alarms {
         let known = AlarmCode::from_name(&alarm.code);

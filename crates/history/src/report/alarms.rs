@@ -18,7 +18,7 @@ pub fn list(paper: &Paper, about: &str, alarms: &[Alarm]) -> String {
 /// Returns the alarms by code, with their counts and the time for which they were active.
 pub(super) fn ranked(language: Lang, alarms: &[Alarm]) -> Markup {
     let title = language.text("paper-alarms_ranked");
-    pareto::pareto(language, title, &inquiry::pareto::alarms(alarms), None)
+    pareto::pareto(language, title, &inquiry::pareto::by_code(alarms), None)
 }
 
 pub(super) fn table(paper: &Paper, alarms: &[Alarm]) -> Markup {

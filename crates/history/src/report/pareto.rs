@@ -111,7 +111,7 @@ fn reasons(language: Lang, part: &Part) -> Markup {
         @for (at, it) in part.reason_codes.iter().enumerate() {
             @if at > 0 { br; }
             (reason(language, it))
-            @if let Some(value) = it.characteristic().and_then(|of| value(of.key())) { ": " (figure(Some(value))) }
+            @if let Some(value) = it.characteristic().and_then(|of| value(of.key())) { (language.colon()) (figure(Some(value))) }
         }
     }
 }

@@ -110,8 +110,7 @@ impl Sheet {
         for ((column, key), figures) in (first..).zip(&self.keys).zip(&mut self.figures) {
             let number = |of: &Map<String, Value>| of.get(key).and_then(Value::as_f64);
             let (value, doubt) = (number(&part.values), number(&part.uncertainty));
-            let doubt = doubt.filter(|it| *it > 0.0);
-            let decimals = doubt.map(doubt_decimals);
+            let decimals = doubt.filter(|it| *it > 0.0).map(doubt_decimals);
             for (column, value) in [(column, value), (column + count, doubt)] {
                 self.formats.number(to, (row, column), value, decimals)?;
             }

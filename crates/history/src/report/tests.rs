@@ -158,7 +158,7 @@ fn a_lot_report_ranks_reasons_and_lists_rejects() {
                 "2 more rejects",
             ],
         ),
-        (Lang::Zh, ["2 · 25.00 %", "超出上限: 7.7042", "另有 2 件"]),
+        (Lang::Zh, ["2 · 25.00 %", "超出上限：7.7042", "另有 2 件"]),
     ] {
         let page = lot_report(language);
         for word in words {

@@ -48,7 +48,11 @@ fn a_spreadsheet_reads_back_with_charts_without_formula() {
     for _ in 0..3 {
         sheet.part(&part(7.704_22)).unwrap();
     }
-    sheet.part(&part(9.5)).unwrap();
+    let mut exact = part(9.5);
+    exact
+        .uncertainty
+        .insert("operate_voltage_v".into(), 0.into());
+    sheet.part(&exact).unwrap();
     let about = SheetFacts {
         facts: vec![("Lot".into(), LOT.into())],
         limits: vec![Limits {
@@ -66,6 +70,7 @@ fn a_spreadsheet_reads_back_with_charts_without_formula() {
     assert_eq!(parts[(1, 1)], Data::String(LOT.into()));
     assert_eq!(parts[(1, 6)], Data::String("=1+1".into()));
     assert_eq!(parts[(1, 13)], Data::Float(7.704_22));
+    assert_eq!(parts[(4, 14)], Data::Float(0.0), "an uncertainty of 0");
     assert!(book.worksheet_formula("Parts").unwrap().is_empty());
     let summary = book.worksheet_range("Summary").unwrap();
     assert_eq!(

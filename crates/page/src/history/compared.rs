@@ -9,7 +9,7 @@ use axum::Json;
 use axum::extract::State;
 use history::inquiry::comparison::{Comparison, compare};
 use history::inquiry::pareto::{Ranked, Rejects, alarms, rejects};
-use history::inquiry::{InquiryError, checks, paper};
+use history::inquiry::{InquiryError, paper};
 use history::report::comparison::comparison;
 use history::{Archive, Filter};
 use serde::Deserialize;
@@ -18,8 +18,8 @@ use utoipa::IntoParams;
 /// Own member of a comparison.
 #[derive(Debug, Deserialize, IntoParams)]
 pub(crate) struct OfLots {
-    /// Two to eight names of lots, as a JSON array.
-    #[param(example = r#"["L-1122","L-1122"]"#)]
+    /// Names of two to eight different lots, as a JSON array.
+    #[param(example = r#"["L-1121","L-1122"]"#)]
     lots: String,
 }
 
@@ -68,10 +68,6 @@ pub(crate) async fn alarm_counts(
     State(app): App,
     Asked(asked): Asked<(Runs, TimeSpan)>,
 ) -> JsonResult<Vec<Ranked>> {
-    let filter = filter(asked);
-    let read = move |archive: &Archive| {
-        checks::known_runs(archive, &filter)?;
-        Ok(alarms(&archive.alarms(&filter)?))
-    };
+    let read = move |archive: &Archive| Ok(alarms(archive, &filter(asked))?);
     app.readers.read(read).await.map(Json)
 }

@@ -211,6 +211,13 @@ fn every_top_level_name_of_the_scripts_is_unique() {
     assert!(seen.len() > 100, "{}", seen.len());
 }
 
+#[test]
+fn scripts_leave_punctuation_to_the_language() {
+    for mark in ["+ \": \"", "+ \"; \""] {
+        assert!(!CODE.contains(mark), "{mark}");
+    }
+}
+
 /// Largest answer to `GET /` when compressed, bytes.
 const FIRST_BYTES: usize = 60_000;
 

@@ -1,6 +1,6 @@
 //! A program without TLS: it has no certificate and refuses to read one.
 
-use super::door::DoorError;
+use super::listener::ListenError;
 use std::path::Path;
 use tokio::net::TcpStream;
 
@@ -13,8 +13,8 @@ impl Tls {
     ///
     /// # Errors
     /// Fails always: this program has no TLS.
-    pub const fn load(_cert: &Path, _key: &Path) -> Result<Self, DoorError> {
-        Err(DoorError::NoTls)
+    pub const fn load(_cert: &Path, _key: &Path) -> Result<Self, ListenError> {
+        Err(ListenError::NoTls)
     }
 
     /// Never runs, because there is no certificate.

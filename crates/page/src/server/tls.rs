@@ -1,6 +1,6 @@
 //! The certificate by which other computers know the page.
 
-use super::door::DoorError;
+use super::listener::ListenError;
 use std::path::Path;
 use std::sync::Arc;
 use tokio::net::TcpStream;
@@ -26,10 +26,10 @@ impl Tls {
     ///
     /// # Errors
     /// Fails when a file is unreadable or holds something else, and when the key is not that of the certificate.
-    pub fn load(cert: &Path, key: &Path) -> Result<Self, DoorError> {
+    pub fn load(cert: &Path, key: &Path) -> Result<Self, ListenError> {
         let unread = |path: &Path, expected| {
             let path = path.to_owned();
-            move |source| DoorError::Pem {
+            move |source| ListenError::Pem {
                 path,
                 expected,
                 source,
@@ -46,7 +46,7 @@ impl Tls {
         let config = ServerConfig::builder_with_provider(Arc::new(ring::default_provider()))
             .with_safe_default_protocol_versions()
             .and_then(|config| config.with_no_client_auth().with_single_cert(chain, secret));
-        let mut config = config.map_err(|source| DoorError::Pair {
+        let mut config = config.map_err(|source| ListenError::Pair {
             cert: cert.to_owned(),
             key: key.to_owned(),
             source,

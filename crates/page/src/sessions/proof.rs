@@ -4,7 +4,7 @@
 //! The audit of orders notes every wrong password or code, with the typed name only if a person has it: people type
 //! passwords into the wrong field. A try that has to wait leaves no line, so that guessing cannot fill the disk.
 
-use super::super::access::{AccessError, Login, Person, Role, audited, note};
+use super::super::access::{AccessError, Login, Person, Role, note};
 use super::super::error::{ApiError, blocking};
 use super::{Sessions, now_us};
 use history::Store;
@@ -25,7 +25,7 @@ impl Sessions {
         let _turn = self.0.login.lock().await;
         let by = by(name.clone(), None, origin);
         let answer = self
-            .with(move |register, _| register.log_in(&name, &password, now_us()))
+            .with(move |register| register.log_in(&name, &password, now_us()))
             .await?;
         self.answered(answer, by, ApiError::WrongPassword).await
     }
@@ -41,21 +41,20 @@ impl Sessions {
         let _turn = self.0.login.lock().await;
         let expected = self.0.setup.clone();
         let answer = self
-            .with(move |register, _| register.prove_code(expected.as_ref(), &code, now_us()))
+            .with(move |register| register.prove_code(expected.as_ref(), &code, now_us()))
             .await?;
         let by = by(name.clone(), Some(Role::Engineer), origin);
         self.answered(answer, by.clone(), ApiError::WrongCode)
             .await?;
-        self.with(move |register, history| {
-            let what =
-                |_: Option<&()>| json!({ "order": "people", "change": "set_up", "name": name });
-            let add = || register.add(&name, Role::Engineer, &password, now_us());
-            audited(history, by, what, AccessError::message, add)??;
-            let token = register.open_session(&name, now_us())?;
-            let role = Role::Engineer;
-            Ok::<_, AccessError>((Person { name, role }, token))
+        let what = json!({ "order": "people", "change": "set_up", "name": name });
+        let role = Role::Engineer;
+        let person = Person { name, role };
+        let added = person.clone();
+        self.audited(by, what, move |register| {
+            Ok(register.add(&added.name, role, &password, now_us())?)
         })
-        .await
+        .await?;
+        self.open(person).await
     }
 
     /// Changes the password of `person`, whose other sessions end, and opens a session. Fails for a wrong present
@@ -71,14 +70,21 @@ impl Sessions {
         let by = by(person.name.clone(), Some(person.role), origin);
         let name = person.name.clone();
         let answer = self
-            .with(move |register, _| register.prove(&name, &present, now_us()))
+            .with(move |register| register.prove(&name, &present, now_us()))
             .await?;
         self.answered(answer, by.clone(), ApiError::WrongPassword)
             .await?;
-        self.with(move |register, history| {
-            let what = |_: Option<&()>| json!({ "order": "people", "change": "password", "name": person.name });
-            let set = || register.set_password(&person.name, &new);
-            audited(history, by, what, AccessError::message, set)??;
+        let what = json!({ "order": "people", "change": "password", "name": person.name });
+        let name = person.name.clone();
+        self.audited(by, what, move |register| {
+            Ok(register.set_password(&name, &new)?)
+        })
+        .await?;
+        self.open(person).await
+    }
+
+    async fn open(&self, person: Person) -> Result<Session, ApiError> {
+        self.with(move |register| {
             let token = register.open_session(&person.name, now_us())?;
             Ok::<_, AccessError>((person, token))
         })

@@ -163,17 +163,19 @@ fn fixture() -> Fixture {
         .parse::<jiff::Timestamp>()
         .unwrap()
         .as_microsecond();
-    let lot = LotRecord {
-        lot: "L-1122".into(),
-        recipe: "jzc-22f-012".into(),
-        recipe_hash: snapshot_hash(&recipe),
-        recipe_snapshot: recipe,
-        opened_at_us: at_us,
-        ..LotRecord::default()
-    };
-    store.begin_lot(&lot).unwrap();
-    let rows = (1..=30).map(|seq| Row::Part(part(seq, at_us)));
-    store.record(&rows.collect::<Vec<_>>()).unwrap();
+    for lot in ["L-1121", "L-1122"] {
+        let run = LotRecord {
+            lot: lot.into(),
+            recipe: "jzc-22f-012".into(),
+            recipe_hash: snapshot_hash(&recipe),
+            recipe_snapshot: recipe.clone(),
+            opened_at_us: at_us,
+            ..LotRecord::default()
+        };
+        store.begin_lot(&run).unwrap();
+        let rows = (1..=30).map(|seq| Row::Part(part(lot, seq, at_us)));
+        store.record(&rows.collect::<Vec<_>>()).unwrap();
+    }
     let alarm = AlarmRecord {
         lot: Some("L-1122".into()),
         code: "door_open".into(),
@@ -192,7 +194,7 @@ fn fixture() -> Fixture {
     fixture
 }
 
-fn part(seq: u64, at_us: i64) -> PartRecord {
+fn part(lot: &str, seq: u64, at_us: i64) -> PartRecord {
     let values = [
         ("coil_resistance_ohm", 400.0),
         ("operate_voltage_v", 7.9),
@@ -213,7 +215,7 @@ fn part(seq: u64, at_us: i64) -> PartRecord {
         ..MeasurementRecord::default()
     };
     PartRecord {
-        lot: "L-1122".into(),
+        lot: lot.into(),
         seq,
         // The example of the document; a chart needs several parts.
         serial: Some("L-1122-000017".into()),

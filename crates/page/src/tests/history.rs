@@ -21,6 +21,23 @@ fn with_parts(parts: u64) -> Fixture {
     fixture
 }
 
+/// Adds lot B, whose values are the first ones of lot A.
+fn add_lot_b(fixture: &Fixture, parts: u64) {
+    let mut store = Store::open(&fixture.db).unwrap();
+    let lot = LotRecord {
+        lot: "B".into(),
+        recipe: "r".into(),
+        ..LotRecord::default()
+    };
+    store.begin_lot(&lot).unwrap();
+    let of_b = |seq| PartRecord {
+        lot: "B".into(),
+        ..part(seq)
+    };
+    let rows: Vec<Row> = (1..=parts).map(|seq| Row::Part(of_b(seq))).collect();
+    store.record(&rows).unwrap();
+}
+
 fn part(seq: u64) -> PartRecord {
     let verdict = if seq.is_multiple_of(5) {
         "fail"
@@ -413,11 +430,14 @@ async fn lots_compare_and_rejects_are_ranked() {
     );
     let counts = fixture.get("/api/history/alarm-counts?since=today").await;
     assert_eq!(counts.json(), serde_json::json!([]));
-    let both = "param=operate_voltage_v&lots=%5B%22A%22,%22A%22%5D";
+    add_lot_b(&fixture, 10);
+    let both = "param=operate_voltage_v&lots=%5B%22A%22,%22B%22%5D";
     let compared = fixture.get(&format!("/api/history/compare?{both}")).await;
     let compared = compared.json();
-    assert_eq!(compared["lots"][1]["n"], 20);
-    assert_eq!(compared["means"]["f"], 0.0);
+    assert_eq!(compared["lots"][1]["n"], 10);
+    // F = t^2: the means differ by 0.05 V; the variances are those of 1 to 20 and of 1 to 10 hundredths of a volt.
+    let f = 0.05_f64.powi(2) / (35e-4 / 20.0 + 55e-4 / 6.0 / 10.0);
+    assert!((compared["means"]["f"].as_f64().unwrap() - f).abs() < 1e-6);
     let page = fixture
         .get(&format!("/api/history/report/comparison?{both}&lang=en"))
         .await;
@@ -428,11 +448,40 @@ async fn lots_compare_and_rejects_are_ranked() {
             "compare?param=operate_voltage_v&lots=%5B%22A%22%5D",
             "2 to 8",
         ),
+        (
+            "compare?param=operate_voltage_v&lots=%5B%22A%22,%22B%22,%22A%22%5D",
+            "found \"A\" twice",
+        ),
         ("rejects?verdict=fail", "verdict"),
     ] {
         let answer = fixture.get(&format!("/api/history/{query}")).await;
         let reason = answer.refused(400);
         assert!(reason.contains(said), "{query}: {reason}");
+    }
+}
+
+#[tokio::test]
+async fn a_refused_member_has_a_chinese_name() {
+    let fixture = with_parts(1);
+    for (query, name) in [
+        ("query?verdict=good", "判定"),
+        ("query?kind=odd", "类别"),
+        ("query?param=colour", "项目"),
+        ("query?min=1", "下限"),
+        ("query?param=operate_voltage_v&max=NaN", "上限"),
+        ("compare?param=operate_voltage_v&lots=A", "批次"),
+        ("report/lot?lot=A&ideal_cycle_s=0", "最短节拍"),
+        ("spc?param=operate_voltage_v&subgroup=11", "子组"),
+    ] {
+        let answer = fixture.get(&format!("/api/history/{query}")).await;
+        answer.refused(400);
+        let said = format!("查询条件“{name}”无效");
+        assert_eq!(answer.json()["reason_zh"], said, "{query}");
+        let member = answer.json()["args"]["member"].clone();
+        assert!(
+            query.contains(member.as_str().unwrap()),
+            "{query}: {member}"
+        );
     }
 }
 

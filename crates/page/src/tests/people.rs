@@ -213,6 +213,26 @@ async fn a_new_own_password_ends_other_sessions() {
 }
 
 #[tokio::test]
+async fn an_audit_that_waits_delays_no_session() {
+    let fixture = Fixture::new();
+    let token = fixture.session(Role::Engineer);
+    drop(::history::Store::open(&fixture.db).unwrap());
+    let locked = rusqlite::Connection::open(&fixture.db).unwrap();
+    locked.execute_batch("BEGIN IMMEDIATE").unwrap();
+    let change = fixture.change_person(&token, json!({"change": "unlock", "name": "li"}));
+    let others = async {
+        for _ in 0..20 {
+            let request = Request::get("/api/me").header("authorization", fixture.bearer());
+            let answer = fixture.ask(request.body(Body::empty()).unwrap()).await;
+            assert_eq!(answer.json()["name"], "li");
+        }
+        locked.execute_batch("ROLLBACK").unwrap();
+    };
+    let (changed, ()) = tokio::join!(change, others);
+    assert_eq!(changed.status, 200, "{}", changed.text());
+}
+
+#[tokio::test]
 async fn an_engineer_unlocks_a_person_at_once() {
     let fixture = Fixture::new();
     let token = fixture.session(Role::Engineer);

@@ -72,6 +72,17 @@ async fn every_recipe_is_listed_faulty_ones_with_errors() {
 }
 
 #[tokio::test]
+async fn recipes_need_a_rig_file_without_faults() {
+    let fixture = Fixture::new();
+    let rig = fixture.db.with_file_name("config").join("rig.toml");
+    std::fs::write(rig, "line = 7").unwrap();
+    for path in ["/api/recipes", "/api/recipes/show?name=jzc-22f-012"] {
+        let why = fixture.get(path).await.refused(500);
+        assert!(why.contains("rig.toml"), "{why}");
+    }
+}
+
+#[tokio::test]
 async fn a_revision_has_form_unit_range_value_per_key() {
     let shown = Fixture::new().newest().await;
     let fields = shown["fields"].as_array().unwrap();

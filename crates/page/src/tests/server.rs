@@ -1,7 +1,7 @@
 //! Tests over real loopback connections: many of them, TLS, the end of the program.
 
 use super::*;
-use crate::{Door, DoorError, Tls, serve};
+use crate::{ListenError, Listener, Tls, serve};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::{Duration, Instant};
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt};
@@ -158,12 +158,12 @@ fn other_computers_reach_the_page_over_tls_only() {
     let here: [SocketAddr; 3] =
         ["127.0.0.1:0", "[::1]:0", "[::ffff:127.0.0.1]:0"].map(|it| it.parse().unwrap());
     for listen in here {
-        assert!(Door::open(listen, None).is_ok(), "{listen}");
+        assert!(Listener::open(listen, None).is_ok(), "{listen}");
     }
     let everywhere = SocketAddr::from((Ipv4Addr::UNSPECIFIED, 0));
-    let refused = Door::open(everywhere, None);
-    assert!(matches!(refused, Err(DoorError::InTheClear(_))));
-    assert!(Door::open(everywhere, Some(certificate())).is_ok());
+    let refused = Listener::open(everywhere, None);
+    assert!(matches!(refused, Err(ListenError::InTheClear(_))));
+    assert!(Listener::open(everywhere, Some(certificate())).is_ok());
 }
 
 #[test]

@@ -99,7 +99,7 @@ function showScans() {
   const scans = view.machine ? view.machine.scans : null;
   at("scan").hidden = scans === null;
   if (scans === null) return;
-  const first = scans.slice(0, 3).join(", ") + (scans.length > 3 ? " + " + (scans.length - 3) : "");
+  const first = scans.slice(0, 3).join(comma()) + (scans.length > 3 ? " + " + (scans.length - 3) : "");
   at("scan_waiting").textContent = scans.length ? word("scan-waiting") + " " + first : word("scan-none");
   at("scan_undo").disabled = scans.length === 0;
 }
@@ -114,9 +114,10 @@ at("scan").addEventListener("submit", async (event) => {
 });
 at("scan_undo").addEventListener("click", () => giveOrder({order: "unscan"}, answerScan));
 
-// The scanner types wherever the focus is; on the operator's page its text belongs into the field.
+// The scanner types wherever the focus is; on the operator's page its text belongs into the field. A blank presses the
+// button that has the focus, and no serial number begins with it.
 document.addEventListener("keydown", (event) => {
-  const typed = event.key.length === 1 && !event.ctrlKey && !event.altKey && !event.metaKey;
+  const typed = event.key.length === 1 && event.key !== " " && !event.ctrlKey && !event.altKey && !event.metaKey;
   const free = !document.querySelector("dialog[open]") && !/^(input|select|textarea)$/i.test(document.activeElement.tagName);
   if (typed && free && !at("scan").hidden && at("scan").checkVisibility()) at("scan_serial").focus();
 });

@@ -68,9 +68,9 @@ function showOrders() {
 
 // --- audit ---
 
-// Writes an order with lot, recipe and count first, then its other members.
+// Writes an order with lot, recipe and count first, then its other members; leaves out the hashes of recipes.
 function orderedText(what) {
-  const {order, change, name, role, lot, recipe, count, ...others} = what;
+  const {order, change, name, role, lot, recipe, count, hash, from, ...others} = what;
   const named = change ? [wordOr("people-" + (change === "role" ? "change_role" : change), change), name, role && wordOr("role-" + role, role)] : [];
   const members = [...named, lot, recipe, count, ...Object.values(others)].filter((it) => ["string", "number"].includes(typeof it));
   return [wordOr("order-" + order, order), ...members.filter((it) => it !== "")].join(" · ");

@@ -30,7 +30,7 @@ async function changePerson(change) {
     const body = await reply.json();
     answer.textContent = !reply.ok ? said(body, "reason")
       : body.password ? change.name + " " + word("people-logs_in") + " " + body.password
-        : orderedText({order: "people", ...change, password: undefined}) + ": " + word("order-taken");
+        : orderedText({order: "people", ...change, password: undefined}) + colon() + word("order-taken");
     // One's own role may be another now.
     await askWho();
     readPeople();

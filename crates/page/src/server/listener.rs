@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 /// Reason why the page cannot listen at an address.
 #[derive(Debug, thiserror::Error)]
-pub enum DoorError {
+pub enum ListenError {
     /// Other computers can reach the address, and there is no certificate: passwords would pass in the clear.
     #[error(
         "--listen {0}: found an address that other computers reach, expected --tls-cert and --tls-key with it, or \
@@ -55,30 +55,30 @@ pub enum DoorError {
 
 /// A socket where the page listens.
 #[derive(Debug)]
-pub struct Door {
-    listener: TcpListener,
+pub struct Listener {
+    socket: TcpListener,
     tls: Option<Tls>,
 }
 
-impl Door {
+impl Listener {
     /// Listens at an address, over TLS when `tls` has a certificate.
     ///
     /// # Errors
     /// Fails when other computers reach the address and there is no certificate, and when the address is in use or not
     /// one of this computer.
-    pub fn open(listen: SocketAddr, tls: Option<Tls>) -> Result<Self, DoorError> {
+    pub fn open(listen: SocketAddr, tls: Option<Tls>) -> Result<Self, ListenError> {
         if tls.is_none() && !listen.ip().to_canonical().is_loopback() {
-            return Err(DoorError::InTheClear(listen));
+            return Err(ListenError::InTheClear(listen));
         }
         match TcpListener::bind(listen) {
-            Ok(listener) => Ok(Self { listener, tls }),
-            Err(source) => Err(DoorError::Bind { listen, source }),
+            Ok(socket) => Ok(Self { socket, tls }),
+            Err(source) => Err(ListenError::Bind { listen, source }),
         }
     }
 
     /// Returns the socket, and the certificate if there is one.
     #[must_use]
     pub fn into_parts(self) -> (TcpListener, Option<Tls>) {
-        (self.listener, self.tls)
+        (self.socket, self.tls)
     }
 }
