@@ -66,7 +66,7 @@ pub use error::{HistoryError, Result};
 pub use examine::{Examination, examine};
 pub use filter::Filter;
 pub use gates::{
-    LotState, LotStateRecord, LotStatus, LotYield, ReferenceCheck, ReferenceCheckRecord,
+    HoldReason, LotState, LotStateRecord, LotStatus, LotYield, ReferenceCheck, ReferenceCheckRecord,
 };
 pub use import::{ImportError, ImportRow, parse_records};
 pub use inside::InsideRecord;
