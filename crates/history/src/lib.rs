@@ -20,6 +20,7 @@ pub mod report;
 
 mod alarm_states;
 mod alarms;
+mod answers;
 mod approval;
 mod archive;
 mod backup;
@@ -58,6 +59,7 @@ mod wear;
 
 pub use alarm_states::{AlarmChange, AlarmChangeRecord, UnacknowledgedAlarm};
 pub use alarms::{Alarm, AlarmState, Shelf};
+pub use answers::PromptAnswer;
 pub use approval::{SIGNATURES, Signature, signatures};
 pub use archive::Archive;
 pub use curve::CurveRecord;
