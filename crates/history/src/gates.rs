@@ -16,7 +16,7 @@
 
 use super::error::{Doing, Result};
 use super::store::{RowIds, source};
-use super::{Archive, Filter, Moment, Store, alarms};
+use super::{Archive, Filter, Moment, Store, alarms, scans};
 use machine::station::trouble::Alarm;
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
 use serde::{Deserialize, Serialize};
@@ -210,10 +210,12 @@ pub(super) fn reference_check(
 }
 
 impl Store {
-    /// Opens the lots whose run was cut off, or completes them again after a retest. The caller has just taken the real
-    /// or the simulated rig, so none of their runs is under way.
+    /// Opens the lots whose run was cut off, or completes them again after a retest; drops the scans whose parts have not
+    /// come. The caller has just taken the real or the simulated rig, so none of their runs is under way.
     pub fn cut_off(&mut self, simulated: bool, at_us: i64) -> Result<()> {
-        self.connection()
+        const DOING: &str = "looking for lots that were cut off";
+        let transaction = self.transaction(DOING)?;
+        transaction
             .execute(
                 "UPDATE lot_state SET state = iif(completed, 'complete', 'open'), since_us = ?2
                  WHERE state = 'running'
@@ -221,8 +223,9 @@ impl Store {
                              ORDER BY number DESC LIMIT 1)",
                 params![source(simulated), at_us],
             )
-            .doing("looking for lots that were cut off")?;
-        Ok(())
+            .doing(DOING)?;
+        scans::drop_cut_off(&transaction, source(simulated), at_us)?;
+        transaction.commit().doing(DOING)
     }
 }
 

@@ -50,6 +50,7 @@ mod rejudge;
 mod reopening;
 mod retention;
 mod run_end;
+mod scans;
 mod serials;
 mod series;
 mod store;

@@ -58,7 +58,10 @@ fn a_spreadsheet_of_a_lot_has_its_answers() {
             ..OrderRecord::default()
         })
     };
-    let rows = [answer("none", Some("no_such_choice")), answer("changed", None)];
+    let rows = [
+        answer("none", Some("no_such_choice")),
+        answer("changed", None),
+    ];
     store.record(&rows).unwrap();
     let filter = Filter {
         lot: Some("A".into()),
@@ -68,7 +71,9 @@ fn a_spreadsheet_of_a_lot_has_its_answers() {
     let bytes = made.unwrap().save_to_buffer().unwrap();
     let mut book: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).unwrap();
     let summary = book.worksheet_range("Summary").unwrap();
-    let told = summary.rows().filter(|row| row[0].to_string() == "Prompt: nest");
+    let told = summary
+        .rows()
+        .filter(|row| row[0].to_string() == "Prompt: nest");
     let told: Vec<String> = told.map(|row| row[1].to_string()).collect();
     assert_eq!(told, ["changed, li, 1970-01-01 00:00:00 +00:00"]);
 }

@@ -1,7 +1,9 @@
 //! Tests of the list of lots and the wear counters over HTTP.
 
 use super::*;
-use ::history::{Decision, HoldReason, LotRecord, LotState, LotStateRecord, Row, Store, WearRecord};
+use ::history::{
+    Decision, HoldReason, LotRecord, LotState, LotStateRecord, Row, Store, WearRecord,
+};
 
 fn with_lots(states: &[(&str, LotState)]) -> Fixture {
     let fixture = Fixture::new();
