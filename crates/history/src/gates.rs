@@ -167,6 +167,8 @@ pub(super) const SUSPECT: &str = " AND EXISTS (SELECT 1 FROM golden_check AS fai
 /// Stores the state of a lot, `complete` instead of `open` for one that was complete; does nothing for a lot without
 /// runs. Returns the number of changed rows.
 pub(super) fn state(connection: &Connection, record: &LotStateRecord) -> rusqlite::Result<usize> {
+    let is_held = record.state == LotState::Held;
+    assert!(record.why.is_none() || is_held, "only a hold has a reason");
     let why = record.why.as_ref();
     let alarm = why.and_then(HoldReason::alarm).map(alarms::stored);
     connection.execute(
@@ -193,6 +195,7 @@ pub(super) fn reference_check(
     it: &ReferenceCheckRecord,
 ) -> Result<()> {
     let run = row_ids.run(&it.lot)?;
+    assert!(!it.text.is_empty(), "a check without its result");
     let alarm = it.failure.as_ref().map(alarms::stored);
     tx.execute(
         "INSERT INTO golden_check (run_id, at_us, passed, text, alarm, suspect_since_us)
