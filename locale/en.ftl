@@ -882,6 +882,8 @@ r-limits = Limits, inclusive; an empty side is not judged
 r-decision = Decision
 r-test = Test
 r-strategy = Measuring strategy
+r-prompt = Prompts; add and remove them in the file of the recipe
+r-prompts_of_lots = Prompts of every lot; change them in config/lot.toml
 j-title = Judged again
 j-go = judge by another recipe
 j-now = By this recipe
@@ -1119,6 +1121,19 @@ field-test-level_v = Test voltage
 field-test-settles_ms = Current settles
 field-test-readings = Readings averaged
 choice-resistor = resistor
+field-prompt-name = Name of the prompt
+field-prompt-when = Opens
+field-prompt-text_en = Request, English
+field-prompt-text_zh = Request, Chinese
+field-prompt-picture = File of the picture
+field-prompt-choices-name = Name of the answer
+field-prompt-choices-text_en = Answer, English
+field-prompt-choices-text_zh = Answer, Chinese
+field-prompt-choices-stops = Answer stops the lot
+choice-lot_start = before the first motion
+choice-before_calibration = before a calibration that is due
+choice-after_calibration = before the first part
+choice-lot_end = after the last part
 
 ## Bodies of the scene
 

@@ -867,6 +867,8 @@ r-limits = 限值（含端点）；空白一侧不判定
 r-decision = 判定
 r-test = 测试
 r-strategy = 测量方法
+r-prompt = 提示；增删请修改配方文件
+r-prompts_of_lots = 每个批次的提示；请在 config/lot.toml 中修改
 j-title = 重新判定
 j-go = 按其他配方重新判定
 j-now = 按此配方
@@ -1104,6 +1106,19 @@ field-test-level_v = 测试电压
 field-test-settles_ms = 电流稳定时间
 field-test-readings = 平均次数
 choice-resistor = 电阻
+field-prompt-name = 提示名称
+field-prompt-when = 出现时刻
+field-prompt-text_en = 英文要求
+field-prompt-text_zh = 中文要求
+field-prompt-picture = 图片文件
+field-prompt-choices-name = 答复名称
+field-prompt-choices-text_en = 英文答复
+field-prompt-choices-text_zh = 中文答复
+field-prompt-choices-stops = 答复后停止批次
+choice-lot_start = 第一次动作之前
+choice-before_calibration = 需要校准时，校准之前
+choice-after_calibration = 第一件之前
+choice-lot_end = 最后一件之后
 
 ## Bodies of the scene
 
