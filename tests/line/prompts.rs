@@ -48,8 +48,12 @@ fn answers_stand_in_the_orders_of_the_lot() {
         .map(|it| format!("{}={}", it["what"]["prompt"], it["what"]["choice"]))
         .collect();
     assert_eq!(given, ["\"nest\"=\"changed\"", "\"magazine\"=\"emptied\""]);
-    let report = workshop.run("history report --lot A --lang en").with_status(0);
-    assert!(report.stdout.contains("<td class=\"text\">nest</td><td class=\"text\">changed</td><td class=\"text\">li</td>"));
+    let report = workshop
+        .run("history report --lot A --lang en")
+        .with_status(0);
+    assert!(report.stdout.contains(
+        "<td class=\"text\">nest</td><td class=\"text\">changed</td><td class=\"text\">li</td>"
+    ));
 }
 
 #[test]
