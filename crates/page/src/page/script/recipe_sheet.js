@@ -123,7 +123,7 @@ function limitRow(key, [low, high]) {
 // Makes the table of the prompts of every lot, which stand in another file than the recipe.
 function lotPrompts() {
   const table = make("table", undefined, "list sheet"), body = make("tbody");
-  table.append(make("caption", word("r-prompts_of_lots")), body);
+  table.append(make("caption", word("r-prompts_of_lots") + bracketed("lot.toml")), body);
   const request = (it) => (language === "zh" ? it.text_zh : it.text_en);
   body.append(...recipe.prompts_of_lots.map((it) => row(choiceText(it.when), request(it) + " — " + it.choices.map(request).join(" / "))));
   return table;
