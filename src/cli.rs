@@ -35,7 +35,7 @@ use anyhow::Context;
 use app::exit::Exit;
 use clap::{Parser, Subcommand};
 use machine::view::By;
-use std::io::BufRead;
+use std::io::{BufRead, IsTerminal};
 use std::path::PathBuf;
 
 /// Controller of a JZC-22F relay performance tester with automatic feed and discharge.
@@ -199,8 +199,12 @@ fn person(name: &str) -> anyhow::Result<By> {
     })
 }
 
-/// Reads a password from the first line of stdin.
-fn first_line_of_stdin() -> anyhow::Result<String> {
+/// Reads the password of `who`: at a terminal without showing it, else from the first line of stdin.
+fn password_of(who: &str) -> anyhow::Result<String> {
+    if std::io::stdin().is_terminal() {
+        return rpassword::prompt_password(format!("Password of {who}: "))
+            .context("reading the password from the terminal");
+    }
     let mut line = String::new();
     std::io::stdin()
         .lock()

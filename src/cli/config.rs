@@ -34,9 +34,10 @@ pub enum Args {
 relayrig config revise jzc-22f-012 --save-as jzc-22f-012-a title_en='For customer A' --by zhao --reason 'customer A'"
     )]
     Revise(Revised),
-    /// Approve the newest revision of a recipe as its second engineer, with the password on the first line of stdin
+    /// Approve the newest revision of a recipe as its second engineer; asks for the password, or reads the first line of stdin
     #[command(
-        after_help = "Example:\n  relayrig config approve jzc-22f-012 --by wang < password.txt\n\n\
+        after_help = "Examples:\n  relayrig config approve jzc-22f-012 --by wang\n  \
+relayrig config approve jzc-22f-012 --by wang < password.txt\n\n\
 Lots need it where rig.toml has [recipes] approval = \"second_person\"."
     )]
     Approve {
@@ -100,7 +101,7 @@ pub fn run(folder: &Folder, db: &Path, args: &Args) -> anyhow::Result<Exit> {
         Args::Check => overview(folder)?,
         Args::Revise(it) => revise(folder, db, it)?,
         Args::Approve { recipe, by } => {
-            let password = super::first_line_of_stdin()?;
+            let password = super::password_of(by)?;
             let approved = page::approve_with_password(folder, db, recipe, (by, &password));
             let number = approved.map_err(|why| anyhow!("{}", why.say(Lang::En)))?;
             format!("revision {number} of {recipe} is approved by {by}\n")

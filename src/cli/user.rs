@@ -3,7 +3,7 @@
 //! The audit of orders records every change with the name of the person who made it, as for a change at the page.
 
 use super::output::{Column, FormatArgs, Output, text};
-use super::{first_line_of_stdin, person};
+use super::{password_of, person};
 use app::exit::Exit;
 use history::Moment;
 use page::access::{AccessError, Entry, PersonChange, Register, Role, access_path, audited};
@@ -40,7 +40,7 @@ enum Action {
         /// operator, maintainer or engineer
         #[arg(long)]
         role: Role,
-        /// Read the password from the first line of stdin
+        /// Ask for the password at the terminal, or read the first line of stdin
         #[arg(long)]
         stdin: bool,
     },
@@ -55,7 +55,7 @@ enum Action {
     Password {
         /// Name of the person
         name: String,
-        /// Read the password from the first line of stdin
+        /// Ask for the password at the terminal, or read the first line of stdin
         #[arg(long)]
         stdin: bool,
     },
@@ -91,14 +91,14 @@ pub fn run(db: &Path, args: UserArgs) -> anyhow::Result<Exit> {
             return Ok(Exit::Done);
         }
         Action::Add { name, role, stdin } => PersonChange::Add {
+            password: password(stdin, &name)?,
             name,
             role,
-            password: password(stdin)?,
         },
         Action::Role { name, role } => PersonChange::Role { name, role },
         Action::Password { name, stdin } => PersonChange::Password {
+            password: password(stdin, &name)?,
             name,
-            password: password(stdin)?,
         },
         Action::Unlock { name } => PersonChange::Unlock { name },
         Action::Remove { name } => PersonChange::Remove { name },
@@ -120,9 +120,6 @@ fn account() -> String {
     through_sudo.unwrap_or_else(app::doctor::own_account)
 }
 
-fn password(from_stdin: bool) -> anyhow::Result<Option<String>> {
-    if !from_stdin {
-        return Ok(None);
-    }
-    first_line_of_stdin().map(Some)
+fn password(from_stdin: bool, who: &str) -> anyhow::Result<Option<String>> {
+    from_stdin.then(|| password_of(who)).transpose()
 }

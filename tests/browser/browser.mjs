@@ -19,6 +19,8 @@ export const SIZES = [{ width: 1280, height: 800 }, { width: 1024, height: 768 }
 const NARROW = 899;
 /** Widest screen that a finger uses, and the least size of what it hits, pixels. */
 const TOUCHED = 1199, FINGER = 44;
+/** Least size of a text in a drawing, pixels. */
+const READABLE = 9;
 const QUIET = ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--disable-background-networking",
   "--disable-component-update", "--disable-sync", "--no-first-run", "--autoplay-policy=no-user-gesture-required"];
 
@@ -133,6 +135,12 @@ export const untouchable = (page) => page.evaluate(([touched, finger]) => {
   return [...small.map(({ it, box }) => `${said(it)} is ${box.width} x ${box.height}`), ...pairs.map(([a, b]) => `${said(a)} over ${said(b)}`)];
 }, [TOUCHED, FINGER]);
 
+/** Returns the texts of drawings that are too small to read. */
+const unreadable = (page) => page.evaluate((least) => Array.from(document.querySelectorAll("svg text"), (it) => {
+  const size = it.getScreenCTM() ? parseFloat(getComputedStyle(it).fontSize) * it.getScreenCTM().a : least;
+  return it.getClientRects().length && size < least ? `${it.textContent} has ${size.toFixed(1)} pixels` : "";
+}).filter(Boolean), READABLE);
+
 /** Saves a picture to SCREENSHOTS. */
 export async function picture(page, name) {
   mkdirSync(PICTURES, { recursive: true });
@@ -146,7 +154,7 @@ export async function looks(page, name) {
     const [language, theme] = await page.$eval("html", (it) => [it.lang.slice(0, 2), it.dataset.theme]);
     const which = `${name}-${language}-${theme}`;
     await picture(page, which);
-    assert.deepEqual([await tooLarge(page), await untouchable(page)], [[], []], which);
+    assert.deepEqual([await tooLarge(page), await untouchable(page), await unreadable(page)], [[], [], []], which);
     // Colours depend on the theme alone.
     if (isFirst || language === "en") assert.deepEqual(await faults(page), [], which);
     await press(page, button);

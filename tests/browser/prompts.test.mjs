@@ -1,4 +1,4 @@
-// Prompts and scans: a person answers, scans a part as a keyboard types, and finds it again.
+// Prompts and scans: a person answers, scans a part as a keyboard types, and finds it again; an engineer edits a prompt.
 
 import assert from "node:assert/strict";
 import { appendFileSync, cpSync, mkdirSync, rmSync } from "node:fs";
@@ -20,6 +20,7 @@ choices = [
 ]
 `;
 const PANEL = { width: 1024, height: 768 };
+const PHONE = { width: 390, height: 844 };
 
 let rig, browser;
 before(async () => {
@@ -27,6 +28,7 @@ before(async () => {
   cpSync("config", CONFIG, { recursive: true });
   mkdirSync(CONFIG + "/pictures");
   cpSync(new URL("../../docs/operator.png", import.meta.url), CONFIG + "/pictures/nest.png");
+  appendFileSync(CONFIG + "/recipes/jzc-22f-006.toml", PROMPT.replaceAll("nest", "track").replace("track.png", "nest.png"));
   appendFileSync(CONFIG + "/lot.toml", '\n[serial]\nsource = "wedge"\n' + PROMPT);
   [rig, browser] = await Promise.all([serveIn(CONFIG, "prompts", "--speed", "20"), open()]);
 });
@@ -70,5 +72,57 @@ test("a lot waits for an answer, then for scans", async () => {
   await page.fill("#h_serial", "S-17");
   await page.click("#h_go");
   await shown(page, "#h_count", "1 – 1");
+  await leave(page);
+});
+
+test("scans that a lot leaves are named and stop further scans", async () => {
+  const page = await visit(browser, rig, { role: "operator" });
+  const order = (body) => page.evaluate(async (body) => {
+    const reply = await fetch("/api/orders", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
+    return [reply.status, await reply.text()];
+  }, body);
+  const taken = async (body) => assert.equal((await order(body))[0], 200, JSON.stringify(body));
+  const begin = async (lot) => {
+    await taken({ order: "start", lot, recipe: "resistor-390", count: 1 });
+    await rig.until("the prompt opens", (view) => view.lot === lot && view.machine.prompt);
+    await taken({ order: "answer", prompt: "nest", choice: "changed" });
+    await rig.until("the line waits for a scan", (view) => view.machine.state === "Execute" && view.machine.scans?.length === 0);
+  };
+  await begin("Q");
+  await taken({ order: "stop" });
+  await rig.until("the line rests", (view) => view.machine.state === "Stopped");
+  await taken({ order: "scan", serial: "S-18" });
+  await taken({ order: "close_lot", lot: "Q" });
+  const named = `S-18 (${rig.who("operator")})`;
+  await rig.until("an alarm names the scan", (view) => view.alarms.some((it) => it.code === "scans_dropped" && it.text_en.includes(named)));
+  await begin("R");
+  const [status, why] = await order({ order: "scan", serial: "S-19" });
+  assert.ok(status === 409 && why.includes(named), why);
+  await taken({ order: "acknowledge", alarm: "scans_dropped" });
+  await taken({ order: "scan", serial: "S-19" });
+  await rig.until("the part is judged", (view) => view.lot === "R" && view.judged === 1);
+  await leave(page);
+});
+
+test("an engineer edits the prompts of a recipe", async () => {
+  const page = await visit(browser, rig, { role: "engineer", path: "/#recipes" });
+  await page.selectOption("#r_name", "jzc-22f-006");
+  const request = '#r_fields [data-path="prompt.0.text_en"]';
+  await page.waitForSelector(request);
+  assert.equal(await page.inputValue('#r_fields [data-path="prompt.0.picture"]'), "nest.png");
+  await shown(page, "#r_fields table:last-child", "Change the nest — Changed / Stop the lot");
+  await page.fill(request, "Empty the track");
+  await page.selectOption('#r_fields [data-path="prompt.0.choices.0.stops"]', "true");
+  await page.fill("#r_reason", "order 4711");
+  await page.click("#r_save");
+  await shown(page, "#r_fields .trouble", "a choice with which the lot goes on");
+  await page.selectOption('#r_fields [data-path="prompt.0.choices.0.stops"]', "false");
+  await page.click("#r_save");
+  await shown(page, "#r_history li li", "prompt.0.text_en: Change the track -> Empty the track");
+  await page.locator(request).scrollIntoViewIfNeeded();
+  await looks(page, "recipes-prompts");
+  await page.setViewportSize(PHONE);
+  await page.locator(request).scrollIntoViewIfNeeded();
+  await looks(page, "recipes-prompts-390");
   await leave(page);
 });

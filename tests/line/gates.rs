@@ -368,6 +368,50 @@ fn a_lot_waits_until_two_engineers_approve() {
 
 #[cfg(unix)]
 #[test]
+fn a_password_typed_at_a_terminal_stays_unseen() {
+    use std::io::{Read, Write};
+    let workshop = Workshop::new("typed_password");
+    workshop.run("user add zhao --role engineer").with_status(0);
+    let approve = format!(
+        "tty > tty; exec {} config approve jzc-22f-012 --by zhao",
+        env!("CARGO_BIN_EXE_relayrig")
+    );
+    let mut child = std::process::Command::new("script")
+        .args(["--quiet", "--return", "--command", &approve, "/dev/null"])
+        .current_dir(&workshop.folder)
+        .stdin(std::process::Stdio::piped())
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut terminal = child.stdout.take().unwrap();
+    let mut shown = String::new();
+    let mut byte = [0];
+    while !shown.ends_with("Password of zhao: ") {
+        assert_eq!(terminal.read(&mut byte).unwrap(), 1, "{shown}");
+        shown.push(byte[0].into());
+    }
+    let echo_is_off = || {
+        let tty = workshop.read("tty");
+        let stty = std::process::Command::new("stty")
+            .args(["--all", "--file", tty.trim()])
+            .output();
+        String::from_utf8(stty.unwrap().stdout)
+            .unwrap()
+            .contains("-echo ")
+    };
+    while !echo_is_off() {
+        assert!(child.try_wait().unwrap().is_none(), "{shown}");
+    }
+    let mut keys = child.stdin.take().unwrap();
+    keys.write_all(b"open sesame\n").unwrap();
+    terminal.read_to_string(&mut shown).unwrap();
+    assert!(shown.contains("password is wrong"), "{shown}");
+    assert!(!shown.contains("sesame"), "{shown}");
+    assert_eq!(child.wait().unwrap().code(), Some(2));
+}
+
+#[cfg(unix)]
+#[test]
 fn a_revised_recipe_applies_to_the_next_lot_only() {
     use std::io::BufRead;
     let workshop = Workshop::new("revised");

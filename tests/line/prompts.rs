@@ -45,6 +45,12 @@ fn the_orders_of_a_lot_hold_its_answers() {
         .map(|it| format!("{}={}", it["what"]["prompt"], it["what"]["choice"]))
         .collect();
     assert_eq!(given, ["\"nest\"=\"changed\"", "\"magazine\"=\"emptied\""]);
+    let report = workshop
+        .run("history report --lot A --lang en")
+        .with_status(0);
+    assert!(report.stdout.contains(
+        "<td class=\"text\">nest</td><td class=\"text\">changed</td><td class=\"text\">li</td>"
+    ));
 }
 
 #[test]

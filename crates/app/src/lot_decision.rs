@@ -2,7 +2,9 @@
 //! the name, like an order at a screen.
 
 use crate::admission::standing;
-use history::{Decision, HistoryError, LotStateRecord, OrderRecord, ReopeningRecord, Row, Store};
+use history::{
+    Decision, HistoryError, HoldReason, LotStateRecord, OrderRecord, ReopeningRecord, Row, Store,
+};
 use machine::view::{By, Order};
 use serde_json::json;
 use std::path::Path;
@@ -87,7 +89,8 @@ impl<'a> AboutLot<'a> {
             Decision::Hold | Decision::Release | Decision::Close => Row::LotState(LotStateRecord {
                 lot,
                 state: self.decision.becomes(),
-                why: (self.decision == Decision::Hold).then(|| format!("{why} ({})", by.who)),
+                why: (self.decision == Decision::Hold)
+                    .then(|| HoldReason::Person(format!("{why} ({})", by.who))),
                 at_us,
             }),
         }

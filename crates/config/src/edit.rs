@@ -92,7 +92,10 @@ fn as_toml(wanted: &NewValue, entry: &Entry) -> Option<Value> {
 /// Sets a value; keeps the comment that follows the old value.
 fn set(root: &mut Item, path: &str, mut value: Value) {
     let (tables, key) = split_path(path);
-    let table = tables.fold(root, |item, key| &mut item[key]);
+    let table = tables.fold(root, |item, key| match key.parse::<usize>() {
+        Ok(place) => &mut item[place],
+        Err(_) => &mut item[key],
+    });
     let slot = &mut table[key];
     let old = slot.as_value().map(|old| old.decor().clone());
     match old {
@@ -109,7 +112,11 @@ fn set(root: &mut Item, path: &str, mut value: Value) {
 
 fn remove_key(root: &mut Item, path: &str) {
     let (mut tables, key) = split_path(path);
-    let Some(table) = tables.try_fold(root, |item, key| item.get_mut(key)) else {
+    let inner = |item, key: &str| match key.parse::<usize>() {
+        Ok(place) => Item::get_mut(item, place),
+        Err(_) => Item::get_mut(item, key),
+    };
+    let Some(table) = tables.try_fold(root, inner) else {
         return;
     };
     if let Some(keys) = table.as_table_like_mut() {
@@ -118,7 +125,7 @@ fn remove_key(root: &mut Item, path: &str) {
     }
 }
 
-/// Splits a path into the names of its tables and the key in the innermost table.
+/// Splits a path into the names of its tables, or places in lists, and the key in the innermost table.
 fn split_path(path: &str) -> (impl Iterator<Item = &str>, &str) {
     let (tables, key) = path.rsplit_once('.').unwrap_or(("", path));
     (tables.split('.').filter(|it| !it.is_empty()), key)
@@ -186,6 +193,19 @@ mod tests {
                 "coil = { scans = 2 }"
             ]
         );
+    }
+
+    #[test]
+    fn a_prompt_changes_in_its_place() {
+        let prompts = "[[prompt]]\nname = \"nest\" # as in orders\ntext_en = \"Change\"\npicture = \"a.png\"\nchoices = [\n  \
+                       { name = \"yes\", text_en = \"Yes\" },\n  { name = \"no\", stops = true },\n]\n";
+        let file = File::parse("r.toml".into(), format!("{TEXT}{prompts}")).unwrap();
+        let values = json!({"prompt.0.name": "fixture", "prompt.0.picture": null,
+            "prompt.0.choices.0.text_en": "Changed", "prompt.0.choices.1.stops": null});
+        let text = edited(&file, &serde_json::from_value(values).unwrap()).unwrap();
+        let expected = "[[prompt]]\nname = \"fixture\" # as in orders\ntext_en = \"Change\"\nchoices = [\n  \
+                        { name = \"yes\", text_en = \"Changed\" },\n  { name = \"no\" },\n]\n";
+        assert_eq!(text.strip_prefix(TEXT), Some(expected));
     }
 
     #[test]

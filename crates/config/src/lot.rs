@@ -32,6 +32,14 @@ pub(super) fn load_lot(folder: &Folder) -> Result<LotSettings, ConfigError> {
     }
 }
 
+/// Reads the prompts of every lot, which `lot.toml` has.
+///
+/// # Errors
+/// Fails when the file cannot be read or has a faulty key.
+pub fn prompts_of_lots(folder: &Folder) -> Result<Vec<Prompt>, ConfigError> {
+    load_lot(folder).map(|lot| lot.prompts)
+}
+
 /// Checks that a rig whose lots take their serial numbers from a reader has one.
 pub(super) fn check_reader(
     folder: &Folder,

@@ -13,7 +13,8 @@ use utoipa::ToSchema;
 /// One key of a recipe, with its value.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Field {
-    /// Path of the key, for example `limits.operate_voltage_v.high`.
+    /// Path of the key, for example `limits.operate_voltage_v.high`; in a list with the place of the item, from 0, as in
+    /// `prompt.0.text_en`.
     pub path: String,
     /// Values that the key accepts.
     #[serde(flatten)]
@@ -88,7 +89,7 @@ impl From<&Range> for Bounds {
 }
 
 /// Returns every key that a recipe of this kind may have, in the order of `config/README.md`, with the value in the
-/// file.
+/// file; of a list, the keys of the items that the file has.
 ///
 /// # Errors
 /// Fails when the kind is missing or unknown.
@@ -104,6 +105,20 @@ fn gather(path: &str, keys: &[Key], root: &Node, found: &mut Vec<Field>) {
         let path = format!("{path}{}", key.name);
         if let Form::Table(inner) = &key.form {
             gather(&format!("{path}."), inner, root, found);
+        } else if let Form::List(Form::Table(inner)) = &key.form {
+            let items = match root.find(&path) {
+                (
+                    Node {
+                        value: Value::List(items),
+                        ..
+                    },
+                    true,
+                ) => items.len(),
+                (_, _) => 0,
+            };
+            for place in 0..items {
+                gather(&format!("{path}.{place}."), inner, root, found);
+            }
         } else if let Some(entry) = entry(&key.form) {
             let value = match root.find(&path) {
                 (node, true) => as_json(node),
@@ -194,5 +209,20 @@ mod tests {
         assert_eq!(value("limits.operate_voltage_v.low"), json!(null));
         assert_eq!(value("decision.slow_repeats"), json!(3));
         assert_eq!(value("test.clamp"), json!("zener"));
+    }
+
+    #[test]
+    fn every_key_of_a_prompt_is_a_field() {
+        let text = include_str!("../../../config/recipes/jzc-22f-012.toml").to_owned()
+            + "[[prompt]]\nname = \"nest\"\nwhen = \"lot_end\"\nchoices = [{ name = \"a\" }, { name = \"b\" }]\n";
+        let file = File::parse("r.toml".into(), text).unwrap();
+        let fields = fields(&file).unwrap();
+        let of = |path: &str| fields.iter().find(|it| it.path == path).map(|it| &it.value);
+        assert_eq!(of("prompt.0.when"), Some(&json!("lot_end")));
+        assert_eq!(of("prompt.0.picture"), Some(&json!(null)));
+        assert_eq!(of("prompt.0.choices.1.name"), Some(&json!("b")));
+        assert_eq!(of("prompt.0.choices.2.name"), None);
+        let last = &fields.last().unwrap().path;
+        assert_eq!(last, "prompt.0.choices.1.stops");
     }
 }

@@ -3,8 +3,9 @@
 use super::error::{Doing, Result};
 use super::{Archive, Filter, Moment};
 use machine::station::catalogue::AlarmCode;
-use rusqlite::{OptionalExtension, params};
+use machine::station::trouble;
 use serde::Serialize;
+use serde_json::{Value, json};
 use texts::{Args, Lang};
 use utoipa::ToSchema;
 
@@ -78,7 +79,7 @@ impl AlarmState {
 }
 
 /// Converts stored arguments; returns none when they are missing or damaged.
-pub(super) fn args(stored: Option<serde_json::Value>) -> Args {
+pub(super) fn args(stored: Option<Value>) -> Args {
     let args = stored.and_then(|it| serde_json::from_value(it).ok());
     args.unwrap_or_default()
 }
@@ -89,20 +90,20 @@ pub(super) fn said(code: &str, args: Args) -> Option<String> {
     code.message(args).try_say(Lang::Zh)
 }
 
-impl Archive {
-    /// Returns the Chinese text of the alarm that was raised at `at_us` and whose English text contains `english`, the
-    /// reason of a hold or of a failed reference check; `None` when there is no such alarm.
-    pub(super) fn chinese(&self, english: &str, at_us: i64) -> Result<Option<String>> {
-        let sql = "SELECT code, args FROM alarm WHERE raised_at_us = ?1 AND instr(text, ?2) ORDER BY id LIMIT 1";
-        let found = self
-            .connection
-            .query_row(sql, params![at_us, english], |row| {
-                Ok((row.get::<_, String>(0)?, args(row.get(1)?)))
-            });
-        let found = found.optional().doing("reading an alarm")?;
-        Ok(found.and_then(|(code, args)| said(&code, args)))
-    }
+/// Returns an alarm as the JSON object that a row about something else keeps.
+pub(super) fn stored(alarm: &trouble::Alarm) -> Value {
+    json!({ "code": alarm.code.name(), "args": alarm.args })
+}
 
+/// Returns the Chinese text of an alarm that a row keeps as [`stored`]; `None` without an alarm, and when this version
+/// lacks its code or an argument.
+pub(super) fn chinese(stored: Option<Value>) -> Option<String> {
+    let mut stored = stored?;
+    let given = args(stored.get_mut("args").map(Value::take));
+    said(stored.get("code")?.as_str()?, given)
+}
+
+impl Archive {
     /// Returns one page of the alarms in order of time; lot, run, recipe and time span of the filter select them.
     pub fn alarms(&self, filter: &Filter) -> Result<Vec<Alarm>> {
         let alarms = filter.alarms().rows(&self.connection, |row| {

@@ -16,9 +16,11 @@
 
 use super::error::{Doing, Result};
 use super::store::{RowIds, source};
-use super::{Archive, Filter, Moment, Store};
+use super::{Archive, Filter, Moment, Store, alarms, scans};
+use machine::station::trouble::Alarm;
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
 use serde::{Deserialize, Serialize};
+use texts::Lang;
 use utoipa::ToSchema;
 
 /// State of a lot.
@@ -55,6 +57,32 @@ impl LotState {
     }
 }
 
+/// Reason of a hold.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum HoldReason {
+    /// An alarm holds the lot.
+    Alarm(Alarm),
+    /// A person holds the lot, with these words.
+    Person(String),
+}
+
+impl HoldReason {
+    /// Returns the English text.
+    fn text(&self) -> String {
+        match self {
+            Self::Alarm(alarm) => alarm.text(Lang::En),
+            Self::Person(words) => words.clone(),
+        }
+    }
+
+    const fn alarm(&self) -> Option<&Alarm> {
+        match self {
+            Self::Alarm(alarm) => Some(alarm),
+            Self::Person(_) => None,
+        }
+    }
+}
+
 /// A new state of a lot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LotStateRecord {
@@ -63,7 +91,7 @@ pub struct LotStateRecord {
     /// The new state.
     pub state: LotState,
     /// Reason of the hold; `None` in every other state.
-    pub why: Option<String>,
+    pub why: Option<HoldReason>,
     /// Time of the change, microseconds since 1970 UTC.
     pub at_us: i64,
 }
@@ -75,10 +103,10 @@ pub struct ReferenceCheckRecord {
     pub lot: String,
     /// Time of the result, microseconds since 1970 UTC.
     pub at_us: i64,
-    /// True when the readings agree with the certificates.
-    pub passed: bool,
     /// Result in words: serial numbers of the reference parts, or the deviation found.
     pub text: String,
+    /// Alarm of a failed check; `None` when the readings agree with the certificates.
+    pub failure: Option<Alarm>,
 }
 
 /// State of a lot, with its recipe.
@@ -88,7 +116,8 @@ pub struct LotStatus {
     pub state: LotState,
     /// Reason of the hold; `None` in every other state.
     pub why: Option<String>,
-    /// Reason in Chinese when an alarm holds the lot; `None` for a reason that a person wrote.
+    /// Reason in Chinese when an alarm holds the lot; `None` for a reason that a person wrote, and in rows older than
+    /// schema 13.
     pub why_zh: Option<String>,
     /// Time of the last change of state.
     pub since: Moment,
@@ -122,7 +151,7 @@ pub struct ReferenceCheck {
     pub passed: bool,
     /// Result in words: serial numbers of the reference parts, or the deviation found.
     pub text: String,
-    /// Deviation in Chinese; `None` for a passed check.
+    /// Deviation in Chinese; `None` for a passed check, and in rows older than schema 13.
     pub text_zh: Option<String>,
     /// Time from which parts are suspect after a failed check; `None` for a passed one.
     pub suspect_since: Option<Moment>,
@@ -144,13 +173,24 @@ pub(super) const SUSPECT: &str = " AND EXISTS (SELECT 1 FROM golden_check AS fai
 /// Stores the state of a lot, `complete` instead of `open` for one that was complete; does nothing for a lot without
 /// runs. Returns the number of changed rows.
 pub(super) fn state(connection: &Connection, record: &LotStateRecord) -> rusqlite::Result<usize> {
+    let is_held = record.state == LotState::Held;
+    assert!(record.why.is_none() || is_held, "only a hold has a reason");
+    let why = record.why.as_ref();
+    let alarm = why.and_then(HoldReason::alarm).map(alarms::stored);
     connection.execute(
-        "INSERT INTO lot_state (lot_id, state, why, since_us, completed)
-         SELECT id, ?2, ?3, ?4, ?2 = 'complete' FROM lot WHERE name = ?1
-         ON CONFLICT (lot_id) DO UPDATE SET why = excluded.why, since_us = excluded.since_us,
+        "INSERT INTO lot_state (lot_id, state, why, alarm, since_us, completed)
+         SELECT id, ?2, ?3, ?4, ?5, ?2 = 'complete' FROM lot WHERE name = ?1
+         ON CONFLICT (lot_id) DO UPDATE SET why = excluded.why, alarm = excluded.alarm,
+           since_us = excluded.since_us,
            state = iif(excluded.state = 'open' AND completed, 'complete', excluded.state),
            completed = completed OR excluded.completed",
-        params![record.lot, record.state.name(), record.why, record.at_us],
+        params![
+            record.lot,
+            record.state.name(),
+            why.map(HoldReason::text),
+            alarm,
+            record.at_us
+        ],
     )
 }
 
@@ -161,26 +201,30 @@ pub(super) fn reference_check(
     it: &ReferenceCheckRecord,
 ) -> Result<()> {
     let run = row_ids.run(&it.lot)?;
+    assert!(!it.text.is_empty(), "a check without its result");
+    let alarm = it.failure.as_ref().map(alarms::stored);
     tx.execute(
-        "INSERT INTO golden_check (run_id, at_us, passed, text, suspect_since_us)
-         SELECT own.id, ?2, ?3, ?4, CASE WHEN ?3 THEN NULL ELSE ifnull(
+        "INSERT INTO golden_check (run_id, at_us, passed, text, alarm, suspect_since_us)
+         SELECT own.id, ?2, ?3, ?4, ?5, CASE WHEN ?3 THEN NULL ELSE ifnull(
            (SELECT good.at_us FROM golden_check AS good JOIN run ON run.id = good.run_id
             WHERE good.passed AND (run.id = own.id OR (run.source = 'rig' AND own.source = 'rig'))
             ORDER BY good.id DESC LIMIT 1),
            iif(own.source = 'rig', 0, own.opened_at_us)) END
          FROM run AS own WHERE own.id = ?1
            AND NOT EXISTS (SELECT 1 FROM golden_check WHERE run_id = ?1 AND at_us = ?2)",
-        params![run, it.at_us, it.passed, it.text],
+        params![run, it.at_us, alarm.is_none(), it.text, alarm],
     )
     .doing("recording a reference check")?;
     Ok(())
 }
 
 impl Store {
-    /// Opens the lots whose run was cut off, or completes them again after a retest. The caller has just taken the real
-    /// or the simulated rig, so none of their runs is under way.
+    /// Opens the lots whose run was cut off, or completes them again after a retest; drops the scans whose parts have not
+    /// come. The caller has just taken the real or the simulated rig, so none of their runs is under way.
     pub fn cut_off(&mut self, simulated: bool, at_us: i64) -> Result<()> {
-        self.connection()
+        const DOING: &str = "looking for lots that were cut off";
+        let transaction = self.transaction(DOING)?;
+        transaction
             .execute(
                 "UPDATE lot_state SET state = iif(completed, 'complete', 'open'), since_us = ?2
                  WHERE state = 'running'
@@ -188,18 +232,18 @@ impl Store {
                              ORDER BY number DESC LIMIT 1)",
                 params![source(simulated), at_us],
             )
-            .doing("looking for lots that were cut off")?;
-        Ok(())
+            .doing(DOING)?;
+        scans::drop_cut_off(&transaction, source(simulated), at_us)?;
+        transaction.commit().doing(DOING)
     }
 }
 
 impl Archive {
     /// Returns the state of a lot; `None` for a lot without runs.
     pub fn standing(&self, lot: &str) -> Result<Option<LotStatus>> {
-        let found = self
-            .connection
+        self.connection
             .query_row(
-                "SELECT ifnull(lot_state.state, 'open'), lot_state.why,
+                "SELECT ifnull(lot_state.state, 'open'), lot_state.why, lot_state.alarm,
                    ifnull(lot_state.since_us, lot.first_opened_us), recipe.name, recipe.hash
                  FROM lot JOIN run ON run.lot_id = lot.id JOIN recipe ON recipe.id = run.recipe_id
                    LEFT JOIN lot_state ON lot_state.lot_id = lot.id
@@ -209,22 +253,15 @@ impl Archive {
                     Ok(LotStatus {
                         state: LotState::named(&row.get::<_, String>(0)?),
                         why: row.get(1)?,
-                        why_zh: None,
-                        since: Moment(row.get(2)?),
-                        recipe: row.get(3)?,
-                        recipe_hash: row.get(4)?,
+                        why_zh: alarms::chinese(row.get(2)?),
+                        since: Moment(row.get(3)?),
+                        recipe: row.get(4)?,
+                        recipe_hash: row.get(5)?,
                     })
                 },
             )
             .optional()
-            .doing("reading the state of a lot")?;
-        let Some(mut status) = found else {
-            return Ok(None);
-        };
-        if let Some(why) = &status.why {
-            status.why_zh = self.chinese(why, status.since.0)?;
-        }
-        Ok(Some(status))
+            .doing("reading the state of a lot")
     }
 
     /// Counts the parts of a lot: first tests, those of them that passed, parts that passed in a retest, suspect parts.
@@ -256,7 +293,7 @@ impl Archive {
     pub fn reference_checks(&self, filter: &Filter) -> Result<Vec<ReferenceCheck>> {
         let mut select = filter.runs();
         select.sql = format!(
-            "SELECT run.number, golden_check.at_us, passed, text, suspect_since_us
+            "SELECT run.number, golden_check.at_us, passed, text, alarm, suspect_since_us
              FROM golden_check JOIN run ON run.id = golden_check.run_id
              WHERE run.id IN ({}) ORDER BY golden_check.at_us, golden_check.id",
             select.sql
@@ -268,21 +305,16 @@ impl Archive {
 
     /// Returns the latest reference check of the real or the simulated rig.
     pub fn last_reference_check(&self, simulated: bool) -> Result<Option<ReferenceCheck>> {
-        let mut found = self
-            .connection
+        self.connection
             .query_row(
-                "SELECT run.number, golden_check.at_us, passed, text, suspect_since_us
+                "SELECT run.number, golden_check.at_us, passed, text, alarm, suspect_since_us
                  FROM golden_check JOIN run ON run.id = golden_check.run_id
                  WHERE run.source = ?1 ORDER BY golden_check.id DESC LIMIT 1",
                 [source(simulated)],
                 reference_check_of,
             )
             .optional()
-            .doing("reading the last reference check")?;
-        if let Some(failed) = found.as_mut().filter(|it| !it.passed) {
-            failed.text_zh = self.chinese(&failed.text, failed.at.0)?;
-        }
-        Ok(found)
+            .doing("reading the last reference check")
     }
 }
 
@@ -292,7 +324,7 @@ fn reference_check_of(row: &rusqlite::Row<'_>) -> rusqlite::Result<ReferenceChec
         at: Moment(row.get(1)?),
         passed: row.get(2)?,
         text: row.get(3)?,
-        text_zh: None,
-        suspect_since: row.get::<_, Option<i64>>(4)?.map(Moment),
+        text_zh: alarms::chinese(row.get(4)?),
+        suspect_since: row.get::<_, Option<i64>>(5)?.map(Moment),
     })
 }

@@ -95,6 +95,11 @@ fn landed_before(it: &LandingRecord, first: Option<String>) -> Result<()> {
 /// Inserts an alarm; for one that has a row, adds only the time at which it was cleared.
 pub(super) fn alarm(tx: &Transaction<'_>, row_ids: &RowIds, it: &AlarmRecord) -> Result<()> {
     let run = it.lot.as_deref().map(|lot| row_ids.run(lot)).transpose()?;
+    insert_alarm(tx, run, it)
+}
+
+/// Does the work of [`alarm`] for the run in row `run`.
+pub(super) fn insert_alarm(tx: &Transaction<'_>, run: Option<i64>, it: &AlarmRecord) -> Result<()> {
     assert!(!it.code.is_empty(), "an alarm without a code");
     let cleared_after = it.cleared_at_us.is_none_or(|at| at >= it.raised_at_us);
     assert!(cleared_after, "{} went before it came", it.code);

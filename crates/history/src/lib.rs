@@ -20,6 +20,7 @@ pub mod report;
 
 mod alarm_states;
 mod alarms;
+mod answers;
 mod approval;
 mod archive;
 mod backup;
@@ -49,6 +50,7 @@ mod rejudge;
 mod reopening;
 mod retention;
 mod run_end;
+mod scans;
 mod serials;
 mod series;
 mod store;
@@ -58,6 +60,7 @@ mod wear;
 
 pub use alarm_states::{AlarmChange, AlarmChangeRecord, UnacknowledgedAlarm};
 pub use alarms::{Alarm, AlarmState, Shelf};
+pub use answers::PromptAnswer;
 pub use approval::{SIGNATURES, Signature, signatures};
 pub use archive::Archive;
 pub use curve::CurveRecord;
@@ -66,7 +69,7 @@ pub use error::{HistoryError, Result};
 pub use examine::{Examination, examine};
 pub use filter::Filter;
 pub use gates::{
-    LotState, LotStateRecord, LotStatus, LotYield, ReferenceCheck, ReferenceCheckRecord,
+    HoldReason, LotState, LotStateRecord, LotStatus, LotYield, ReferenceCheck, ReferenceCheckRecord,
 };
 pub use import::{ImportError, ImportRow, parse_records};
 pub use inside::InsideRecord;

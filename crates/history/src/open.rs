@@ -19,7 +19,7 @@ use std::time::Duration;
 pub const APPLICATION_ID: i64 = 0x5252_6967;
 
 /// Step `n` migrates schema `n` to `n + 1`. Existing steps never change.
-pub(super) const MIGRATIONS: [&str; 12] = [
+pub(super) const MIGRATIONS: [&str; 13] = [
     include_str!("schema/v1.sql"),
     include_str!("schema/v2.sql"),
     include_str!("schema/v3.sql"),
@@ -32,6 +32,7 @@ pub(super) const MIGRATIONS: [&str; 12] = [
     include_str!("schema/v10.sql"),
     include_str!("schema/v11.sql"),
     include_str!("schema/v12.sql"),
+    include_str!("schema/v13.sql"),
 ];
 
 /// Schema that this program writes.

@@ -33,7 +33,7 @@ pub struct Reopening {
 /// Inserts the decision, and opens the lot again.
 pub(super) fn insert(tx: &Transaction<'_>, it: &ReopeningRecord) -> Result<()> {
     const DOING: &str = "reopening a lot";
-    let state = "UPDATE lot_state SET state = 'open', completed = 0, why = NULL, since_us = ?2
+    let state = "UPDATE lot_state SET state = 'open', completed = 0, why = NULL, alarm = NULL, since_us = ?2
         WHERE lot_id = (SELECT id FROM lot WHERE name = ?1)";
     tx.execute(state, params![it.lot, it.at_us]).doing(DOING)?;
     let decision = "INSERT INTO reopening (lot_id, at_us, who, why)

@@ -5,7 +5,7 @@
 use super::error::{Doing, HistoryError, Result};
 use super::{
     CalibratedRecord, CalibrationRecord, LotRecord, PartRecord, Row, alarm_states, gates, insert,
-    inside, landing, open, orders, owner, reopening, run_end, series, wear,
+    inside, landing, open, orders, owner, reopening, run_end, scans, series, wear,
 };
 use rusqlite::{Connection, OptionalExtension, Transaction, TransactionBehavior, params};
 use std::collections::HashMap;
@@ -90,7 +90,8 @@ impl Store {
         Ok(number)
     }
 
-    /// Closes the run of the lot and packs its values; later rows for it are refused. After an error it is still open.
+    /// Closes the run of the lot, packs its values and drops the scans whose parts have not come; later rows for it are
+    /// refused. After an error it is still open.
     pub fn close_lot(&mut self, lot: &str, at_us: i64) -> Result<()> {
         const DOING: &str = "closing the lot";
         let run = self.row_ids.run(lot)?;
@@ -101,6 +102,7 @@ impl Store {
             .doing(DOING)?;
         assert_eq!(changed, 1, "an open run without its row");
         series::pack(&transaction, run).doing(DOING)?;
+        scans::drop_left(&transaction, run, at_us)?;
         transaction.commit().doing(DOING)?;
         self.row_ids.runs.remove(lot);
         assert!(self.row_ids.run(lot).is_err(), "a closed run gets rows");

@@ -19,6 +19,7 @@ use history::inquiry::paper::paper;
 use history::report::Lang;
 use history::report::card;
 use history::{Archive, RevisionEntry};
+use machine::dut::prompt::Prompt;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use utoipa::{IntoParams, ToSchema};
@@ -85,12 +86,19 @@ pub(super) struct ShownRevision {
     revision: Revision,
     /// Engineers who answer for the revision; null in a plant that wants no approval.
     approval: Option<ApprovalState>,
+    /// Prompts of every lot, which `lot.toml` has; those of the recipe are in `fields`.
+    prompts_of_lots: Vec<Prompt>,
 }
 
 impl ShownRevision {
     pub fn read(folder: &Folder, db: &Path, revision: Revision) -> Result<Self, ApiError> {
         let approval = ApprovalState::read(config::approval(folder)?, db, &revision)?;
-        Ok(Self { revision, approval })
+        let prompts_of_lots = config::prompts_of_lots(folder)?;
+        Ok(Self {
+            revision,
+            approval,
+            prompts_of_lots,
+        })
     }
 }
 

@@ -4,8 +4,8 @@
 use crate::alarm_order;
 use crate::exit::Exit;
 use history::{
-    AlarmChange, AlarmChangeRecord, AlarmRecord, InsideRecord, LotState, LotStateRecord,
-    OrderRecord, ReferenceCheckRecord, Row, RunEndRecord, WearRecord,
+    AlarmChange, AlarmChangeRecord, AlarmRecord, HoldReason, InsideRecord, LotState,
+    LotStateRecord, OrderRecord, ReferenceCheckRecord, Row, RunEndRecord, WearRecord,
 };
 use machine::handling::inside::Inside;
 use machine::handling::wear::Uses;
@@ -58,7 +58,7 @@ impl Journal {
     }
 
     /// Returns the row that puts the lot into this state.
-    fn lot(&self, state: LotState, why: Option<String>, at_us: i64) -> Option<Row> {
+    fn lot(&self, state: LotState, why: Option<HoldReason>, at_us: i64) -> Option<Row> {
         let row = |lot: &String| {
             Row::LotState(LotStateRecord {
                 lot: lot.clone(),
@@ -83,11 +83,12 @@ impl Journal {
             cleared_at_us: None,
         })];
         if alarm.code == NOT_CALIBRATED {
-            rows.extend(self.check(false, &text, at_us));
+            rows.extend(self.check(&text, Some(alarm), at_us));
         }
         if HOLD_ALARMS.contains(&alarm.code) {
             self.held = Some(alarm.code.name());
-            rows.extend(self.lot(LotState::Held, Some(text), at_us));
+            let why = HoldReason::Alarm(alarm.clone());
+            rows.extend(self.lot(LotState::Held, Some(why), at_us));
         }
         rows
     }
@@ -140,21 +141,21 @@ impl Journal {
 
     /// Returns the row of a reference check.
     pub fn checked(&self, checked: &Checked, at_us: i64) -> Option<Row> {
-        self.check(checked.passed, &checked.text, at_us)
+        self.check(&checked.text, checked.failure.as_ref(), at_us)
     }
 
     /// Returns the row of a calibration, which is also a passed reference check.
     pub fn calibrated(&self, at_us: i64) -> Option<Row> {
-        self.check(true, "calibration", at_us)
+        self.check("calibration", None, at_us)
     }
 
-    fn check(&self, passed: bool, text: &str, at_us: i64) -> Option<Row> {
+    fn check(&self, text: &str, failure: Option<&Alarm>, at_us: i64) -> Option<Row> {
         let row = |lot: &String| {
             Row::ReferenceCheck(ReferenceCheckRecord {
                 lot: lot.clone(),
                 at_us,
-                passed,
                 text: text.to_owned(),
+                failure: failure.cloned(),
             })
         };
         self.lot.as_ref().map(row)

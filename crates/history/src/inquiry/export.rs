@@ -1,5 +1,5 @@
 //! Exports the selected parts as CSV or spreadsheet; the memory needed does not grow with their number. A spreadsheet
-//! names the filter, so that a reader knows which parts its figures are about.
+//! names the filter, so that a reader knows which parts its figures are about; that of a lot has the answers to prompts.
 
 use super::Result;
 use super::figures::agreed;
@@ -50,7 +50,8 @@ pub fn spreadsheet(
     Ok(sheet.finish(&about)?)
 }
 
-/// Returns the recipes of the runs and the members of the filter, named in the language of the paper.
+/// Returns the recipes of the runs, the members of the filter, and the answers to the prompts of its lot, named in the
+/// language of the paper.
 fn facts(archive: &Archive, filter: &Filter, paper: &Paper) -> Result<Vec<(String, String)>> {
     let language = paper.language;
     let mut recipes: Vec<String> = archive
@@ -95,9 +96,20 @@ fn facts(archive: &Archive, filter: &Filter, paper: &Paper) -> Result<Vec<(Strin
     let members = members
         .into_iter()
         .filter_map(|(id, text)| Some((language.text(id).to_owned(), text?)));
+    let answers = match filter.lot {
+        Some(_) => archive.answers(filter)?,
+        None => Vec::new(),
+    };
+    let prompt = language.text("paper-prompt");
+    let answers = answers.into_iter().map(|it| {
+        let said = [it.choice, it.who, paper.time(it.at)];
+        let name = format!("{prompt}{}{}", language.colon(), it.prompt);
+        (name, said.join(language.comma()))
+    });
     let recipe = language.text("paper-recipe").to_owned();
     Ok([(recipe, recipes.join(", "))]
         .into_iter()
         .chain(members)
+        .chain(answers)
         .collect())
 }

@@ -64,6 +64,7 @@ pub fn lot_report(
         effectiveness: use_of_time(archive, filter, &runs, ideal_cycle_s)?,
         rejects: pareto::rejects(archive, filter, LISTED)?,
         alarms: &archive.alarms(filter)?,
+        answers: &archive.answers(filter)?,
     };
     Ok(report.html(paper))
 }

@@ -76,7 +76,7 @@ fn point(plot: &mut Plot, chart: &Chart, first: usize, at: usize, value: f64, ra
     }
     let style = format!("fill=\"{LIMIT}\"");
     plot.svg.circle([x, y], 3.6, &style);
-    let style = format!("{style} font-size=\"9\" text-anchor=\"middle\"");
+    let style = format!("{style} text-anchor=\"middle\"");
     plot.svg.text([x, y - 6.0], &style, &rules.join(","));
 }
 

@@ -1,11 +1,11 @@
-//! Printable report of a lot: counts, reasons, capability, use of time, alarms, rejects.
+//! Printable report of a lot: counts, reasons, capability, use of time, alarms, answers to prompts, rejects.
 
 use super::charts;
 use super::page::{Format, facts, head, page, sign_off};
 use super::words::{figure, parameter, percent, short_hash, span, unbroken};
 use super::{Paper, alarms, pareto};
 use crate::inquiry::pareto::Rejects;
-use crate::{Alarm, LotSummary, Passed, Reopening};
+use crate::{Alarm, LotSummary, Passed, PromptAnswer, Reopening};
 use maud::{Markup, PreEscaped, html};
 use quality::capability::{Index, by_percentiles};
 use quality::effectiveness::Effectiveness;
@@ -31,6 +31,8 @@ pub struct LotReport<'a> {
     pub rejects: Rejects,
     /// Alarms in order of time.
     pub alarms: &'a [Alarm],
+    /// Answers to prompts in order of time.
+    pub answers: &'a [PromptAnswer],
 }
 
 /// Values of one parameter.
@@ -64,6 +66,7 @@ impl LotReport<'_> {
             h2 { (language.text("paper-alarms")) }
             (alarms::ranked(language, self.alarms))
             (alarms::table(paper, self.alarms))
+            @if !self.answers.is_empty() { (answers(paper, self.answers)) }
             h2 { (language.text("paper-rejects")) }
             (pareto::rejects(language, &self.rejects))
             p.remark { (language.text("paper-not_tested")) }
@@ -204,6 +207,23 @@ impl LotReport<'_> {
                     }
                 }
             }
+        }
+    }
+}
+
+fn answers(paper: &Paper, answers: &[PromptAnswer]) -> Markup {
+    let say = |id| paper.language.text(id);
+    html! {
+        h2 { (say("paper-answers")) }
+        table {
+            thead { tr {
+                th { (say("paper-answered")) } th.n { (say("paper-run")) } th { (say("paper-prompt")) }
+                th { (say("paper-answer")) } th { (say("paper-answered_by")) }
+            } }
+            tbody { @for it in answers { tr {
+                td { (paper.time(it.at)) } td.n { @if let Some(run) = it.run { (run) } }
+                td.text { (it.prompt) } td.text { (it.choice) } td.text { (it.who) }
+            } } }
         }
     }
 }

@@ -9,7 +9,9 @@ use super::spc::{NamedChart, spc};
 use super::*;
 use crate::inquiry::comparison::{ComparedLot, Comparison};
 use crate::inquiry::pareto::{Ranked, Rejects};
-use crate::{Alarm, AlarmState, LotSummary, Measurement, Part, Passed, Reopening, Shelf, Yield};
+use crate::{
+    Alarm, AlarmState, LotSummary, Measurement, Part, Passed, PromptAnswer, Reopening, Shelf, Yield,
+};
 use config::{Folder, load_recipe};
 use machine::dut::card::{CardSettings, Quota, STEPS};
 use machine::dut::{Reason, Recipe};
@@ -127,6 +129,13 @@ fn lot_report_on(paper: &Paper) -> String {
         effectiveness: None,
         rejects: some_rejects(),
         alarms: &alarms,
+        answers: &[PromptAnswer {
+            at: Moment(1_000_000),
+            run: Some(1),
+            prompt: "nest".into(),
+            choice: "changed".into(),
+            who: EVIL.into(),
+        }],
     };
     report.html(paper)
 }
@@ -319,6 +328,17 @@ fn a_lot_report_shows_name_and_reason_of_reopening() {
     let page = lot_report(Lang::En);
     let words = "1970-01-01 00:01:30 +00:00 by zhao: &lt;/td&gt;";
     assert!(page.contains(words), "{page}");
+}
+
+#[test]
+fn a_lot_report_shows_who_answered_which_prompt() {
+    for (language, title) in [(Lang::En, "Answers to prompts"), (Lang::Zh, "提示的答复")] {
+        let page = lot_report(language);
+        let (_, answers) = page.split_once(title).unwrap();
+        let row = "<td>1970-01-01 00:00:01 +00:00</td><td class=\"n\">1</td><td class=\"text\">nest</td>\
+                   <td class=\"text\">changed</td><td class=\"text\">&lt;/td&gt;";
+        assert!(answers.contains(row), "{answers}");
+    }
 }
 
 #[test]

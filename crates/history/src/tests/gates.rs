@@ -1,14 +1,19 @@
 //! Tests: states of lots, reference checks and suspect parts, retests, orders, state changes of alarms, wear.
 
 use super::*;
-use texts::Message;
+use machine::station::trouble::Alarm;
+use texts::{Lang, Message};
+
+fn disagreement() -> Alarm {
+    Alarm::reference_check_failed(&Message::new("fault", "line").with("detail", "silent"))
+}
 
 fn check(lot: &str, at_us: i64, passed: bool) -> Row {
     Row::ReferenceCheck(ReferenceCheckRecord {
         lot: lot.into(),
         at_us,
-        passed,
         text: "G-12-1".into(),
+        failure: (!passed).then(disagreement),
     })
 }
 
@@ -54,6 +59,8 @@ fn parts_between_passed_and_failed_check_are_suspect() {
     let checks = file.archive().reference_checks(&Filter::default()).unwrap();
     assert_eq!(checks[0].suspect_since, None);
     assert_eq!(checks[1].suspect_since, Some(Moment(2_500_000)));
+    let chinese = [None, Some(disagreement().text(Lang::Zh))];
+    assert_eq!([&checks[0].text_zh, &checks[1].text_zh], chinese.each_ref());
 }
 
 #[test]
@@ -126,7 +133,7 @@ fn a_lot_has_its_last_state_and_begins_open() {
         let record = LotStateRecord {
             lot: "A".into(),
             state,
-            why: (state == LotState::Held).then(|| "discard limit".into()),
+            why: (state == LotState::Held).then(|| HoldReason::Person("wrong label".into())),
             at_us: 9,
         };
         store.record(&[Row::LotState(record)]).unwrap();
@@ -134,6 +141,31 @@ fn a_lot_has_its_last_state_and_begins_open() {
         assert_eq!(standing().why.is_some(), state == LotState::Held);
     }
     assert_eq!(file.archive().standing("B").unwrap(), None);
+}
+
+#[test]
+fn a_hold_is_chinese_only_by_its_alarm() {
+    let file = File::new();
+    let mut store = file.store();
+    store.begin_lot(&lot("A")).unwrap();
+    let alarm = Alarm::reject_rate_limit(3, 20, 10.0);
+    let text = alarm.text(Lang::En);
+    let same_words = HoldReason::Person(text.clone());
+    let chinese = Some(alarm.text(Lang::Zh));
+    for (why, why_zh) in [(HoldReason::Alarm(alarm), chinese), (same_words, None)] {
+        let record = LotStateRecord {
+            lot: "A".into(),
+            state: LotState::Held,
+            why: Some(why),
+            at_us: 9,
+        };
+        store.record(&[Row::LotState(record)]).unwrap();
+        let standing = file.archive().standing("A").unwrap().unwrap();
+        assert_eq!(
+            (standing.why.as_ref(), standing.why_zh),
+            (Some(&text), why_zh)
+        );
+    }
 }
 
 #[test]

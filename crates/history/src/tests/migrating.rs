@@ -86,6 +86,18 @@ fn a_migrated_file_keeps_rows_and_takes_new_ones() {
 }
 
 #[test]
+fn a_hold_of_an_older_file_keeps_its_text() {
+    let file = File::new();
+    of_schema(&file, 12);
+    let held = "INSERT INTO lot_state (lot_id, state, why, since_us) VALUES (1, 'held', '3 of 20 failed', 8);
+        INSERT INTO alarm (run_id, code, text, raised_at_us) VALUES (1, 'lot_discard_limit', '3 of 20 failed', 8);";
+    file.by_hand().execute_batch(held).unwrap();
+    let standing = file.archive().standing("批次").unwrap().unwrap();
+    assert_eq!(standing.why.as_deref(), Some("3 of 20 failed"));
+    assert_eq!(standing.why_zh, None);
+}
+
+#[test]
 fn rows_of_an_older_file_name_its_rig() {
     let of = "INSERT INTO run (id, lot_id, number, recipe_id, opened_at_us, source, written_by)
         VALUES (2, 1, 2, 1, 5, 'simulated', 'relayrig of old');";

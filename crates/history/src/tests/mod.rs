@@ -8,6 +8,7 @@ mod plans;
 mod reading;
 mod rejudging;
 mod safety;
+mod scans;
 mod side_by_side;
 mod spreadsheet;
 mod writing;

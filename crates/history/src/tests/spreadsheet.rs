@@ -1,13 +1,16 @@
 //! Tests of spreadsheets, read back by another crate.
 #![allow(clippy::unwrap_used)]
 
-use crate::Part;
+use super::{File, lot};
+use crate::inquiry::export::spreadsheet;
 use crate::report::sheet::{Sheet, SheetFacts};
 use crate::report::{Lang, Paper};
+use crate::{Filter, OrderRecord, Part, Row};
 use calamine::{Data, Reader, Xlsx};
 use jiff::tz::TimeZone;
 use quality::Limits;
 use std::io::Cursor;
+use texts::Message;
 
 const LOT: &str = "<b>批次\"1\"</b>";
 
@@ -39,6 +42,40 @@ fn a_spreadsheet_of_simulated_parts_says_so() {
         let word = Data::String("SIMULATION".into());
         assert_eq!(summary.get((0, 12)) == Some(&word), simulated);
     }
+}
+
+#[test]
+fn a_spreadsheet_of_a_lot_has_its_answers() {
+    let file = File::new();
+    let mut store = file.store();
+    store.begin_lot(&lot("A")).unwrap();
+    let answer = |choice: &str, refused: Option<&'static str>| {
+        Row::Order(OrderRecord {
+            lot: Some("A".into()),
+            who: "li".into(),
+            what: format!(r#"{{"order":"answer","prompt":"nest","choice":"{choice}"}}"#),
+            refused: refused.map(|code| Message::new("refusal", code)),
+            ..OrderRecord::default()
+        })
+    };
+    let rows = [
+        answer("none", Some("no_such_choice")),
+        answer("changed", None),
+    ];
+    store.record(&rows).unwrap();
+    let filter = Filter {
+        lot: Some("A".into()),
+        ..Filter::default()
+    };
+    let made = spreadsheet(&file.archive(), &filter, &[], &paper(true), || {});
+    let bytes = made.unwrap().save_to_buffer().unwrap();
+    let mut book: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).unwrap();
+    let summary = book.worksheet_range("Summary").unwrap();
+    let told = summary
+        .rows()
+        .filter(|row| row[0].to_string() == "Prompt: nest");
+    let told: Vec<String> = told.map(|row| row[1].to_string()).collect();
+    assert_eq!(told, ["changed, li, 1970-01-01 00:00:00 +00:00"]);
 }
 
 #[test]

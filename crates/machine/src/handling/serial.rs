@@ -5,7 +5,8 @@
 //! sensor. The pusher waits for a reading, at most [`Source::Reader::timeout`] from the arrival on.
 //!
 //! A person scans the code of a part before loading it; the escapement releases a part only while a scan waits, and the
-//! part gets the oldest scan.
+//! part gets the oldest scan. Scans that wait at the end of a run are dropped: the history raises an alarm with their
+//! numbers, and the station takes no scan until a person has acknowledged it.
 //!
 //! The number belongs to the part once it is in the nest. A part without a reading, with two different ones, or with the
 //! number of another part goes to retest without a test. A number is free again when its part lands in retest, so that

@@ -2,7 +2,7 @@
 
 use super::Station;
 use super::annunciator::ListedAlarm;
-use super::catalogue::Reaction;
+use super::catalogue::{AlarmCode, Reaction};
 use super::orders::{Order, Refused, shelf_minutes};
 use super::packml::{self, Command, Mode, On, State};
 use super::trouble::Alarm;
@@ -72,6 +72,7 @@ impl Station {
                 }
             }
             Order::Scan(serial) => {
+                self.may_scan()?;
                 let scanned = self.line.serials.scan(&serial, &self.line.ledger);
                 scanned.map_err(Refused::Scan)?;
             }
@@ -180,6 +181,15 @@ impl Station {
     /// Fails with the reason when the lot must not end yet.
     pub fn may_close(&self) -> Result<(), Refused> {
         self.may(Command::Complete).or_else(|_| self.may_leave())
+    }
+
+    /// Checks that no scanned part of an earlier run may lie in the magazine, where it would get the next number.
+    fn may_scan(&self) -> Result<(), Refused> {
+        let mut listed = self.alarms.annunciator.listed().iter();
+        match listed.find(|it| it.alarm.code == AlarmCode::ScansDropped) {
+            Some(dropped) => Err(Refused::ScansDropped(Box::new(dropped.alarm.clone()))),
+            None => Ok(()),
+        }
     }
 
     /// Checks that the state allows a change of mode.

@@ -166,6 +166,8 @@ codes! {
     PartLost by "place" = "part_lost", Nothing, Itself;
     /// The previous run ended while a part fell into its bin.
     FallUnseen by "bin" = "fall_unseen", Nothing, Itself;
+    /// Scanned parts have not come before the end of their run, which has dropped their numbers.
+    ScansDropped by "serials" = "scans_dropped", Nothing, Itself;
     /// A sensor shows a part that the ledger does not have.
     PartFound by "place" = "part_found", Nothing, Itself;
     /// The last reference check is older than the lot allows.

@@ -201,23 +201,19 @@ impl Station {
         if judged.part.interrupted.is_some() {
             return self.begin_check();
         }
-        let read = self.device.check(serial, &judged.record);
-        outcome.checked = Some(Checked {
-            passed: read.is_ok(),
-            text: match &read {
-                Ok(()) => serial.to_owned(),
-                Err(why) => why.to_string(),
-            },
-        });
-        match read {
-            Ok(()) => self.lot.gates.good(judged.at, self.line.ledger.lot_parts()),
+        let (text, failure) = match self.device.check(serial, &judged.record) {
+            Ok(()) => {
+                self.lot.gates.good(judged.at, self.line.ledger.lot_parts());
+                (serial.to_owned(), None)
+            }
             Err(why) => {
                 self.begin_check();
-                outcome
-                    .trouble
-                    .push(Alarm::reference_check_failed(&why.message()));
+                let alarm = Alarm::reference_check_failed(&why.message());
+                outcome.trouble.push(alarm.clone());
+                (why.to_string(), Some(alarm))
             }
-        }
+        };
+        outcome.checked = Some(Checked { text, failure });
     }
 
     /// Counts a part of the lot against the reject-rate limit.

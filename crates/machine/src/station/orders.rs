@@ -93,6 +93,8 @@ pub enum Refused {
     ShelveWithoutReason,
     /// The scan cannot be the serial number of a further part.
     Scan(ScanRefused),
+    /// Nobody has acknowledged this alarm about the scanned parts of an earlier run, which may still lie in the magazine.
+    ScansDropped(Box<Alarm>),
     /// A prompt waits for its answer.
     PromptOpen,
     /// No prompt of this name waits.
@@ -149,6 +151,7 @@ impl Refused {
             Self::Scan(ScanRefused::Unreadable) => of("scan_unreadable"),
             Self::Scan(ScanRefused::Repeated) => of("scan_repeated"),
             Self::Scan(ScanRefused::TooMany) => of("scans_too_many"),
+            Self::ScansDropped(alarm) => alarm.inside("scans_dropped"),
         }
     }
 }

@@ -73,10 +73,10 @@ impl HistoryState {
 /// Result of a reference check.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Checked {
-    /// True when the reference part agrees with its certificate.
-    pub passed: bool,
     /// Serial number of the part, or the disagreement.
     pub text: String,
+    /// Alarm of the disagreement; `None` when the part agrees with its certificate.
+    pub failure: Option<Alarm>,
 }
 
 impl Inputs<'_> {

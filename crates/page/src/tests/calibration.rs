@@ -8,6 +8,7 @@ use ::history::{
 use machine::dut::em_relay::Calibration;
 use machine::dut::em_relay::calibration::{InputLine, OutputLine};
 use machine::gauge::Factor;
+use machine::station::catalogue::AlarmCode;
 use serde_json::json;
 
 const HOUR_US: i64 = 3_600_000_000;
@@ -139,8 +140,8 @@ async fn a_reference_part_has_certificate_and_last_reading() {
     let check = Row::ReferenceCheck(ReferenceCheckRecord {
         lot: "A".into(),
         at_us: 7_000_000,
-        passed: false,
         text: "G-12-1 high".into(),
+        failure: Some(AlarmCode::ReferenceCheckFailed.into()),
     });
     let rows = [
         Row::Part(golden(1, 5_000_000, Some(0.01))),

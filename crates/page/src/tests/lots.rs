@@ -1,7 +1,9 @@
 //! Tests of the list of lots and the wear counters over HTTP.
 
 use super::*;
-use ::history::{Decision, LotRecord, LotState, LotStateRecord, Row, Store, WearRecord};
+use ::history::{
+    Decision, HoldReason, LotRecord, LotState, LotStateRecord, Row, Store, WearRecord,
+};
 
 fn with_lots(states: &[(&str, LotState)]) -> Fixture {
     let fixture = Fixture::new();
@@ -17,7 +19,7 @@ fn with_lots(states: &[(&str, LotState)]) -> Fixture {
                 ..LotRecord::default()
             })
             .unwrap();
-        let why = (*state == LotState::Held).then(|| "wrong label (li)".to_owned());
+        let why = (*state == LotState::Held).then(|| HoldReason::Person("wrong label (li)".into()));
         let row = LotStateRecord {
             lot: (*lot).into(),
             state: *state,

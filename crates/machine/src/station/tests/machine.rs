@@ -7,7 +7,7 @@ use crate::dut::prompt::Prompt;
 use crate::handling::inside::Inside;
 use crate::handling::moves::Move;
 use crate::handling::output::{NestDone, NestJob};
-use crate::handling::serial::Serials;
+use crate::handling::serial::{Serials, Source};
 use crate::handling::tests::mechanism_of;
 use crate::handling::wear::Uses;
 use crate::instrument::act::{Job, JobDone};
@@ -187,6 +187,18 @@ impl Machine {
             attended: true,
             prompts,
             ..plan(count)
+        };
+        machine.station = of_plan(plan, &machine.mock);
+        machine
+    }
+
+    /// Returns an attended machine of a lot of one part that a person scans.
+    pub fn scanned() -> Self {
+        let mut machine = Self::new(Some(1), vec![Specimen::MissingPin]);
+        let plan = Plan {
+            attended: true,
+            serials: Serials::new(Source::Wedge, Default::default()),
+            ..plan(Some(1))
         };
         machine.station = of_plan(plan, &machine.mock);
         machine

@@ -52,6 +52,24 @@ fn give(machine: &mut Machine, command: Command) {
     assert_eq!(answer, Ok(()), "{command:?}");
 }
 
+/// Returns the alarm about a scanned part that an earlier run has left in the magazine.
+fn dropped() -> Alarm {
+    Alarm::scans_dropped(&[("S-1".into(), "li".into())])
+}
+
+#[test]
+fn no_scan_counts_before_dropped_ones_are_acknowledged() {
+    let mut machine = Machine::scanned();
+    let earlier = machine.station.annunciator_mut();
+    earlier.inherit(dropped(), 1, None);
+    let refused = machine.order(Order::Scan("S-2".into())).unwrap_err();
+    assert_eq!(refused, Refused::ScansDropped(Box::new(dropped())));
+    assert!(said(&refused).contains("S-1 (li)"));
+    let code = AlarmCode::ScansDropped.name();
+    assert_eq!(machine.order(Order::Acknowledge(Some(code))), Ok(()));
+    assert_eq!(machine.order(Order::Scan("S-2".into())), Ok(()));
+}
+
 #[test]
 fn a_lot_goes_from_reset_to_complete() {
     let mut machine = attended(2);
@@ -348,6 +366,7 @@ fn every_refusal_has_a_text_in_both_languages() {
         Refused::Scan(ScanRefused::Unreadable),
         Refused::Scan(ScanRefused::Repeated),
         Refused::Scan(ScanRefused::TooMany),
+        Refused::ScansDropped(Box::new(dropped())),
     ];
     for refused in every {
         let [en, zh] = Lang::ALL.map(|lang| refused.message().say(lang));

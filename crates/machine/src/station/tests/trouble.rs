@@ -64,6 +64,7 @@ fn every_alarm() -> Vec<Alarm> {
         Alarm::host_late(&tried, Span::ms(312)),
         Alarm::button_stuck(DigitalIn::ButtonStop),
         Alarm::part_sticks(),
+        Alarm::scans_dropped(&[("S-1".into(), "li".into())]),
         Alarm::step_too_long("probing", after),
         Alarm::watchdog_tripped("mech_do_a"),
         Alarm::calibration(&Message::new("fault", "line").with_inner("detail", &odd("unread"))),

@@ -47,6 +47,13 @@ impl Alarm {
         Self::from(AlarmCode::FallUnseen).with("bin", bin)
     }
 
+    /// Returns the alarm that a run ended before the parts with these scanned numbers came; each with its person.
+    pub fn scans_dropped(scans: &[(String, String)]) -> Self {
+        let named = |(serial, who): &(String, String)| format!("{serial} ({who})");
+        let serials: Vec<String> = scans.iter().map(named).collect();
+        Self::from(AlarmCode::ScansDropped).with("serials", serials.join(", "))
+    }
+
     /// Returns the alarm that a part sticks in the open gripper.
     pub fn part_sticks() -> Self {
         Self::from(AlarmCode::PartStuck).case("between_fingers")

@@ -22,6 +22,8 @@ async function figures(path, which) {
   return Array.from(page.querySelectorAll(which), (it) => {
     const figure = document.importNode(it, true);
     const caption = figure.querySelector("figcaption");
+    // A narrow screen scrolls a chart sideways; the keyboard does so too.
+    figure.tabIndex = 0;
     if (caption) figure.querySelector("svg").setAttribute("aria-label", caption.textContent);
     else figure.className = "list";
     return figure;

@@ -1,7 +1,7 @@
 // A revision of a recipe as a sheet: every key in words with its unit; for an engineer with range and input.
 
 // Sections of the sheet, in order.
-const RECIPE_SECTIONS = ["about", "part", "decision", "limits", "test", "strategy"];
+const RECIPE_SECTIONS = ["about", "part", "decision", "limits", "test", "strategy", "prompt"];
 let recipe = null, revisions = [], drawnRecipe = "";
 // `typed`: texts typed into the newest revision, by path of the key. `refusedField`: the last refusal of a value.
 // `recipeMessage` returns the last message in the present language.
@@ -73,8 +73,12 @@ function fieldInputs(field) {
   return [typedInto(field, make("input", undefined, field.form === "text" ? "" : "number"), text, (it) => it)];
 }
 
+// Numbers of a prompt and of its choice from 1, as in "1.2 Answer, English".
+const places = (path) => (path.match(/\d+/g) ?? []).map((it) => Number(it) + 1).join(".");
+
 const fieldName = (path) => {
   const [section, key, side] = path.split(".");
+  if (section === "prompt") return places(path) + " " + word("field-" + path.replace(/\.\d+/g, "").replaceAll(".", "-"));
   return section === "limits" ? nameOf(key) + " " + word("r-" + side) : wordOr("field-" + path.replaceAll(".", "-"), nameOf(path.split(".").at(-1)));
 };
 
@@ -94,9 +98,11 @@ function unitCell(field) {
   return cell;
 }
 
-// Adds the reason below the row whose value the rig refused.
+// Adds the reason below the row whose value the rig refused; that of a list below its first row.
 function withRefusal(element, path) {
-  if (!refusedField || !(refusedField.key + ".").startsWith(path + ".")) return [element];
+  if (!refusedField) return [element];
+  const first = recipe.fields.find((it) => it.path.startsWith(refusedField.key + "."));
+  if (path !== first?.path && !(refusedField.key + ".").startsWith(path + ".")) return [element];
   const cell = make("td", refusedValue(refusedField), "trouble");
   cell.colSpan = 4;
   return [element, row(cell)];
@@ -112,6 +118,20 @@ function fieldRow(field) {
 // Makes the row of a characteristic with its lower and upper limit.
 function limitRow(key, [low, high]) {
   return withRefusal(row(nameOf(key), fieldCell(low), fieldCell(high), unitCell(low)), "limits." + key);
+}
+
+// Makes the table of the prompts of every lot, which stand in another file than the recipe.
+function lotPrompts() {
+  const table = make("table", undefined, "list sheet"), body = make("tbody");
+  table.append(make("caption", word("r-prompts_of_lots") + bracketed("lot.toml")), body);
+  const request = (it) => (language === "zh" ? it.text_zh : it.text_en);
+  body.append(...recipe.prompts_of_lots.map((it) => row(choiceText(it.when), request(it) + " — " + it.choices.map(request).join(" / "))));
+  return table;
+}
+
+function recipeTables() {
+  const filled = RECIPE_SECTIONS.filter((section) => recipe.fields.some((it) => recipeSection(it.path) === section));
+  return [...filled.map(fieldTable), ...(recipe.prompts_of_lots.length ? [lotPrompts()] : [])];
 }
 
 function fieldTable(section) {

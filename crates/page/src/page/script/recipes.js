@@ -1,7 +1,7 @@
 // Recipes: shows revisions; saves the next one or a new recipe; approves.
 
 function drawRecipe() {
-  at("r_fields").replaceChildren(...(recipe ? RECIPE_SECTIONS : []).map(fieldTable));
+  at("r_fields").replaceChildren(...(recipe ? recipeTables() : []));
   for (const id of ["r_why", "r_save", "r_save_as", "r_discard"]) at(id).hidden = !mayRevise();
   showApproval();
   showRevisions();
