@@ -24,6 +24,11 @@ impl Reader {
         self.bytes.len()
     }
 
+    /// Returns the reply that waits for the line that must follow it.
+    pub fn without_tail(&self) -> Option<&Raw> {
+        self.found.as_ref()
+    }
+
     /// Adds bytes of a reply in `form`.
     ///
     /// # Errors

@@ -172,14 +172,13 @@ fn scan_names_every_instrument_and_its_profile() {
         assert_eq!(it["profiles"], serde_json::json!([profile]), "{it}");
     }
     let broken = "config/instruments/dmm-34461a.toml";
-    bench.shop.change(broken, "class = \"dmm\"", "class = \"meter\"");
+    bench
+        .shop
+        .change(broken, "class = \"dmm\"", "class = \"meter\"");
     let nobody = bench.shop.run("instrument scan --link tcp:127.0.0.1:1");
     let nobody = nobody.with_status(1);
     assert_eq!(nobody.stdout, "no instrument answered\n");
-    for warning in [
-        "127.0.0.1:1: connection refused",
-        "class: found \"meter\"",
-    ] {
+    for warning in ["127.0.0.1:1: connection refused", "class: found \"meter\""] {
         assert!(nobody.stderr.contains(warning), "{nobody}");
     }
 }

@@ -150,7 +150,7 @@ pub async fn storm(way: Way, seed: u64, faults: &[String], until_s: f64) -> Weat
         // The deadline is looked at between the moves, of which each ends within the time of a query.
         let limit = settings.longest(&program) + settings.limit + settings.limit;
         let began = pace.now();
-        calm += u64::from(began.as_seconds() >= until_s);
+        calm += u64::from(began.since(RigTime(0)).as_seconds() >= until_s);
         let outcome = tokio::select! {
             outcome = link.run(program) => Some(outcome),
             () = pace.sleep_until(began + limit) => None,

@@ -220,13 +220,7 @@ impl Link {
                 break found;
             }
             let Some(piece) = self.piece(deadline).await? else {
-                return Err(match self.reader.clear() {
-                    0 => Failure::Timeout {
-                        command: command(),
-                        limit: question.limit,
-                    },
-                    received => malformed(ReplyError::Incomplete { received }),
-                });
+                return Err(self.silence(question));
             };
             self.note(Direction::Received, piece.bytes());
             self.reader.push(piece.bytes(), form).map_err(malformed)?;
@@ -235,6 +229,29 @@ impl Link {
         match question.strict && self.reader.waiting() > 0 {
             true => Err(malformed(ReplyError::More)),
             false => Ok(raw),
+        }
+    }
+
+    /// Returns why no reply arrived in time.
+    fn silence(&mut self, question: &Question) -> Failure {
+        let command = question.command.clone();
+        let alone = self.reader.without_tail().and_then(|it| it.text().ok());
+        // Behind a reply that never came, the line of an adapter stands alone.
+        let address = alone.filter(|it| it.parse::<u8>().is_ok_and(|it| it <= 30));
+        if let (Some(found), Some(expected)) = (address, question.tail.as_deref())
+            && found != expected
+        {
+            return another_address(found.as_bytes(), expected);
+        }
+        match self.reader.clear() {
+            0 => Failure::Timeout {
+                command,
+                limit: question.limit,
+            },
+            received => Failure::Malformed {
+                command,
+                reason: ReplyError::Incomplete { received },
+            },
         }
     }
 

@@ -149,7 +149,7 @@ fn an_unknown_query_is_named_by_the_instrument() {
 }
 
 #[test]
-fn a_failed_set_up_keeps_nothing_unsafe() {
+fn the_safe_program_needs_no_set_up() {
     let mut bench = Bench::new();
     bench.errors = vec!["-222,\"Data out of range\""];
     assert_eq!(bench.run().unwrap_err().code(), "instrument");
