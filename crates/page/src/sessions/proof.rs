@@ -4,7 +4,7 @@
 //! The audit of orders notes every wrong password or code, with the typed name only if a person has it: people type
 //! passwords into the wrong field. A try that has to wait leaves no line, so that guessing cannot fill the disk.
 
-use super::super::access::{Login, Person, Role, note};
+use super::super::access::{AccessError, Login, Person, Role, note};
 use super::super::error::{ApiError, blocking};
 use super::{Sessions, now_us};
 use history::Store;
@@ -47,13 +47,14 @@ impl Sessions {
         self.answered(answer, by.clone(), ApiError::WrongCode)
             .await?;
         let what = json!({ "order": "people", "change": "set_up", "name": name });
+        let role = Role::Engineer;
+        let person = Person { name, role };
+        let added = person.clone();
         self.audited(by, what, move |register| {
-            let role = Role::Engineer;
-            register.add(&name, role, &password, now_us())?;
-            let token = register.open_session(&name, now_us())?;
-            Ok((Person { name, role }, token))
+            Ok(register.add(&added.name, role, &password, now_us())?)
         })
-        .await
+        .await?;
+        self.open_session(person).await
     }
 
     /// Changes the password of `person`, whose other sessions end, and opens a session. Fails for a wrong present
@@ -74,10 +75,18 @@ impl Sessions {
         self.answered(answer, by.clone(), ApiError::WrongPassword)
             .await?;
         let what = json!({ "order": "people", "change": "password", "name": person.name });
+        let name = person.name.clone();
         self.audited(by, what, move |register| {
-            register.set_password(&person.name, &new)?;
+            Ok(register.set_password(&name, &new)?)
+        })
+        .await?;
+        self.open_session(person).await
+    }
+
+    async fn open_session(&self, person: Person) -> Result<Session, ApiError> {
+        self.with(move |register| {
             let token = register.open_session(&person.name, now_us())?;
-            Ok((person, token))
+            Ok::<_, AccessError>((person, token))
         })
         .await
     }
