@@ -54,7 +54,7 @@ impl Sessions {
             Ok(register.add(&added.name, role, &password, now_us())?)
         })
         .await?;
-        self.open(person).await
+        self.open_session(person).await
     }
 
     /// Changes the password of `person`, whose other sessions end, and opens a session. Fails for a wrong present
@@ -80,10 +80,10 @@ impl Sessions {
             Ok(register.set_password(&name, &new)?)
         })
         .await?;
-        self.open(person).await
+        self.open_session(person).await
     }
 
-    async fn open(&self, person: Person) -> Result<Session, ApiError> {
+    async fn open_session(&self, person: Person) -> Result<Session, ApiError> {
         self.with(move |register| {
             let token = register.open_session(&person.name, now_us())?;
             Ok::<_, AccessError>((person, token))
