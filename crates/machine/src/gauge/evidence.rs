@@ -16,6 +16,11 @@ const FACTORS: [f64; 5] = [1.25, 1.5, 2.0, 3.0, 5.0];
 /// Share of the probability on either side of the interval of [`Evidence::seen`].
 const TAIL: f64 = 0.025;
 
+/// Returns the degrees of freedom of a standard deviation that is known to `u_pct` percent (GUM G.4.2).
+pub fn freedom_of(u_pct: f64) -> f64 {
+    0.5 * (100.0 / u_pct).powi(2)
+}
+
 /// Residuals with the variance that was promised for each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Residuals {
@@ -107,17 +112,27 @@ impl Evidence {
     /// Returns the standard deviation for budgets as a multiple of the promised one: widened by Student's t, at least
     /// 1.
     pub fn covering(&self) -> f64 {
-        if self.freedom < 1.0 {
-            return 1.0;
+        match self.freedom < 1.0 {
+            true => 1.0,
+            false => self.pooled(0.0).max(1.0),
         }
-        let widened = student(self.freedom as usize).powi(2) * self.squares / self.freedom;
-        self.multiple(widened).max(1.0)
+    }
+
+    /// Returns the standard deviation for budgets as a multiple of the promised one, which counts as much as residuals
+    /// of `promise` degrees of freedom: both pooled, widened by Student's t.
+    pub fn pooled(&self, promise: f64) -> f64 {
+        let freedom = promise + self.freedom;
+        let ratio = (promise + self.squares) / freedom;
+        self.multiple(student(freedom as usize).powi(2) * ratio)
     }
 
     /// Returns the multiple of the promised standard deviation at which the whole variance is `ratio` times the
     /// promised one.
     fn multiple(&self, ratio: f64) -> f64 {
-        let share = self.shares / self.freedom;
+        let share = match self.freedom > 0.0 {
+            true => self.shares / self.freedom,
+            false => 1.0,
+        };
         (1.0 + (ratio - 1.0) / share).max(0.0).sqrt()
     }
 }

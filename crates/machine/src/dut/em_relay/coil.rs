@@ -1,7 +1,8 @@
 //! Coil resistance as a ratio to the reference resistor, at the reference temperature.
 //!
 //! One converter reads voltage and current in the same scan, and the calibration reads the reference resistor on the
-//! same two channels, so gain errors cancel. Copper: `R(T1) / R(T2) = (234.5 + T1) / (234.5 + T2)`, temperatures in
+//! same two channels, so gain errors cancel. The certificates of the reference parts correct the ratio, because they
+//! also show the error of the thermometer. Copper: `R(T1) / R(T2) = (234.5 + T1) / (234.5 + T2)`, temperatures in
 //! Celsius (IEC 60028 annealed copper).
 
 use crate::gauge::Factor;
@@ -60,10 +61,7 @@ pub fn resistance(
             "offset",
             value * uncertainty.offset_v * (1.0 / volts - 1.0 / current),
         )
-        .with(
-            "reference resistor",
-            value * ohm_per_ratio.u / ohm_per_ratio.value,
-        )
+        .with("references", value * ohm_per_ratio.u / ohm_per_ratio.value)
         .with(
             "coil temperature",
             value * uncertainty.temperature_k * relative_per_kelvin(part),

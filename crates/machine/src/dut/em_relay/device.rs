@@ -3,7 +3,7 @@
 //! Holds recipe, calibration and what it learns: the overshoot of the ramps from reference parts, the interval of the
 //! next fine ramp from good parts of the lot, the probe contact at the coil from every part.
 
-use super::calibration::{Calibration, Overshoots};
+use super::calibration::{Calibration, Overshoots, Temperature};
 use super::feasible::nominal_v_per_s;
 use super::measure::{Context, Observed, Test};
 use super::overshoot::OvershootModel;
@@ -15,6 +15,7 @@ use super::reference;
 use super::reference_part::{self, Misfit, ReferenceRun};
 use super::settings::ReferencePart;
 use super::threshold::Direction;
+use crate::dut::accuracy::AccuracySettings;
 use crate::dut::device::{CalibrationFault, DeviceUnderTest, Made, Rig, TestOrder};
 use crate::dut::promise::{Broken, Promise};
 use crate::dut::record::{Own, TestRecord};
@@ -111,6 +112,22 @@ impl Device {
     fn watch_good(&mut self, record: &TestRecord) {
         self.promises.watch_closures(observed(record));
         self.promises.apply(&mut self.context);
+    }
+
+    /// Watches the promised temperature of parts on the reference parts, and returns what they show of it.
+    fn temperature(&mut self) -> Temperature {
+        let accuracy = AccuracySettings {
+            part_minus_track_k: self.promises.promised(Promise::PartMinusTrack),
+            ..self.context.accuracy
+        };
+        let run = &self.reference_parts;
+        let residuals = run.temperatures(&self.certificates, &accuracy);
+        self.promises.observe(Promise::PartMinusTrack, residuals);
+        let part_minus_track_k = self.promises.part_minus_track_k();
+        Temperature {
+            part_minus_track_k,
+            coil: run.coil(part_minus_track_k),
+        }
     }
 
     fn certificate(&self, serial: &str) -> Option<&ReferencePart> {
@@ -214,8 +231,11 @@ impl DeviceUnderTest for Device {
     fn forget_calibration(&mut self) {
         self.reference_parts = ReferenceRun::default();
         self.promises.restart();
+        self.calibrate(|calibration| {
+            calibration.overshoots = None;
+            calibration.temperature = None;
+        });
         self.promises.apply(&mut self.context);
-        self.calibrate(|calibration| calibration.overshoots = None);
     }
 
     fn learn_reference(
@@ -244,11 +264,21 @@ impl DeviceUnderTest for Device {
     }
 
     fn conclude_reference_parts(&mut self) -> Result<dut::Calibration, CalibrationFault> {
-        let accuracy = &self.context.accuracy;
+        let temperature = self.temperature();
+        let accuracy = AccuracySettings {
+            part_minus_track_k: temperature.part_minus_track_k,
+            ..self.context.accuracy
+        };
         let overshoots =
             self.reference_parts
-                .overshoots(&self.certificates, accuracy, self.coarse)?;
+                .overshoots(&self.certificates, &accuracy, self.coarse)?;
         self.teach(overshoots);
+        let broken = self.promises.broken();
+        self.calibrate(|calibration| {
+            calibration.temperature = Some(temperature);
+            calibration.broken = broken;
+        });
+        self.promises.apply(&mut self.context);
         let calibration = Calibration::clone(&self.context.calibration);
         Ok(dut::Calibration::EmRelay(calibration))
     }

@@ -113,3 +113,41 @@ fn no_residuals_are_no_evidence() {
     assert_eq!((none.seen(), none.covering()), (None, 1.0));
     assert!(!none.disproves(0.01));
 }
+
+#[test]
+fn a_promise_known_to_half_counts_as_two_residuals() {
+    assert_eq!(freedom_of(50.0), 2.0);
+    assert_eq!(freedom_of(25.0), 8.0);
+    // Without residuals: Student's t of two degrees of freedom is 4.53.
+    assert_eq!(Evidence::default().pooled(2.0), 4.53 / 2.0);
+    let mut evidence = Evidence::default();
+    evidence.add(Residuals {
+        squares: 4.0 * 4.0,
+        freedom: 4,
+        own: 1.0,
+        others: 0.0,
+    });
+    // (2 x 1 + 4 x 4) / 6, and Student's t of six degrees of freedom is 2.52.
+    let pooled = evidence.pooled(2.0);
+    assert!((pooled - 3f64.sqrt() * 1.26).abs() < 1e-12, "{pooled}");
+}
+
+/// Share of the lots whose true value lies within twice the pooled standard deviation, for a promise known to half that is
+/// wrong by `factor`, and four residuals.
+fn covered(factor: f64) -> f64 {
+    let lots = 4000;
+    let is_covered = |seed: &u64| {
+        let mut normal = Normal::new(*seed);
+        let mut evidence = Evidence::default();
+        (0..4).for_each(|_| evidence.add(one((factor * normal.next()).powi(2), 1.0, 0.0)));
+        (factor * normal.next()).abs() < 2.0 * evidence.pooled(freedom_of(50.0))
+    };
+    (0..lots).filter(is_covered).count() as f64 / lots as f64
+}
+
+#[test]
+fn a_pooled_promise_covers_though_wrong_by_two() {
+    let (kept, broken) = (covered(1.0), covered(2.0));
+    assert!((0.95..0.985).contains(&kept), "{kept}");
+    assert!((0.92..0.96).contains(&broken), "{broken}");
+}

@@ -87,10 +87,15 @@ impl Context {
 
     /// Returns the uncertainty terms of a coil scan.
     pub fn scan_uncertainty(&self) -> ScanUncertainty {
+        // The correction by reference parts contains the error of the thermometer.
+        let rtd_k = match self.calibration.temperature {
+            Some(_) => 0.0,
+            None => self.accuracy.rtd_k,
+        };
         ScanUncertainty {
             reading_v: self.reading_u_v(),
             offset_v: self.calibration.coil_input.offset_v.u,
-            temperature_k: self.accuracy.rtd_k.hypot(self.accuracy.part_minus_track_k),
+            temperature_k: rtd_k.hypot(self.accuracy.part_minus_track_k),
         }
     }
 

@@ -5,8 +5,11 @@
 //! | noise of the analog inputs | repeated conversions of constant references during the calibration ([`super::reference::noise`]) |
 //! | scatter of operations | repeated fine ramps of one part: each reference part of a calibration, and parts near a limit ([`operation`]) |
 //! | scatter of closures | closures of one part's NC contact ([`closure`]) |
+//! | temperature of part minus track | operate voltages of the reference parts of a calibration ([`super::reference_part`]) |
 //!
-//! From the alarm on, budgets use the observed value; parts judged before keep the promised one.
+//! From the alarm on, budgets use the observed value; parts judged before keep the promised one. The five reference parts
+//! of a calibration disprove only a gross error of the temperature. So every calibration pools what they show with the
+//! promise, which counts as much as its own uncertainty in `rig.toml` allows ([`Watched::used`]).
 
 mod closure;
 mod operation;
@@ -15,7 +18,7 @@ mod watch;
 use super::measure::Context;
 use crate::dut::promise::{Broken, Promise};
 use crate::gauge::Evidence;
-use crate::gauge::evidence::Residuals;
+use crate::gauge::evidence::{Residuals, freedom_of};
 use std::sync::Arc;
 
 /// Greatest share of the lots in which a promise that holds raises its alarm.
@@ -36,6 +39,9 @@ struct Watched {
     promise: Promise,
     /// Promised value, in the unit of its key.
     promised: f64,
+    /// Degrees of freedom of a promise that budgets pool with the evidence; `None` where they use the promise until it
+    /// is broken.
+    pools: Option<f64>,
     evidence: Evidence,
     broken: Option<Broken>,
 }
@@ -50,6 +56,8 @@ impl Promises {
             Watched {
                 promise,
                 promised,
+                pools: (promise == Promise::PartMinusTrack)
+                    .then_some(freedom_of(context.accuracy.part_minus_track_u_pct)),
                 evidence: Evidence::default(),
                 // Not broken when `rig.toml` by now promises as large a value itself.
                 broken: stored.find(|it| it.used > promised).copied(),
@@ -81,14 +89,25 @@ impl Promises {
         broken
     }
 
-    /// Makes the budgets of `context` use the larger of the promised and the observed values.
+    /// Returns the difference between part and track for budgets, kelvin (1 sd): promise and reference parts pooled.
+    pub fn part_minus_track_k(&self) -> f64 {
+        self.watched[Promise::PartMinusTrack.index()].used()
+    }
+
+    /// Makes the budgets of `context` use the larger of the promised and the observed values, and the temperature that
+    /// the calibration has found.
     pub fn apply(&self, context: &mut Context) {
         let accuracy = &mut context.accuracy;
+        let temperature = context.calibration.temperature;
         for it in &self.watched {
             let used = it.broken.map_or(it.promised, |broken| broken.used);
             match it.promise {
                 Promise::AiNoise => accuracy.ai_noise_lsb = used,
                 Promise::OperationScatter => accuracy.operation_scatter_mv = used,
+                Promise::PartMinusTrack => {
+                    accuracy.part_minus_track_k =
+                        temperature.map_or(it.promised, |found| found.part_minus_track_k);
+                }
                 Promise::ClosureScatter => {
                     let relay = Arc::make_mut(&mut context.relay);
                     relay.test.strategy.contact.closure_scatter_pct = used.ceil() as u32;
@@ -133,8 +152,17 @@ impl Watched {
                 self.promised * seen.interval.1,
             ),
             freedom: seen.freedom,
-            used: self.promised * self.evidence.covering(),
+            used: self.used(),
         });
+    }
+
+    /// Returns the value for budgets that the evidence gives, in the unit of the key.
+    fn used(&self) -> f64 {
+        let evidence = &self.evidence;
+        let multiple = self
+            .pools
+            .map_or_else(|| evidence.covering(), |it| evidence.pooled(it));
+        self.promised * multiple
     }
 }
 
@@ -146,6 +174,7 @@ fn promised(context: &Context, promise: Promise) -> f64 {
         Promise::ClosureScatter => {
             f64::from(context.relay.test.strategy.contact.closure_scatter_pct)
         }
+        Promise::PartMinusTrack => context.accuracy.part_minus_track_k,
     }
 }
 

@@ -165,3 +165,35 @@ fn an_interim_overshoot_proves_nothing() {
         context().overshoot(Direction::Rising).coarse
     );
 }
+
+#[test]
+fn operate_voltages_show_the_scatter_of_temperatures() {
+    let accuracy = context().accuracy;
+    let parts = reference_parts();
+    let residuals = |mv: &[f64]| run_of(mv, -9.0).temperatures(&parts, &accuracy);
+    // 0.15 K of a coil are 4.6 mV of an operate voltage of 7.88 V; 4.6, 0 and -4.6 mV twice.
+    let found = residuals(&[18.6, 14.0, 9.4, 18.6, 9.4]).unwrap();
+    assert_eq!(found.freedom, 4);
+    assert!((found.own.sqrt() - 4.6e-3).abs() < 0.05e-3, "{found:?}");
+    assert!((found.others.sqrt() - 2.24e-3).abs() < 0.01e-3, "{found:?}");
+    assert!((found.squares / found.own - 4.0).abs() < 0.1, "{found:?}");
+    assert!(residuals(&[14.0]).is_none(), "one part");
+}
+
+#[test]
+fn coils_of_the_reference_parts_correct_the_thermometer() {
+    let parts = reference_parts();
+    let run = |off_ohm: f64| {
+        let mut run = ReferenceRun::default();
+        for part in &parts {
+            let record = tested(part, 0.014, -0.009, off_ohm);
+            run.learn(part, REFERENCE, &record, &record.own).unwrap();
+        }
+        run
+    };
+    let found = run(0.4).coil(0.15);
+    assert!((found.value - 400.0 / 400.4).abs() < 1e-6, "{found:?}");
+    // 0.15 K are 0.058 %, a certificate has 0.01 %; five parts.
+    assert!((found.u - 5.92e-4 / 5f64.sqrt()).abs() < 2e-6, "{found:?}");
+    assert!(run(0.0).coil(0.3).u > 1.9 * found.u);
+}

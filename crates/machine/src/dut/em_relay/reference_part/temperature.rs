@@ -1,0 +1,67 @@
+//! Temperature of the reference parts: their scatter about the track, and the error of its thermometer.
+//!
+//! The operate voltage shows the temperature of a coil most clearly: 4.6 mV for the 0.15 K of the shipped `rig.toml`,
+//! beside 2.2 mV of certificate and operation. Release voltage and coil resistance of the same part show the same
+//! temperature again, under more noise, so they add no degree of freedom. What all parts have in common is lost in the
+//! overshoot. The coil resistance shows that: mean heating, thermometer, reference resistor.
+
+use super::ReferenceRun;
+use crate::dut::accuracy::AccuracySettings;
+use crate::dut::em_relay::coil::relative_per_kelvin;
+use crate::dut::em_relay::scale::Scale;
+use crate::dut::em_relay::settings::ReferencePart;
+use crate::dut::em_relay::threshold::Direction;
+use crate::gauge::Factor;
+use crate::gauge::evidence::Residuals;
+use units::Celsius;
+
+/// Temperature at which the sensitivities are taken.
+const ABOUT: Celsius = Celsius(23.0);
+
+impl ReferenceRun {
+    /// Returns the residuals of the operate voltages against the temperature difference that `accuracy` promises; `None`
+    /// below two parts.
+    pub fn temperatures(
+        &self,
+        parts: &[ReferencePart],
+        accuracy: &AccuracySettings,
+    ) -> Option<Residuals> {
+        let shifts = self.shifts.iter();
+        let volts: Vec<f64> = shifts
+            .map(|it| it.fine_v[Direction::Rising as usize])
+            .collect();
+        let (own, others) = variances(parts, Direction::Rising, accuracy);
+        Residuals::about_mean(&volts, own, others)
+    }
+
+    /// Returns the mean of certified over found coil resistance; the temperatures of the parts differ from that of the
+    /// track by `part_minus_track_k` (1 sd).
+    pub fn coil(&self, part_minus_track_k: f64) -> Factor {
+        let n = self.shifts.len() as f64;
+        let mean = self.shifts.iter().map(|it| it.coil.value).sum::<f64>() / n;
+        let kelvin = part_minus_track_k * relative_per_kelvin(ABOUT);
+        let squares = self
+            .shifts
+            .iter()
+            .map(|it| it.coil.u.powi(2) + kelvin.powi(2));
+        Factor::new(mean, squares.sum::<f64>().sqrt() / n)
+    }
+}
+
+/// Returns the promised variances of the shift of one reference part, mean over `parts`, V²: that of its temperature,
+/// and that of certificate and operation.
+pub(super) fn variances(
+    parts: &[ReferencePart],
+    direction: Direction,
+    accuracy: &AccuracySettings,
+) -> (f64, f64) {
+    let kelvin = accuracy.part_minus_track_k * relative_per_kelvin(ABOUT);
+    let mean = |of: &dyn Fn(&ReferencePart) -> f64| {
+        parts.iter().map(of).sum::<f64>() / parts.len().max(1) as f64
+    };
+    let operation_v = |part: &ReferencePart| Scale::new(part.nominal_v, 1.0).operation_v(accuracy);
+    (
+        mean(&|part| (part.threshold(direction).value * kelvin).powi(2)),
+        mean(&|part| part.threshold(direction).u.powi(2) + operation_v(part).powi(2)),
+    )
+}
