@@ -218,9 +218,14 @@ impl ReferenceRun {
 
     /// Returns the mean of fine indication minus certificate over the parts so far, volts, for operate and release.
     pub fn fine_v(&self) -> Option<(f64, f64)> {
-        let n = self.shifts.len() as f64;
-        let mean = |at: usize| self.shifts.iter().map(|it| it.fine_v[at]).sum::<f64>() / n;
-        (n > 0.0).then(|| (mean(0), mean(1)))
+        let mean = |direction| self.mean(direction);
+        (!self.shifts.is_empty()).then(|| (mean(Direction::Rising), mean(Direction::Falling)))
+    }
+
+    /// Returns the mean of fine indication minus certificate, volts; NaN without a part.
+    fn mean(&self, direction: Direction) -> f64 {
+        let each = self.shifts.iter().map(|it| it.fine_v[direction as usize]);
+        each.sum::<f64>() / self.shifts.len() as f64
     }
 
     /// Returns the mean of coarse minus fine indication over the parts that have both, volts; 0 when none has.
@@ -248,7 +253,7 @@ impl ReferenceRun {
             });
         }
         let shift = |it: &Shift| it.fine_v[direction as usize];
-        let mean = self.shifts.iter().map(shift).sum::<f64>() / n;
+        let mean = self.mean(direction);
         let nominal_v = parts.first().map_or(f64::NAN, |part| part.nominal_v);
         let scale = Scale::new(nominal_v, 1.0);
         let band = scale.of_coil(BAND);

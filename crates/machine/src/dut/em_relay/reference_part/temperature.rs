@@ -5,7 +5,7 @@
 //! temperature again, under more noise, so they add no degree of freedom. What all parts have in common is lost in the
 //! overshoot. The coil resistance shows that: mean heating, thermometer, reference resistor.
 
-use super::ReferenceRun;
+use super::{ReferenceRun, Shift};
 use crate::dut::accuracy::AccuracySettings;
 use crate::dut::em_relay::coil::relative_per_kelvin;
 use crate::dut::em_relay::scale::Scale;
@@ -26,11 +26,14 @@ impl ReferenceRun {
         parts: &[ReferencePart],
         accuracy: &AccuracySettings,
     ) -> Option<Residuals> {
-        let shifts = self.shifts.iter();
-        let volts: Vec<f64> = shifts
-            .map(|it| it.fine_v[Direction::Rising as usize])
-            .collect();
-        let (own, others) = variances(parts, Direction::Rising, accuracy);
+        let direction = Direction::Rising;
+        let (fine_v, coarse_v) = (self.mean(direction), self.over(direction));
+        let beyond_own = |it: &Shift| {
+            let own = overshoot_of_part(fine_v, it.coarse_v[direction as usize] / coarse_v);
+            it.fine_v[direction as usize] - own
+        };
+        let volts: Vec<f64> = self.shifts.iter().map(beyond_own).collect();
+        let (own, others) = variances(parts, direction, accuracy);
         Residuals::about_mean(&volts, own, others)
     }
 
@@ -46,6 +49,13 @@ impl ReferenceRun {
             .map(|it| it.coil.u.powi(2) + kelvin.powi(2));
         Factor::new(mean, squares.sum::<f64>().sqrt() / n)
     }
+}
+
+/// Returns the fine overshoot of a part beyond the mean `fine_v` of all, when its coarse one is `coarse` times the mean;
+/// 0 without a coarse ramp.
+fn overshoot_of_part(fine_v: f64, coarse: f64) -> f64 {
+    let further = fine_v * (coarse - 1.0);
+    if further.is_finite() { further } else { 0.0 }
 }
 
 /// Returns the promised variances of the shift of one reference part, mean over `parts`, V²: that of its temperature,
