@@ -49,8 +49,8 @@ impl AccuracySettings {
         1.0
     }
 
-    /// Returns the relative uncertainty of a standard deviation that is an estimate, not a measurement (GUM G.4.2).
+    /// Returns the relative uncertainty of a standard deviation that may be wrong by a factor of two: ln 2.
     fn usual_part_minus_track_u_pct() -> f64 {
-        50.0
+        70.0
     }
 }

@@ -6,6 +6,7 @@
 //! `1 / rate` in a share of at most `rate` of all lots, at any number of looks (Ville's inequality). A smaller scatter
 //! than promised is no evidence.
 
+use super::factor::Deviation;
 use super::repetition::student;
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -112,18 +113,21 @@ impl Evidence {
     /// Returns the standard deviation for budgets as a multiple of the promised one: widened by Student's t, at least
     /// 1.
     pub fn covering(&self) -> f64 {
-        match self.freedom < 1.0 {
-            true => 1.0,
-            false => self.pooled(0.0).max(1.0),
+        if self.freedom < 1.0 {
+            return 1.0;
         }
+        let widened = student(self.freedom as usize).powi(2) * self.squares / self.freedom;
+        self.multiple(widened).max(1.0)
     }
 
-    /// Returns the standard deviation for budgets as a multiple of the promised one, which counts as much as residuals
-    /// of `promise` degrees of freedom: both pooled, widened by Student's t.
-    pub fn pooled(&self, promise: f64) -> f64 {
+    /// Returns the standard deviation as a multiple of the promised one, which counts as much as residuals of `promise`
+    /// degrees of freedom: both pooled.
+    pub fn pooled(&self, promise: f64) -> Deviation {
         let freedom = promise + self.freedom;
-        let ratio = (promise + self.squares) / freedom;
-        self.multiple(student(freedom as usize).powi(2) * ratio)
+        Deviation {
+            value: self.multiple((promise + self.squares) / freedom),
+            freedom,
+        }
     }
 
     /// Returns the multiple of the promised standard deviation at which the whole variance is `ratio` times the

@@ -10,8 +10,8 @@ use super::recipe::CoilChannels;
 use super::threshold::Direction;
 use crate::dut::calibration::CalibrationFacts;
 use crate::dut::promise::Broken;
-use crate::gauge::Factor;
 use crate::gauge::factor::Named;
+use crate::gauge::{Deviation, Factor};
 use serde::{Deserialize, Serialize};
 use units::{Unit, Volt};
 
@@ -132,8 +132,8 @@ pub struct Overshoots {
 /// Temperature of the parts, found on reference parts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Temperature {
-    /// Difference between the temperatures of part and track for budgets, kelvin (1 sd).
-    pub part_minus_track_k: f64,
+    /// Difference between the temperature of a part and the mean of the reference parts, both against the track, kelvin.
+    pub part_k: Deviation,
     /// Certified over found coil resistance at the reference temperature. It contains the error of the thermometer, of
     /// the reference resistor and the mean heating of the coil.
     pub coil: Factor,

@@ -15,7 +15,6 @@ use super::reference;
 use super::reference_part::{self, Misfit, ReferenceRun};
 use super::settings::ReferencePart;
 use super::threshold::Direction;
-use crate::dut::accuracy::AccuracySettings;
 use crate::dut::device::{CalibrationFault, DeviceUnderTest, Made, Rig, TestOrder};
 use crate::dut::promise::{Broken, Promise};
 use crate::dut::record::{Own, TestRecord};
@@ -116,18 +115,11 @@ impl Device {
 
     /// Watches the promised temperature of parts on the reference parts, and returns what they show of it.
     fn temperature(&mut self) -> Temperature {
-        let accuracy = AccuracySettings {
-            part_minus_track_k: self.promises.promised(Promise::PartMinusTrack),
-            ..self.context.accuracy
-        };
-        let run = &self.reference_parts;
-        let residuals = run.temperatures(&self.certificates, &accuracy);
+        let (run, accuracy) = (&self.reference_parts, &self.context.accuracy);
+        let residuals = run.temperatures(&self.certificates, accuracy);
         self.promises.observe(Promise::PartMinusTrack, residuals);
-        let part_minus_track_k = self.promises.part_minus_track_k();
-        Temperature {
-            part_minus_track_k,
-            coil: run.coil(part_minus_track_k),
-        }
+        let u_pct = accuracy.part_minus_track_u_pct;
+        run.temperature(self.promises.part_minus_track_k(u_pct))
     }
 
     fn certificate(&self, serial: &str) -> Option<&ReferencePart> {
@@ -264,21 +256,17 @@ impl DeviceUnderTest for Device {
     }
 
     fn conclude_reference_parts(&mut self) -> Result<dut::Calibration, CalibrationFault> {
-        let temperature = self.temperature();
-        let accuracy = AccuracySettings {
-            part_minus_track_k: temperature.part_minus_track_k,
-            ..self.context.accuracy
-        };
+        let accuracy = &self.context.accuracy;
         let overshoots =
             self.reference_parts
-                .overshoots(&self.certificates, &accuracy, self.coarse)?;
+                .overshoots(&self.certificates, accuracy, self.coarse)?;
         self.teach(overshoots);
+        let temperature = self.temperature();
         let broken = self.promises.broken();
         self.calibrate(|calibration| {
             calibration.temperature = Some(temperature);
             calibration.broken = broken;
         });
-        self.promises.apply(&mut self.context);
         let calibration = Calibration::clone(&self.context.calibration);
         Ok(dut::Calibration::EmRelay(calibration))
     }

@@ -267,8 +267,8 @@ impl ReferenceRun {
                 off_mv: (shift(odd) - mean) * 1e3,
             });
         }
-        let (temperature, others) = temperature::variances(parts, direction, accuracy);
-        Ok(Factor::new(mean, ((temperature + others) / n).sqrt()))
+        let (_, others) = temperature::variances(parts, direction, accuracy);
+        Ok(Factor::new(mean, (others / n).sqrt()))
     }
 }
 

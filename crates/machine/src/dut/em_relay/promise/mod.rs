@@ -9,7 +9,7 @@
 //!
 //! From the alarm on, budgets use the observed value; parts judged before keep the promised one. The five reference parts
 //! of a calibration disprove only a gross error of the temperature. So every calibration pools what they show with the
-//! promise, which counts as much as its own uncertainty in `rig.toml` allows ([`Watched::used`]).
+//! promise, which counts as much as its own uncertainty in `rig.toml` allows ([`Promises::part_minus_track_k`]).
 
 mod closure;
 mod operation;
@@ -17,8 +17,8 @@ mod watch;
 
 use super::measure::Context;
 use crate::dut::promise::{Broken, Promise};
-use crate::gauge::Evidence;
 use crate::gauge::evidence::{Residuals, freedom_of};
+use crate::gauge::{Deviation, Evidence};
 use std::sync::Arc;
 
 /// Greatest share of the lots in which a promise that holds raises its alarm.
@@ -39,9 +39,6 @@ struct Watched {
     promise: Promise,
     /// Promised value, in the unit of its key.
     promised: f64,
-    /// Degrees of freedom of a promise that budgets pool with the evidence; `None` where they use the promise until it
-    /// is broken.
-    pools: Option<f64>,
     evidence: Evidence,
     broken: Option<Broken>,
 }
@@ -56,8 +53,6 @@ impl Promises {
             Watched {
                 promise,
                 promised,
-                pools: (promise == Promise::PartMinusTrack)
-                    .then_some(freedom_of(context.accuracy.part_minus_track_u_pct)),
                 evidence: Evidence::default(),
                 // Not broken when `rig.toml` by now promises as large a value itself.
                 broken: stored.find(|it| it.used > promised).copied(),
@@ -89,25 +84,24 @@ impl Promises {
         broken
     }
 
-    /// Returns the difference between part and track for budgets, kelvin (1 sd): promise and reference parts pooled.
-    pub fn part_minus_track_k(&self) -> f64 {
-        self.watched[Promise::PartMinusTrack.index()].used()
+    /// Returns the difference between part and track, kelvin: the promise, known to `u_pct` percent, pooled with the
+    /// reference parts.
+    pub fn part_minus_track_k(&self, u_pct: f64) -> Deviation {
+        let watched = &self.watched[Promise::PartMinusTrack.index()];
+        let pooled = watched.evidence.pooled(freedom_of(u_pct));
+        pooled.times(watched.promised)
     }
 
-    /// Makes the budgets of `context` use the larger of the promised and the observed values, and the temperature that
-    /// the calibration has found.
+    /// Makes the budgets of `context` use the larger of the promised and the observed values. The temperature of the
+    /// parts is in its calibration.
     pub fn apply(&self, context: &mut Context) {
         let accuracy = &mut context.accuracy;
-        let temperature = context.calibration.temperature;
         for it in &self.watched {
             let used = it.broken.map_or(it.promised, |broken| broken.used);
             match it.promise {
                 Promise::AiNoise => accuracy.ai_noise_lsb = used,
                 Promise::OperationScatter => accuracy.operation_scatter_mv = used,
-                Promise::PartMinusTrack => {
-                    accuracy.part_minus_track_k =
-                        temperature.map_or(it.promised, |found| found.part_minus_track_k);
-                }
+                Promise::PartMinusTrack => {}
                 Promise::ClosureScatter => {
                     let relay = Arc::make_mut(&mut context.relay);
                     relay.test.strategy.contact.closure_scatter_pct = used.ceil() as u32;
@@ -152,17 +146,8 @@ impl Watched {
                 self.promised * seen.interval.1,
             ),
             freedom: seen.freedom,
-            used: self.used(),
+            used: self.promised * self.evidence.covering(),
         });
-    }
-
-    /// Returns the value for budgets that the evidence gives, in the unit of the key.
-    fn used(&self) -> f64 {
-        let evidence = &self.evidence;
-        let multiple = self
-            .pools
-            .map_or_else(|| evidence.covering(), |it| evidence.pooled(it));
-        self.promised * multiple
     }
 }
 

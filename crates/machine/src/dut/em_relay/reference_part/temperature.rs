@@ -7,12 +7,13 @@
 
 use super::{ReferenceRun, Shift};
 use crate::dut::accuracy::AccuracySettings;
+use crate::dut::em_relay::calibration::Temperature;
 use crate::dut::em_relay::coil::relative_per_kelvin;
 use crate::dut::em_relay::scale::Scale;
 use crate::dut::em_relay::settings::ReferencePart;
 use crate::dut::em_relay::threshold::Direction;
-use crate::gauge::Factor;
 use crate::gauge::evidence::Residuals;
+use crate::gauge::{Deviation, Factor};
 use units::Celsius;
 
 /// Temperature at which the sensitivities are taken.
@@ -37,17 +38,17 @@ impl ReferenceRun {
         Residuals::about_mean(&volts, own, others)
     }
 
-    /// Returns the mean of certified over found coil resistance; the temperatures of the parts differ from that of the
-    /// track by `part_minus_track_k` (1 sd).
-    pub fn coil(&self, part_minus_track_k: f64) -> Factor {
+    /// Returns what the parts show of temperatures; the temperature of one part differs from that of the track by
+    /// `part_minus_track_k`.
+    pub fn temperature(&self, part_minus_track_k: Deviation) -> Temperature {
         let n = self.shifts.len() as f64;
-        let mean = self.shifts.iter().map(|it| it.coil.value).sum::<f64>() / n;
-        let kelvin = part_minus_track_k * relative_per_kelvin(ABOUT);
-        let squares = self
-            .shifts
-            .iter()
-            .map(|it| it.coil.u.powi(2) + kelvin.powi(2));
-        Factor::new(mean, squares.sum::<f64>().sqrt() / n)
+        let coils = || self.shifts.iter().map(|it| it.coil);
+        let mean = coils().map(|it| it.value).sum::<f64>() / n;
+        let squares: f64 = coils().map(|it| it.u.powi(2)).sum();
+        Temperature {
+            part_k: part_minus_track_k.times((1.0 + 1.0 / n).sqrt()),
+            coil: Factor::new(mean, squares.sqrt() / n),
+        }
     }
 }
 

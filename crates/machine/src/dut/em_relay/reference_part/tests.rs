@@ -9,6 +9,7 @@ use crate::dut::em_relay::settings::ReferencePart;
 use crate::dut::em_relay::tests::context;
 use crate::dut::em_relay::tests::reference_parts;
 use crate::dut::em_relay::threshold::Direction;
+use crate::gauge::Deviation;
 use crate::gauge::budget::{Budget, Reading};
 use crate::rig::sample::Sample;
 use units::{Celsius, Unit, Volt};
@@ -52,8 +53,10 @@ fn the_fine_overshoot_is_the_mean_shift() {
         .unwrap();
     assert!((overshoots.operate.fine_v.value - 0.014).abs() < 1e-9);
     assert!((overshoots.release.fine_v.value + 0.009).abs() < 1e-9);
-    assert!(overshoots.operate.fine_v.u > 0.001 && overshoots.operate.fine_v.u < 0.005);
-    assert!(overshoots.release.fine_v.u < overshoots.operate.fine_v.u);
+    // 1 mV of the certificate and 2 mV of the operation, five parts; budgets have their temperature in another term.
+    for overshoot in [overshoots.operate, overshoots.release] {
+        assert!((overshoot.fine_v.u - 0.001).abs() < 1e-9);
+    }
 }
 
 #[test]
@@ -191,9 +194,17 @@ fn coils_of_the_reference_parts_correct_the_thermometer() {
         }
         run
     };
-    let found = run(0.4).coil(0.15);
-    assert!((found.value - 400.0 / 400.4).abs() < 1e-6, "{found:?}");
-    // 0.15 K are 0.058 %, a certificate has 0.01 %; five parts.
-    assert!((found.u - 5.92e-4 / 5f64.sqrt()).abs() < 2e-6, "{found:?}");
-    assert!(run(0.0).coil(0.3).u > 1.9 * found.u);
+    let part_k = Deviation {
+        value: 0.15,
+        freedom: 5.0,
+    };
+    let found = run(0.4).temperature(part_k);
+    assert!((found.coil.value - 400.0 / 400.4).abs() < 1e-6, "{found:?}");
+    // A certificate has 0.01 %; five parts.
+    assert!(
+        (found.coil.u - 1e-4 / 5f64.sqrt()).abs() < 1e-6,
+        "{found:?}"
+    );
+    assert!((found.part_k.value - 0.15 * 1.2f64.sqrt()).abs() < 1e-12);
+    assert_eq!(found.part_k.freedom, 5.0);
 }
