@@ -34,6 +34,9 @@ pub struct AccuracySettings {
     pub rtd_k: f64,
     /// Difference between the temperatures of part and magazine track, K (standard deviation).
     pub part_minus_track_k: f64,
+    /// Relative standard uncertainty of `part_minus_track_k` itself, %.
+    #[serde(default = "AccuracySettings::usual_part_minus_track_u_pct")]
+    pub part_minus_track_u_pct: f64,
     /// Scatter of a threshold from operation to operation, for a 12 V coil, mV (standard deviation).
     pub operation_scatter_mv: f64,
     /// Conversions of an I-7017F in fast mode, all enabled channels together, per second.
@@ -44,5 +47,10 @@ impl AccuracySettings {
     /// Returns the refresh interval assumed for an I-7021P where `rig.toml` states none.
     fn usual_refresh_ms() -> f64 {
         1.0
+    }
+
+    /// Returns the relative uncertainty of a standard deviation that may be wrong by a factor of two: ln 2.
+    fn usual_part_minus_track_u_pct() -> f64 {
+        70.0
     }
 }

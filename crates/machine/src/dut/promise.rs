@@ -13,6 +13,8 @@ named! {
         OperationScatter = "operation_scatter",
         /// Scatter of a contact resistance from closure to closure.
         ClosureScatter = "closure_scatter",
+        /// Difference between the temperatures of part and magazine track.
+        PartMinusTrack = "part_minus_track",
     }
 }
 
@@ -23,6 +25,7 @@ impl Promise {
             Self::AiNoise => "rig.toml accuracy.ai_noise_lsb",
             Self::OperationScatter => "rig.toml accuracy.operation_scatter_mv",
             Self::ClosureScatter => "recipe test.strategy.contact.closure_scatter_pct",
+            Self::PartMinusTrack => "rig.toml accuracy.part_minus_track_k",
         }
     }
 }

@@ -1,6 +1,8 @@
 //! Uncertainty budget of one result (GUM, ISO/IEC Guide 98-3): named standard uncertainties, added in quadrature
 //! because each comes from an instrument or effect that is independent of the others.
 
+use super::factor::Deviation;
+use super::repetition::student;
 use serde::Serialize;
 use units::Unit;
 
@@ -52,6 +54,21 @@ impl Budget {
             random: true,
         });
         self
+    }
+
+    /// Adds a term that repetition does not reduce and that is itself an estimate; the last term of a budget. Student's t
+    /// of the effective degrees of freedom of all terms (Welch and Satterthwaite, GUM G.4) widens it, so that k = 2
+    /// covers as much as with many.
+    pub fn with_estimated(self, source: &'static str, of: Deviation) -> Self {
+        let own = of.value.powi(2);
+        let others = self.combined().powi(2);
+        let combined = own + others;
+        if own == 0.0 || !combined.is_finite() {
+            return self.with(source, of.value);
+        }
+        let effective = of.freedom * (combined / own).powi(2);
+        let widened = student(effective as usize).powi(2) * combined;
+        self.with(source, (widened - others).sqrt())
     }
 
     /// Returns the combined standard uncertainty of all terms.
@@ -106,6 +123,24 @@ mod tests {
         let budget = Budget::default().with("a", 3.0).with("b", -4.0);
         assert_eq!(budget.combined(), 5.0);
         assert_eq!(budget.expanded(), 10.0);
+    }
+
+    #[test]
+    fn an_estimated_term_gets_students_t() {
+        let budget = |others: f64, freedom: f64| {
+            let value = 1.0;
+            let of = Deviation { value, freedom };
+            let budget = Budget::default().with("others", others);
+            budget.with_estimated("estimated", of).combined()
+        };
+        // GUM, table G.2: t of 5 degrees of freedom is 2.65, of 10, 2.28.
+        assert!((budget(0.0, 5.0) - 2.65 / 2.0).abs() < 1e-12);
+        // Both variances are equal: four times as many effective degrees of freedom.
+        assert!((budget(1.0, 2.5) - 2.28 / 2.0 * 2f64.sqrt()).abs() < 1e-12);
+        assert!((budget(1.0, f64::INFINITY) - 2f64.sqrt()).abs() < 1e-12);
+        assert_eq!(budget(f64::INFINITY, 5.0), f64::INFINITY);
+        let none = Budget::default().with_estimated("none", Deviation::known(0.0));
+        assert_eq!(none.combined(), 0.0);
     }
 
     #[test]

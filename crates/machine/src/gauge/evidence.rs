@@ -6,6 +6,7 @@
 //! `1 / rate` in a share of at most `rate` of all lots, at any number of looks (Ville's inequality). A smaller scatter
 //! than promised is no evidence.
 
+use super::factor::Deviation;
 use super::repetition::student;
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -15,6 +16,11 @@ const FACTORS: [f64; 5] = [1.25, 1.5, 2.0, 3.0, 5.0];
 
 /// Share of the probability on either side of the interval of [`Evidence::seen`].
 const TAIL: f64 = 0.025;
+
+/// Returns the degrees of freedom of a standard deviation that is known to `u_pct` percent (GUM G.4.2).
+pub fn freedom_of(u_pct: f64) -> f64 {
+    0.5 * (100.0 / u_pct).powi(2)
+}
 
 /// Residuals with the variance that was promised for each.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -114,10 +120,23 @@ impl Evidence {
         self.multiple(widened).max(1.0)
     }
 
+    /// Returns the standard deviation as a multiple of the promised one, which counts as much as residuals of `promise`
+    /// degrees of freedom: both pooled.
+    pub fn pooled(&self, promise: f64) -> Deviation {
+        let freedom = promise + self.freedom;
+        Deviation {
+            value: self.multiple((promise + self.squares) / freedom),
+            freedom,
+        }
+    }
+
     /// Returns the multiple of the promised standard deviation at which the whole variance is `ratio` times the
     /// promised one.
     fn multiple(&self, ratio: f64) -> f64 {
-        let share = self.shares / self.freedom;
+        let share = match self.freedom > 0.0 {
+            true => self.shares / self.freedom,
+            false => 1.0,
+        };
         (1.0 + (ratio - 1.0) / share).max(0.0).sqrt()
     }
 }

@@ -19,6 +19,33 @@ impl Factor {
     }
 }
 
+/// A standard deviation that is itself an estimate.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Deviation {
+    /// Value, in the unit that the field or the method states.
+    pub value: f64,
+    /// Degrees of freedom; infinite for a value that counts as known.
+    pub freedom: f64,
+}
+
+impl Deviation {
+    /// Makes a standard deviation that counts as known.
+    pub fn known(value: f64) -> Self {
+        Self {
+            value,
+            freedom: f64::INFINITY,
+        }
+    }
+
+    /// Returns the standard deviation of `factor` times the quantity.
+    pub fn times(self, factor: f64) -> Self {
+        Self {
+            value: self.value * factor,
+            ..self
+        }
+    }
+}
+
 /// A factor with its name.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Named {

@@ -11,5 +11,5 @@ pub mod repetition;
 
 pub use budget::{Budget, Reading};
 pub use evidence::Evidence;
-pub use factor::Factor;
+pub use factor::{Deviation, Factor};
 pub use judgement::{Judgement, Limit, Rule, Side, judge};

@@ -37,6 +37,7 @@ fn made(at_us: i64, simulated: bool, nominal_v: f64) -> CalibrationRecord {
         coarse_v_per_s: known,
         fine_v_per_s: known,
         overshoots: None,
+        temperature: None,
         probe_contact_ohm: 0.0,
         broken: Vec::new(),
     });

@@ -15,6 +15,8 @@ pub(super) const ACCURACY: &[Key] = keys! {
     GATE_DELAY;
     key("rtd_k", from_to(0.0, 10.0, "K"), "gauge", "thermometers, standard deviation");
     key("part_minus_track_k", from_to(0.0, 10.0, "K"), "gauge", "part against track, standard deviation");
+    optional("part_minus_track_u_pct", above_zero(100.0, "%"), "gauge",
+        "relative standard uncertainty of part_minus_track_k; default 70, wrong by a factor of two");
     OPERATION_SCATTER;
     key("conversions_per_s", above_zero(10_000.0, "1/s"), "station",
         "of an I-7017F in fast mode, all enabled channels together");

@@ -10,8 +10,8 @@ use super::recipe::CoilChannels;
 use super::threshold::Direction;
 use crate::dut::calibration::CalibrationFacts;
 use crate::dut::promise::Broken;
-use crate::gauge::Factor;
 use crate::gauge::factor::Named;
+use crate::gauge::{Deviation, Factor};
 use serde::{Deserialize, Serialize};
 use units::{Unit, Volt};
 
@@ -129,6 +129,16 @@ pub struct Overshoots {
     pub release: Overshoot,
 }
 
+/// Temperature of the parts, found on reference parts.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Temperature {
+    /// Difference between the temperature of a part and the mean of the reference parts, both against the track, kelvin.
+    pub part_k: Deviation,
+    /// Certified over found coil resistance at the reference temperature. It contains the error of the thermometer, of
+    /// the reference resistor and the mean heating of the coil.
+    pub coil: Factor,
+}
+
 /// All factors of a rig with their dates, as the history stores them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
@@ -171,6 +181,9 @@ pub struct Calibration {
     /// Overshoot of the ramps; `None` before the reference parts are measured.
     #[serde(rename = "lags")]
     pub overshoots: Option<Overshoots>,
+    /// Temperature of the parts; `None` before the reference parts are measured.
+    #[serde(default)]
+    pub temperature: Option<Temperature>,
     /// Resistance of the coil's two force contacts while the reference parts were measured, ohm; the overshoot
     /// contains it. 0 when unknown.
     #[serde(default)]
@@ -205,6 +218,7 @@ impl Calibration {
             coarse_v_per_s: unknown,
             fine_v_per_s: unknown,
             overshoots: None,
+            temperature: None,
             probe_contact_ohm: 0.0,
             broken: Vec::new(),
         }
@@ -223,13 +237,18 @@ impl Calibration {
         }
     }
 
-    /// Returns ohms per unit of (voltage reading / current reading) for these channels.
+    /// Returns ohms per unit of (voltage reading / current reading) for these channels, corrected by the reference parts
+    /// once they are measured.
     pub fn ohm(&self, channels: CoilChannels) -> Factor {
-        match channels {
+        let by_resistor = match channels {
             CoilChannels::Fine => self.ohm_fine,
             CoilChannels::CoarseCurrent => self.ohm_wide,
             CoilChannels::HighCurrent => self.ohm_high.unwrap_or(Factor::new(1.0, f64::INFINITY)),
-        }
+        };
+        self.temperature.map_or(by_resistor, |found| {
+            let ohm = by_resistor.value;
+            Factor::new(ohm * found.coil.value, ohm * found.coil.u)
+        })
     }
 
     /// Returns every measured factor; the slope of the coarse ramp is the maker's and therefore absent.
@@ -250,6 +269,8 @@ impl Calibration {
             named("fine_slope", Unit::VoltPerSecond, self.fine_v_per_s),
         ];
         all.extend(self.ohm_high.map(|it| named("coil_high", Unit::Ohm, it)));
+        let temperature = self.temperature;
+        all.extend(temperature.map(|it| named("coil_correction", Unit::One, it.coil)));
         if let Some(overshoots) = &self.overshoots {
             all.push(named("operate_lag", Unit::Volt, overshoots.operate.fine_v));
             all.push(named("release_lag", Unit::Volt, overshoots.release.fine_v));

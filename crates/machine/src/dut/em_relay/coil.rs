@@ -1,11 +1,12 @@
 //! Coil resistance as a ratio to the reference resistor, at the reference temperature.
 //!
 //! One converter reads voltage and current in the same scan, and the calibration reads the reference resistor on the
-//! same two channels, so gain errors cancel. Copper: `R(T1) / R(T2) = (234.5 + T1) / (234.5 + T2)`, temperatures in
+//! same two channels, so gain errors cancel. The certificates of the reference parts correct the ratio, because they
+//! also show the error of the thermometer. Copper: `R(T1) / R(T2) = (234.5 + T1) / (234.5 + T2)`, temperatures in
 //! Celsius (IEC 60028 annealed copper).
 
-use crate::gauge::Factor;
 use crate::gauge::budget::{Budget, Reading};
+use crate::gauge::{Deviation, Factor};
 use units::{Celsius, Ohm, Unit, Volt};
 
 /// Degrees below zero Celsius at which the extrapolated resistance of annealed copper is 0.
@@ -18,8 +19,8 @@ pub struct ScanUncertainty {
     pub reading_v: f64,
     /// Standard uncertainty of the offset of the converter, volts.
     pub offset_v: f64,
-    /// Standard uncertainty of the part's temperature, kelvin.
-    pub temperature_k: f64,
+    /// Uncertainty of the part's temperature, kelvin.
+    pub temperature_k: Deviation,
 }
 
 /// Returns the factor that converts a resistance or a threshold voltage at temperature `part` to `reference`.
@@ -60,13 +61,12 @@ pub fn resistance(
             "offset",
             value * uncertainty.offset_v * (1.0 / volts - 1.0 / current),
         )
-        .with(
-            "reference resistor",
-            value * ohm_per_ratio.u / ohm_per_ratio.value,
-        )
-        .with(
+        .with("references", value * ohm_per_ratio.u / ohm_per_ratio.value)
+        .with_estimated(
             "coil temperature",
-            value * uncertainty.temperature_k * relative_per_kelvin(part),
+            uncertainty
+                .temperature_k
+                .times(value * relative_per_kelvin(part)),
         );
     Some(Reading {
         value,
@@ -82,7 +82,10 @@ mod tests {
     const UNCERTAINTY: ScanUncertainty = ScanUncertainty {
         reading_v: 0.003,
         offset_v: 0.0005,
-        temperature_k: 0.18,
+        temperature_k: Deviation {
+            value: 0.18,
+            freedom: f64::INFINITY,
+        },
     };
 
     #[test]

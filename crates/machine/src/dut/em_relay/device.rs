@@ -3,7 +3,7 @@
 //! Holds recipe, calibration and what it learns: the overshoot of the ramps from reference parts, the interval of the
 //! next fine ramp from good parts of the lot, the probe contact at the coil from every part.
 
-use super::calibration::{Calibration, Overshoots};
+use super::calibration::{Calibration, Overshoots, Temperature};
 use super::feasible::nominal_v_per_s;
 use super::measure::{Context, Observed, Test};
 use super::overshoot::OvershootModel;
@@ -113,6 +113,15 @@ impl Device {
         self.promises.apply(&mut self.context);
     }
 
+    /// Watches the promised temperature of parts on the reference parts, and returns what they show of it.
+    fn temperature(&mut self) -> Temperature {
+        let (run, accuracy) = (&self.reference_parts, &self.context.accuracy);
+        let residuals = run.temperatures(&self.certificates, accuracy);
+        self.promises.observe(Promise::PartMinusTrack, residuals);
+        let u_pct = accuracy.part_minus_track_u_pct;
+        run.temperature(self.promises.part_minus_track_k(u_pct))
+    }
+
     fn certificate(&self, serial: &str) -> Option<&ReferencePart> {
         self.certificates.iter().find(|part| part.serial == serial)
     }
@@ -214,8 +223,11 @@ impl DeviceUnderTest for Device {
     fn forget_calibration(&mut self) {
         self.reference_parts = ReferenceRun::default();
         self.promises.restart();
+        self.calibrate(|calibration| {
+            calibration.overshoots = None;
+            calibration.temperature = None;
+        });
         self.promises.apply(&mut self.context);
-        self.calibrate(|calibration| calibration.overshoots = None);
     }
 
     fn learn_reference(
@@ -249,6 +261,12 @@ impl DeviceUnderTest for Device {
             self.reference_parts
                 .overshoots(&self.certificates, accuracy, self.coarse)?;
         self.teach(overshoots);
+        let temperature = self.temperature();
+        let broken = self.promises.broken();
+        self.calibrate(|calibration| {
+            calibration.temperature = Some(temperature);
+            calibration.broken = broken;
+        });
         let calibration = Calibration::clone(&self.context.calibration);
         Ok(dut::Calibration::EmRelay(calibration))
     }

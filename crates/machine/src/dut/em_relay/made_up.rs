@@ -36,7 +36,7 @@ fn of(relay: &RelayRecipe, parameter: Parameter) -> Scatter {
     let budget = Budget::default()
         .with_random("reading", 0.6 * u)
         .with("offset", 0.3 * u)
-        .with("reference resistor", 0.2 * u)
+        .with("references", 0.2 * u)
         .with("coil temperature", 0.7 * u);
     Scatter {
         mean,

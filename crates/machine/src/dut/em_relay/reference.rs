@@ -285,6 +285,7 @@ pub fn conclude(
         level,
         coil_input: input,
         overshoots: None,
+        temperature: None,
         probe_contact_ohm: 0.0,
         broken: Vec::new(),
     })

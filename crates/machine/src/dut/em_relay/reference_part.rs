@@ -3,12 +3,14 @@
 //! The model of the coarse overshoot also learns from every good part of the lot with both ramps; the fine overshoot,
 //! which enters every result, comes from the certificates alone.
 
+mod temperature;
+
 use super::measure::{Observed, Ramp};
 use crate::dut::TestRecord;
 use crate::dut::accuracy::AccuracySettings;
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::calibration::{Overshoot, Overshoots};
-use crate::dut::em_relay::coil::{relative_per_kelvin, to_reference};
+use crate::dut::em_relay::coil::to_reference;
 use crate::dut::em_relay::overshoot::OvershootModel;
 use crate::dut::em_relay::probe_contact::Trend;
 use crate::dut::em_relay::scale::Scale;
@@ -135,6 +137,8 @@ struct Shift {
     fine_v: [f64; 2],
     /// Coarse minus fine indication of each direction, V; NaN without a coarse ramp.
     coarse_v: [f64; 2],
+    /// Certified over found coil resistance, with the uncertainty of certificate and reading.
+    coil: Factor,
 }
 
 /// Results of the reference parts of a run so far.
@@ -166,7 +170,7 @@ impl ReferenceRun {
             fine(observed.operate).ok_or_else(|| without(part, Parameter::OperateVoltage))?;
         let release =
             fine(observed.release).ok_or_else(|| without(part, Parameter::ReleaseVoltage))?;
-        check_coil(part, record)?;
+        let coil = coil(part, record)?;
         observed
             .probe_contact
             .into_iter()
@@ -179,6 +183,7 @@ impl ReferenceRun {
                 release.0 - at_part(part.release_voltage_v),
             ],
             coarse_v: [over(observed.operate), over(observed.release)],
+            coil,
         });
         Ok(())
     }
@@ -213,9 +218,14 @@ impl ReferenceRun {
 
     /// Returns the mean of fine indication minus certificate over the parts so far, volts, for operate and release.
     pub fn fine_v(&self) -> Option<(f64, f64)> {
-        let n = self.shifts.len() as f64;
-        let mean = |at: usize| self.shifts.iter().map(|it| it.fine_v[at]).sum::<f64>() / n;
-        (n > 0.0).then(|| (mean(0), mean(1)))
+        let mean = |direction| self.mean(direction);
+        (!self.shifts.is_empty()).then(|| (mean(Direction::Rising), mean(Direction::Falling)))
+    }
+
+    /// Returns the mean of fine indication minus certificate, volts; NaN without a part.
+    fn mean(&self, direction: Direction) -> f64 {
+        let each = self.shifts.iter().map(|it| it.fine_v[direction as usize]);
+        each.sum::<f64>() / self.shifts.len() as f64
     }
 
     /// Returns the mean of coarse minus fine indication over the parts that have both, volts; 0 when none has.
@@ -243,7 +253,7 @@ impl ReferenceRun {
             });
         }
         let shift = |it: &Shift| it.fine_v[direction as usize];
-        let mean = self.shifts.iter().map(shift).sum::<f64>() / n;
+        let mean = self.mean(direction);
         let nominal_v = parts.first().map_or(f64::NAN, |part| part.nominal_v);
         let scale = Scale::new(nominal_v, 1.0);
         let band = scale.of_coil(BAND);
@@ -257,14 +267,8 @@ impl ReferenceRun {
                 off_mv: (shift(odd) - mean) * 1e3,
             });
         }
-        let of_part = |part: &ReferencePart| {
-            let value = part.threshold(direction);
-            let kelvin =
-                value.value * accuracy.part_minus_track_k * relative_per_kelvin(Celsius(23.0));
-            value.u.powi(2) + kelvin.powi(2) + scale.operation_v(accuracy).powi(2)
-        };
-        let promised = parts.iter().map(of_part).sum::<f64>() / parts.len().max(1) as f64;
-        Ok(Factor::new(mean, (promised / n).sqrt()))
+        let (_, others) = temperature::variances(parts, direction, accuracy);
+        Ok(Factor::new(mean, (others / n).sqrt()))
     }
 }
 
@@ -275,7 +279,8 @@ fn without(part: &ReferencePart, characteristic: Parameter) -> Misfit {
     }
 }
 
-fn check_coil<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<(), Misfit> {
+/// Returns certified over found coil resistance; fails when they differ so much that the part must be another.
+fn coil<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<Factor, Misfit> {
     let coil = record.result(Parameter::CoilResistance);
     let coil = coil.ok_or_else(|| without(part, Parameter::CoilResistance))?;
     let certified = part.coil_resistance_ohm;
@@ -288,7 +293,8 @@ fn check_coil<T>(part: &ReferencePart, record: &TestRecord<T>) -> Result<(), Mis
             allowed_ohm: allowed,
         });
     }
-    Ok(())
+    let u = coil.budget.random().hypot(certified.u) / certified.value;
+    Ok(Factor::new(certified.value / coil.value, u))
 }
 
 /// Greatest difference of a result from the certificate, in standard deviations: with three results per part, one good

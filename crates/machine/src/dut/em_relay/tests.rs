@@ -95,6 +95,7 @@ fn calibration() -> Calibration {
         fine: OutputLine::IDEAL,
         coarse_v_per_s: exact(96.0),
         fine_v_per_s: exact(1.5),
+        temperature: None,
         probe_contact_ohm: 0.0,
         broken: Vec::new(),
         overshoots: Some(Overshoots {

@@ -8,8 +8,8 @@
 
 use super::calibration::Overshoot;
 use super::coil::{relative_per_kelvin, to_reference};
-use crate::gauge::Factor;
 use crate::gauge::budget::{Budget, Reading, resolution};
+use crate::gauge::{Deviation, Factor};
 use units::{Celsius, Second, Unit, Volt};
 
 /// Movement of the supply that opens the window of a ramp.
@@ -60,8 +60,8 @@ pub struct RampUncertainty {
     /// Change of the series resistance of the coil's force contacts since the measurement of the reference parts, as a
     /// share of the coil resistance.
     pub contact_share: f64,
-    /// Difference between the temperatures of part and track, kelvin (1 sd).
-    pub temperature_k: f64,
+    /// Uncertainty of the part's temperature, kelvin.
+    pub temperature_k: Deviation,
 }
 
 /// Returns the quasi-static threshold at the reference temperature from one fine ramp, which overshoots by `own` volts
@@ -79,10 +79,6 @@ pub fn quasi_static(
     let budget = Budget::default()
         .with("reference parts", overshoot.fine_v.u)
         .with("overshoot of the part", own.u)
-        .with(
-            "coil temperature",
-            value * uncertainty.temperature_k * relative_per_kelvin(part),
-        )
         .with_random("repeatability", uncertainty.operation_v)
         .with(
             "slope",
@@ -100,7 +96,13 @@ pub fn quasi_static(
             "level",
             (at_part - overshoot.at_v) * uncertainty.level_share,
         )
-        .with("probe contact", value * uncertainty.contact_share);
+        .with("probe contact", value * uncertainty.contact_share)
+        .with_estimated(
+            "coil temperature",
+            uncertainty
+                .temperature_k
+                .times(value * relative_per_kelvin(part)),
+        );
     Reading {
         value,
         unit: Unit::Volt,
@@ -137,7 +139,7 @@ mod tests {
             refresh: Second(0.0),
             level_share: 0.0,
             contact_share: contact,
-            temperature_k,
+            temperature_k: Deviation::known(temperature_k),
         };
         let reading = quasi_static(
             (Volt(7.88), Factor::new(0.0, 0.0)),

@@ -1,4 +1,5 @@
 use super::*;
+use crate::gauge::Budget;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
@@ -112,4 +113,44 @@ fn no_residuals_are_no_evidence() {
     assert_eq!(none, Evidence::default());
     assert_eq!((none.seen(), none.covering()), (None, 1.0));
     assert!(!none.disproves(0.01));
+}
+
+#[test]
+fn a_promise_is_pooled_with_residuals() {
+    assert_eq!(freedom_of(50.0), 2.0);
+    assert_eq!(freedom_of(25.0), 8.0);
+    let alone = Evidence::default().pooled(2.0);
+    assert_eq!((alone.value, alone.freedom), (1.0, 2.0));
+    let mut evidence = Evidence::default();
+    evidence.add(Residuals {
+        squares: 4.0 * 4.0,
+        freedom: 4,
+        own: 1.0,
+        others: 0.0,
+    });
+    let pooled = evidence.pooled(2.0);
+    assert!((pooled.value - 3f64.sqrt()).abs() < 1e-12, "{pooled:?}");
+    assert_eq!(pooled.freedom, 6.0);
+}
+
+/// Share of the lots whose true value lies within U, for a promise known to 70 % that is wrong by `factor`, and four
+/// residuals.
+fn covered(factor: f64) -> f64 {
+    let lots = 4000;
+    let is_covered = |seed: &u64| {
+        let mut normal = Normal::new(*seed);
+        let mut evidence = Evidence::default();
+        (0..4).for_each(|_| evidence.add(one((factor * normal.next()).powi(2), 1.0, 0.0)));
+        let pooled = evidence.pooled(freedom_of(70.0));
+        let u = Budget::default().with_estimated("own", pooled).expanded();
+        (factor * normal.next()).abs() < u
+    };
+    (0..lots).filter(is_covered).count() as f64 / lots as f64
+}
+
+#[test]
+fn a_pooled_promise_covers_though_wrong_by_two() {
+    let (kept, broken) = (covered(1.0), covered(2.0));
+    assert!((0.93..0.98).contains(&kept), "{kept}");
+    assert!((0.92..0.96).contains(&broken), "{broken}");
 }

@@ -84,6 +84,7 @@ fn every_alarm() -> Vec<Alarm> {
         Alarm::promise_broken(&broken(Promise::AiNoise)),
         Alarm::promise_broken(&broken(Promise::OperationScatter)),
         Alarm::promise_broken(&broken(Promise::ClosureScatter)),
+        Alarm::promise_broken(&broken(Promise::PartMinusTrack)),
         Alarm::calibration_cut_off("coil_ai"),
     ];
     let bins: Vec<Bin> = wiring().axis.bins().collect();

@@ -14,6 +14,7 @@ use crate::dut::em_relay::settings::{ReferencePart, ReferenceSettings};
 use crate::dut::em_relay::threshold::Direction;
 use crate::dut::em_relay::timing::Clock;
 use crate::dut::em_relay::{Parameter, Strategy};
+use crate::gauge::Deviation;
 use crate::instrument::act;
 use crate::rig::supply::{RangeMismatch, SupplyRange};
 use std::sync::Arc;
@@ -87,11 +88,20 @@ impl Context {
 
     /// Returns the uncertainty terms of a coil scan.
     pub fn scan_uncertainty(&self) -> ScanUncertainty {
+        let promised_k = self.accuracy.rtd_k.hypot(self.accuracy.part_minus_track_k);
+        // The correction by reference parts contains the error of the thermometer.
+        let found = self.calibration.temperature.map(|it| it.part_k);
         ScanUncertainty {
             reading_v: self.reading_u_v(),
             offset_v: self.calibration.coil_input.offset_v.u,
-            temperature_k: self.accuracy.rtd_k.hypot(self.accuracy.part_minus_track_k),
+            temperature_k: found.unwrap_or(Deviation::known(promised_k)),
         }
+    }
+
+    /// Returns the temperature of a part against the track, kelvin: as promised before the reference parts are measured.
+    pub fn part_k(&self) -> Deviation {
+        let found = self.calibration.temperature.map(|it| it.part_k);
+        found.unwrap_or(Deviation::known(self.accuracy.part_minus_track_k))
     }
 
     /// Returns the scatter of a threshold of this part from operation to operation, volts (1 sd).

@@ -37,17 +37,16 @@ pub(super) fn conclude(
     }
     let (record, parameter) = (&mut state.record, parameter(direction));
     let part = record.own.track?;
-    if record
-        .ramp(direction)
-        .is_none_or(|ramp| ramp.fine.is_none())
-    {
-        record.forget(parameter);
-    }
+    let known = record.ramp(direction);
     let ramp = Ramp {
         fine: Some(seen),
-        ..record.ramp(direction).unwrap_or(Ramp::fine_only(seen))
+        ..known.unwrap_or(Ramp::fine_only(seen))
     };
-    record.keep_ramp(direction, ramp);
+    // Repeats find a warmer coil: models and overshoots learn from the first fine ramp, the only one of most parts.
+    if known.is_none_or(|ramp| ramp.fine.is_none()) {
+        record.forget(parameter);
+        record.keep_ramp(direction, ramp);
+    }
     let reading = fine_reading(context, (ramp, gate), part, direction);
     record.found(parameter, reading, readings.gates.iter().flatten());
     None

@@ -111,6 +111,6 @@ fn uncertainty(context: &Context) -> RampUncertainty {
         refresh: Second(context.accuracy.ao_refresh_ms * 1e-3),
         level_share: context.calibration.level.gain.u,
         contact_share: context.contact_share(),
-        temperature_k: context.accuracy.part_minus_track_k,
+        temperature_k: context.part_k(),
     }
 }

@@ -5,8 +5,11 @@
 //! | noise of the analog inputs | repeated conversions of constant references during the calibration ([`super::reference::noise`]) |
 //! | scatter of operations | repeated fine ramps of one part: each reference part of a calibration, and parts near a limit ([`operation`]) |
 //! | scatter of closures | closures of one part's NC contact ([`closure`]) |
+//! | temperature of part minus track | operate voltages of the reference parts of a calibration ([`super::reference_part`]) |
 //!
-//! From the alarm on, budgets use the observed value; parts judged before keep the promised one.
+//! From the alarm on, budgets use the observed value; parts judged before keep the promised one. The five reference parts
+//! of a calibration disprove only a gross error of the temperature. So every calibration pools what they show with the
+//! promise, which counts as much as its own uncertainty in `rig.toml` allows ([`Promises::part_minus_track_k`]).
 
 mod closure;
 mod operation;
@@ -14,8 +17,8 @@ mod watch;
 
 use super::measure::Context;
 use crate::dut::promise::{Broken, Promise};
-use crate::gauge::Evidence;
-use crate::gauge::evidence::Residuals;
+use crate::gauge::evidence::{Residuals, freedom_of};
+use crate::gauge::{Deviation, Evidence};
 use std::sync::Arc;
 
 /// Greatest share of the lots in which a promise that holds raises its alarm.
@@ -81,7 +84,16 @@ impl Promises {
         broken
     }
 
-    /// Makes the budgets of `context` use the larger of the promised and the observed values.
+    /// Returns the difference between part and track, kelvin: the promise, known to `u_pct` percent, pooled with the
+    /// reference parts.
+    pub fn part_minus_track_k(&self, u_pct: f64) -> Deviation {
+        let watched = &self.watched[Promise::PartMinusTrack.index()];
+        let pooled = watched.evidence.pooled(freedom_of(u_pct));
+        pooled.times(watched.promised)
+    }
+
+    /// Makes the budgets of `context` use the larger of the promised and the observed values. The temperature of the
+    /// parts is in its calibration.
     pub fn apply(&self, context: &mut Context) {
         let accuracy = &mut context.accuracy;
         for it in &self.watched {
@@ -89,6 +101,7 @@ impl Promises {
             match it.promise {
                 Promise::AiNoise => accuracy.ai_noise_lsb = used,
                 Promise::OperationScatter => accuracy.operation_scatter_mv = used,
+                Promise::PartMinusTrack => {}
                 Promise::ClosureScatter => {
                     let relay = Arc::make_mut(&mut context.relay);
                     relay.test.strategy.contact.closure_scatter_pct = used.ceil() as u32;
@@ -146,6 +159,7 @@ fn promised(context: &Context, promise: Promise) -> f64 {
         Promise::ClosureScatter => {
             f64::from(context.relay.test.strategy.contact.closure_scatter_pct)
         }
+        Promise::PartMinusTrack => context.accuracy.part_minus_track_k,
     }
 }
 

@@ -1,6 +1,9 @@
 use super::*;
 use crate::dut::em_relay::Calibration;
+use crate::dut::em_relay::calibration::Temperature;
+use crate::dut::em_relay::recipe::CoilChannels;
 use crate::dut::em_relay::tests::context;
+use crate::gauge::{Deviation, Factor};
 
 const NOISE_LSB: f64 = 0.5;
 
@@ -83,4 +86,45 @@ fn closures_that_scatter_more_widen_the_budget() {
     promises.apply(&mut context);
     let used = context.relay.test.strategy.contact.closure_scatter_pct;
     assert!(f64::from(used) >= 2.0 * promised, "{used} %");
+}
+
+#[test]
+fn part_temperature_pools_promise_and_reference_parts() {
+    let mut promises = Promises::new(&context());
+    let promised = promises.promised(Promise::PartMinusTrack);
+    promises.observe(Promise::PartMinusTrack, [residuals(1.0, 4)]);
+    let kept = promises.part_minus_track_k(50.0);
+    assert!((kept.value - promised).abs() < 1e-12 && kept.freedom == 6.0);
+    assert!(promises.broken().is_empty());
+    promises.restart();
+    promises.observe(Promise::PartMinusTrack, [residuals(25.0, 4)]);
+    assert_eq!(promises.announce()[0].promise, Promise::PartMinusTrack);
+    // (2 x 1 + 4 x 25) / 6
+    let broken = promises.part_minus_track_k(50.0).value;
+    assert!((broken - 17f64.sqrt() * promised).abs() < 1e-12, "{broken}");
+}
+
+#[test]
+fn budgets_use_the_temperature_that_the_calibration_found() {
+    let mut context = context();
+    let accuracy = context.accuracy;
+    let promised = accuracy.part_minus_track_k;
+    let temperature_k = |context: &Context| context.scan_uncertainty().temperature_k;
+    let with_thermometer = Deviation::known(accuracy.rtd_k.hypot(promised));
+    assert_eq!(temperature_k(&context), with_thermometer);
+    assert_eq!(context.part_k(), Deviation::known(promised));
+    let part_k = Deviation {
+        value: 0.4,
+        freedom: 5.0,
+    };
+    Arc::make_mut(&mut context.calibration).temperature = Some(Temperature {
+        part_k,
+        coil: Factor::new(1.001, 0.0004),
+    });
+    assert_eq!(
+        (temperature_k(&context), context.part_k()),
+        (part_k, part_k)
+    );
+    let ohm = context.calibration.ohm(CoilChannels::Fine);
+    assert_eq!(ohm, Factor::new(375.0 * 1.001, 375.0 * 0.0004));
 }

@@ -9,6 +9,7 @@ use crate::dut::em_relay::settings::ReferencePart;
 use crate::dut::em_relay::tests::context;
 use crate::dut::em_relay::tests::reference_parts;
 use crate::dut::em_relay::threshold::Direction;
+use crate::gauge::Deviation;
 use crate::gauge::budget::{Budget, Reading};
 use crate::rig::sample::Sample;
 use units::{Celsius, Unit, Volt};
@@ -52,8 +53,10 @@ fn the_fine_overshoot_is_the_mean_shift() {
         .unwrap();
     assert!((overshoots.operate.fine_v.value - 0.014).abs() < 1e-9);
     assert!((overshoots.release.fine_v.value + 0.009).abs() < 1e-9);
-    assert!(overshoots.operate.fine_v.u > 0.001 && overshoots.operate.fine_v.u < 0.005);
-    assert!(overshoots.release.fine_v.u < overshoots.operate.fine_v.u);
+    // 1 mV of the certificate and 2 mV of the operation, five parts; budgets have their temperature in another term.
+    for overshoot in [overshoots.operate, overshoots.release] {
+        assert!((overshoot.fine_v.u - 0.001).abs() < 1e-9);
+    }
 }
 
 #[test]
@@ -164,4 +167,44 @@ fn an_interim_overshoot_proves_nothing() {
         overshoot.coarse,
         context().overshoot(Direction::Rising).coarse
     );
+}
+
+#[test]
+fn operate_voltages_show_the_scatter_of_temperatures() {
+    let accuracy = context().accuracy;
+    let parts = reference_parts();
+    let residuals = |mv: &[f64]| run_of(mv, -9.0).temperatures(&parts, &accuracy);
+    // 0.15 K of a coil are 4.6 mV of an operate voltage of 7.88 V; 4.6, 0 and -4.6 mV twice.
+    let found = residuals(&[18.6, 14.0, 9.4, 18.6, 9.4]).unwrap();
+    assert_eq!(found.freedom, 4);
+    assert!((found.own.sqrt() - 4.6e-3).abs() < 0.05e-3, "{found:?}");
+    assert!((found.others.sqrt() - 2.24e-3).abs() < 0.01e-3, "{found:?}");
+    assert!((found.squares / found.own - 4.0).abs() < 0.1, "{found:?}");
+    assert!(residuals(&[14.0]).is_none(), "one part");
+}
+
+#[test]
+fn coils_of_the_reference_parts_correct_the_thermometer() {
+    let parts = reference_parts();
+    let run = |off_ohm: f64| {
+        let mut run = ReferenceRun::default();
+        for part in &parts {
+            let record = tested(part, 0.014, -0.009, off_ohm);
+            run.learn(part, REFERENCE, &record, &record.own).unwrap();
+        }
+        run
+    };
+    let part_k = Deviation {
+        value: 0.15,
+        freedom: 5.0,
+    };
+    let found = run(0.4).temperature(part_k);
+    assert!((found.coil.value - 400.0 / 400.4).abs() < 1e-6, "{found:?}");
+    // A certificate has 0.01 %; five parts.
+    assert!(
+        (found.coil.u - 1e-4 / 5f64.sqrt()).abs() < 1e-6,
+        "{found:?}"
+    );
+    assert!((found.part_k.value - 0.15 * 1.2f64.sqrt()).abs() < 1e-12);
+    assert_eq!(found.part_k.freedom, 5.0);
 }

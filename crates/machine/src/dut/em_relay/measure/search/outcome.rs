@@ -99,19 +99,14 @@ fn found(
     let expected = near(context, direction, volts, step);
     state.plan.expect(direction, expected);
     let value = volts.0 * to_reference(part, context.reference_temperature());
-    let (level, kelvin) = (
-        context.calibration.level,
-        context.accuracy.part_minus_track_k,
-    );
+    let level = context.calibration.level;
+    let temperature = context.part_k().times(value * relative_per_kelvin(part));
     let budget = Budget::default()
         .with("level", (value * level.gain.u).hypot(level.offset_v.u))
-        .with(
-            "coil temperature",
-            value * kelvin * relative_per_kelvin(part),
-        )
         .with("probe contact", value * context.contact_share())
         .with("strategy", resolution(step.0))
-        .with_random("repeatability", context.operation_v());
+        .with_random("repeatability", context.operation_v())
+        .with_estimated("coil temperature", temperature);
     let reading = Reading {
         value,
         unit: Unit::Volt,

@@ -5,6 +5,7 @@ use super::{Next, parameter};
 use crate::dut::em_relay::coil::{relative_per_kelvin, to_reference};
 use crate::dut::em_relay::measure::Context;
 use crate::dut::em_relay::threshold::Direction;
+use crate::gauge::Budget;
 use units::{Celsius, Volt};
 
 /// Share of the level by which a single step operates a relay below its quasi-static threshold: the armature swings
@@ -22,7 +23,8 @@ pub(super) fn level(context: &Context, direction: Direction, part: Celsius) -> V
     let limit_v = limit_v.unwrap_or(expected_v);
     let reference = context.reference_temperature();
     let at_part_v = limit_v / to_reference(part, reference);
-    let u_v = at_part_v * context.accuracy.part_minus_track_k * relative_per_kelvin(part)
+    let part_k = Budget::default().with_estimated("coil temperature", context.part_k());
+    let u_v = at_part_v * part_k.combined() * relative_per_kelvin(part)
         + at_part_v * (context.calibration.level.gain.u + context.contact_share())
         + context.calibration.level.offset_v.u
         + context.operation_v();

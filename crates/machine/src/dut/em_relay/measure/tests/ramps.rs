@@ -123,6 +123,27 @@ fn a_release_ramp_waits_for_the_ramp_before() {
 }
 
 #[test]
+fn a_repeat_keeps_the_first_fine_indication() {
+    let (context, mut state) = (context(), at_23_c());
+    state
+        .plan
+        .expect(Direction::Falling, Expected::new(Volt(2.3), 0.03));
+    let mut indicated = || {
+        state.enter(Stage::ReleaseFine(0), &context);
+        let event = watched(true, RESTING, 60.0);
+        fine::conclude(&context, &event, &mut state, (Direction::Falling, 0));
+        state.record.ramp(Direction::Falling).unwrap().fine.unwrap()
+    };
+    assert_eq!(indicated(), indicated());
+    let both: Vec<f64> = state
+        .record
+        .each(Parameter::ReleaseVoltage)
+        .map(|it| it.value)
+        .collect();
+    assert!(both.len() == 2 && both[0] != both[1], "{both:?}");
+}
+
+#[test]
 fn certificates_place_the_ramps_of_reference_parts() {
     let mut context = context();
     let learned = context.overshoot(Direction::Rising);
