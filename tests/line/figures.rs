@@ -16,20 +16,22 @@ fn docs() -> std::path::PathBuf {
 #[test]
 fn the_document_is_what_plan_and_results_render() {
     let rendered = render(&docs()).unwrap();
-    let stored = |file: &Path| fs::read_to_string(file).unwrap();
-    let hint = "run `relayrig study figures --render`";
-    assert_eq!(
-        stored(&docs().join("figures.md")),
-        rendered.document,
-        "{hint}"
-    );
+    assert_stored(&docs().join("figures.md"), &rendered.document);
     for (file, svg) in rendered.pictures {
-        assert_eq!(
-            stored(&docs().join("pictures").join(&file)),
-            svg,
-            "{file}: {hint}"
-        );
+        assert_stored(&docs().join("pictures").join(file), &svg);
     }
+}
+
+fn assert_stored(file: &Path, rendered: &str) {
+    let stored = fs::read_to_string(file).unwrap();
+    let lines = (1..).zip(stored.lines().zip(rendered.lines()));
+    let differing = lines.filter(|(_, (stored, rendered))| stored != rendered);
+    let first = differing.take(1).collect::<Vec<_>>();
+    assert!(
+        stored == rendered,
+        "{}: stored and rendered line differ, {first:?}; run `relayrig study figures --render`",
+        file.display()
+    );
 }
 
 #[test]

@@ -217,10 +217,9 @@ fn name(row: &Row) -> String {
 }
 
 fn value(row: &Row) -> String {
-    let number = row
-        .value
-        .map_or("none".to_owned(), |it| number::value(it, row.bar));
-    format!("{number} {}", row.unit).trim_end().to_owned()
+    let known = |it| format!("{} {}", number::value(it, row.bar), row.unit);
+    let text = row.value.map_or("none".to_owned(), known);
+    text.trim_end().to_owned()
 }
 
 fn bar(row: &Row) -> String {
