@@ -2,6 +2,8 @@
 //!
 //! Exit status: 0 every bar is kept, 1 a bar is missed, 2 bad input or a lot that did not start.
 
+mod figures;
+
 use anyhow::{Context, bail};
 use app::exit::Exit;
 use clap::ValueEnum;
@@ -12,9 +14,18 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use studies::{Order, Report, Study};
 
+/// A document about all studies and benchmarks.
+#[derive(Debug, Clone, clap::Subcommand)]
+pub enum Document {
+    /// Run the plan of all figures and write docs/figures.md with its pictures
+    Figures(figures::FiguresArgs),
+}
+
 /// A study, or the list of them.
 #[derive(Debug, Clone, clap::Args)]
-#[command(after_help = "Examples:
+#[command(
+    args_conflicts_with_subcommands = true,
+    after_help = "Examples:
   relayrig study
   relayrig study accuracy
   relayrig study coverage --json
@@ -26,10 +37,15 @@ use studies::{Order, Report, Study};
   relayrig study storm --seeds 10000
   relayrig study storm --seeds 1000 --from 10001
   relayrig study storm --seed 17
+  relayrig study figures --only cycle
   relayrig study transient --cases crates/studies/src/transient/cases.json --rtol 1e-10 --json
 
-Exit status: 0 every bar is kept, 1 a bar is missed, 2 bad input.")]
+Exit status: 0 every bar is kept, 1 a bar is missed, 2 bad input."
+)]
 pub struct StudyArgs {
+    /// Document to make
+    #[command(subcommand)]
+    pub document: Option<Document>,
     /// Study to run; without it the command lists the studies
     #[arg(value_enum, value_name = "NAME")]
     pub name: Option<Study>,
@@ -76,6 +92,9 @@ pub struct StudyArgs {
 /// # Errors
 /// Fails on bad input, when a lot ends with bad input, or when an output cannot be written.
 pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<Exit> {
+    if let Some(Document::Figures(args)) = &args.document {
+        return figures::run(config, args);
+    }
     let Some(wanted) = args.name else {
         print(&listed(args.json))?;
         return Ok(Exit::Done);

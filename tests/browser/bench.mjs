@@ -4,6 +4,8 @@
 // - Share of the cycle's wall time in the phase `publish`, with one open stream and with 50 more.
 // - Time from the start of a demo in an empty folder to its first page.
 // - First answer: compressed bytes, and time until it is drawn, each time in a fresh browser context.
+//
+// With `--json` each figure is a line of JSON.
 
 import { request } from "node:http";
 import { open, visit } from "./browser.mjs";
@@ -18,10 +20,19 @@ const STARTS = 10;
 const at = (sorted, share) => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
 let missed = false;
 
-function told(what, value, unit, bar) {
-  missed ||= value > bar;
-  const verdict = value > bar ? "  MISSED" : "";
-  console.log(`${what.padEnd(52)} ${value.toFixed(2).padStart(9)} ${unit.padEnd(3)} bar ${bar}${verdict}`);
+const asJson = process.argv.includes("--json");
+
+// Prints a figure of `n` measurements; a value above its bar is missed, a null bar is none.
+function told(figure, n, value, unit, bar = null) {
+  const isMissed = bar !== null && value > bar;
+  missed ||= isMissed;
+  if (asJson) {
+    const text = bar === null ? null : `<= ${bar}`;
+    console.log(JSON.stringify({ type: "figure", study: "page", figure, n, value, unit, bar: text }));
+    return;
+  }
+  const verdict = bar === null ? "" : ` bar ${bar}${isMissed ? "  MISSED" : ""}`;
+  console.log(`${figure.padEnd(52)} ${value.toFixed(2).padStart(9)} ${unit.padEnd(3)}${verdict}`);
 }
 
 const pause = (seconds) => new Promise((resolve) => setTimeout(resolve, seconds * 1000));
@@ -55,7 +66,7 @@ for (let start = 0; start < STARTS; start += 1) {
   starts.push(performance.now() - began);
   await alone.kill();
 }
-told("demo in an empty folder: first page, longest", Math.max(...starts) / 1000, "s", 3);
+told("demo in an empty folder: first page, longest", STARTS, Math.max(...starts) / 1000, "s", 3);
 
 const [rig, browser] = await Promise.all([start("bench", "--speed", "1"), open()]);
 await rig.until("the lot runs", (view) => view.judged > 0, 120);
@@ -74,17 +85,17 @@ await page.evaluate(() => {
 });
 await pause(VIEWS_S);
 const lateness = (await page.evaluate(() => window.lateness)).sort((a, b) => a - b);
-console.log(`${lateness.length} views in ${VIEWS_S} s`);
-console.log(`${"from step to pixel, median".padEnd(52)} ${at(lateness, .5).toFixed(2).padStart(9)} ms`);
-told("from step to pixel, p95", at(lateness, .95), "ms", 100);
-console.log(`${"from step to pixel, p99".padEnd(52)} ${at(lateness, .99).toFixed(2).padStart(9)} ms`);
+const views = lateness.length;
+told("from step to pixel, median", views, at(lateness, .5), "ms");
+told("from step to pixel, p95", views, at(lateness, .95), "ms", 100);
+told("from step to pixel, p99", views, at(lateness, .99), "ms");
 
 const one = await share(rig);
 const screens = await Promise.all(Array.from({ length: SCREENS }, () => listen(rig)));
 const fifty = await share(rig);
 for (const screen of screens) screen.destroy();
-console.log(`${"the cycle's time on screens, one connected".padEnd(52)} ${one.toFixed(2).padStart(9)} %`);
-told(`the cycle's time on screens, ${SCREENS} more`, fifty, "%", 1);
+told("the cycle's time on screens, one connected", 1, one, "%");
+told(`the cycle's time on screens, ${SCREENS} more`, 1, fifty, "%", 1);
 
 const drawn = [];
 const bytes = await page.evaluate(() => performance.getEntriesByType("navigation")[0].encodedBodySize);
@@ -97,9 +108,9 @@ for (let visit = 0; visit < VISITS; visit += 1) {
   await context.close();
 }
 drawn.sort((a, b) => a - b);
-told("first page, compressed", bytes / 1000, "kB", 60);
-told("first page, drawn, median", at(drawn, .5), "ms", 200);
-console.log(`${"first page, drawn, p99".padEnd(52)} ${at(drawn, .99).toFixed(2).padStart(9)} ms`);
+told("first page, compressed", 1, bytes / 1000, "kB", 60);
+told("first page, drawn, median", VISITS, at(drawn, .5), "ms", 200);
+told("first page, drawn, p99", VISITS, at(drawn, .99), "ms");
 
 await browser.close();
 await rig.kill();

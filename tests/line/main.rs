@@ -6,6 +6,7 @@
 //! - `calibrate`: storing and verifying factors, and refusing lots without them.
 //! - [`commands`]: wrong files and simple orders.
 //! - `doctor`: a fresh folder, and spoiled ones.
+//! - `figures`: the document of all figures, made from its plan.
 //! - [`first_steps`]: a demo in an empty directory, and `init`.
 //! - `full_disk`: a history file that reaches its size limit.
 //! - `gates`: reference checks, suspect parts, reject-rate limit, first articles, retests, wear.
@@ -41,6 +42,8 @@ mod check;
 mod commands;
 #[cfg(feature = "sim")]
 mod doctor;
+#[cfg(feature = "study")]
+mod figures;
 mod first_steps;
 #[cfg(all(feature = "sim", unix))]
 mod full_disk;

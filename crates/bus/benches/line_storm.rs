@@ -1,8 +1,10 @@
-//! The full storm of line faults: `cargo bench -p bus --bench line_storm [-- TRANSACTIONS [SEED] [FAULT=VALUE]...]`.
+//! The full storm of line faults: `cargo bench -p bus --bench line_storm [-- TRANSACTIONS [SEED] [FAULT=VALUE]...
+//! [--json]]`.
 //!
 //! Counts the wrong readings that the line accepts; ends with status 1 when there is one. Prints beside them how many
 //! wrong readings to expect: two modules that reply at once produce, with a small probability, a frame whose checksum
-//! is right. When no fault is named, every fault has a probability of 1 %.
+//! is right. When no fault is named, every fault has a probability of 1 %. `--json` prints the counts as figures, a line
+//! of JSON each.
 
 #[path = "../../../tests/line/storm/rage.rs"]
 mod rage;
@@ -10,6 +12,7 @@ mod rage;
 use dcon::{Address, AnalogIn, Channel, DataFormat, InputForm, TypeCode};
 use rage::{EVERY_FAULT, Weather, rage};
 use rigsim::fault::LineFaults;
+use serde_json::json;
 use std::process::ExitCode;
 
 /// Number of transactions, none of which may give a wrong reading.
@@ -33,11 +36,45 @@ fn main() -> ExitCode {
     let transactions = numbers.first().copied().unwrap_or(TRANSACTIONS);
     let seed = numbers.get(1).copied().unwrap_or(1);
     let weather = rage(seed, transactions, &faults);
+    if words().any(|word| word == "--json") {
+        print_figures(&weather);
+        return ExitCode::from(u8::from(!weather.is_honest()));
+    }
     println!("line_storm: seed {seed}, {}", faults.join(" "));
     print_counts(&weather);
     print_expected(weather.transactions as f64, &faults);
     weather.examples.iter().for_each(|lie| println!("{lie}"));
     ExitCode::from(u8::from(!weather.is_honest()))
+}
+
+/// Broken rules of a storm; the bar of each is 0.
+fn broken(weather: &Weather) -> [(&'static str, u64); 5] {
+    [
+        ("readings of another channel", weather.foreign),
+        ("readings older than their request", weather.stale),
+        ("accepted writes not carried out", weather.hollow),
+        ("failures without a name", weather.nameless),
+        ("hangs", weather.hangs),
+    ]
+}
+
+fn print_figures(weather: &Weather) {
+    let line = |figure: &str, count: u64, bar: Option<&str>| {
+        let line = json!({
+            "type": "figure", "study": "line_storm", "figure": figure, "n": weather.transactions, "value": count,
+            "unit": "", "bar": bar,
+        });
+        println!("{line}");
+    };
+    for (figure, count) in broken(weather) {
+        line(figure, count, Some("<= 0"));
+    }
+    line("replies believed", weather.believed, None);
+    line(
+        "transactions that failed",
+        weather.failures.values().sum(),
+        None,
+    );
 }
 
 fn print_counts(weather: &Weather) {
@@ -47,11 +84,9 @@ fn print_counts(weather: &Weather) {
     for (kind, count) in &weather.failures {
         row(&format!("failed: {kind}"), *count, "");
     }
-    row("readings of another channel", weather.foreign, "bar 0");
-    row("readings older than their request", weather.stale, "bar 0");
-    row("accepted writes not carried out", weather.hollow, "bar 0");
-    row("failures without a name", weather.nameless, "bar 0");
-    row("hangs", weather.hangs, "bar 0");
+    for (name, count) in broken(weather) {
+        row(name, count, "bar 0");
+    }
     println!(
         "{:.0} s of rig time in {:.1} s, {:.0} transactions/s of wall time",
         weather.rig_s,

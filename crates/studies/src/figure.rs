@@ -36,6 +36,21 @@ impl Bar {
             Self::Within(low, high) => format!("{low} to {high}"),
         }
     }
+
+    /// Reads what [`Bar::text`] writes; `None` for any other text.
+    pub fn read(text: &str) -> Option<Self> {
+        let number = |text: &str| text.trim().parse::<f64>().ok();
+        if let Some(high) = text.strip_prefix("<=") {
+            number(high).map(Self::AtMost)
+        } else if let Some(high) = text.strip_prefix('<') {
+            number(high).map(Self::Below)
+        } else if let Some(low) = text.strip_prefix(">=") {
+            number(low).map(Self::AtLeast)
+        } else {
+            let (low, high) = text.split_once(" to ")?;
+            Some(Self::Within(number(low)?, number(high)?))
+        }
+    }
 }
 
 /// One row of a study.

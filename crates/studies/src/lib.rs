@@ -13,6 +13,8 @@
 //!
 //! `collision` and `transient` run no lot: the one compares ways to check a move with the exact truth, the other
 //! integrates the relay model of the simulated rig.
+//!
+//! [`figures`] runs a plan of studies and benchmarks and writes their figures as one document.
 
 mod bins;
 mod chart;
@@ -25,7 +27,9 @@ mod dice;
 mod error;
 mod exception;
 mod figure;
+pub mod figures;
 mod gantt;
+mod gauge;
 mod history;
 mod journal;
 mod kill;
@@ -54,6 +58,7 @@ mod verification;
 use anyhow::bail;
 use clap::ValueEnum;
 pub use collision::study as collision;
+pub use figure::Bar;
 pub use gantt::svg as cycle_gantt;
 pub use order::Order;
 pub use output::Report;
@@ -74,6 +79,8 @@ pub enum Study {
     Coverage,
     /// Rig time of a test and of a cycle, and its pieces
     Cycle,
+    /// Share of the gauge in the scatter of each characteristic (%GRR)
+    Gauge,
     /// Speed of the history on a made-up file
     History,
     /// False accepts and rejects, counted and as the decision rule predicts them
@@ -112,6 +119,7 @@ impl Study {
             Self::Coverage => (100, 10),
             Self::Cycle => (1, 100),
             Self::Decision => (20, 500),
+            Self::Gauge => (1, 10),
             Self::History => (1, 1_000_000),
             Self::Kill => (300, 1),
             Self::Life => (50, 2_000),
@@ -136,6 +144,7 @@ impl Study {
             Self::Coverage => parameters::coverage(order),
             Self::Cycle => cycle::study(order),
             Self::Decision => decision::study(order),
+            Self::Gauge => gauge::study(order),
             Self::History => history::study(order),
             Self::Kill => kill::study(order),
             Self::Life => life::study(order),

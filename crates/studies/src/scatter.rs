@@ -1,14 +1,14 @@
-//! Speed against error as SVG: a point per method, both axes logarithmic.
+//! Points and curves as SVG, both axes logarithmic.
 //!
-//! Lengths are px. A point whose error is zero or below the lowest line lies on the bottom line, labelled `less`. The
-//! point of a method with wrong verdicts is hollow, and its label counts them.
+//! Lengths are px. A point below the lowest line lies on it. The point of a method with wrong verdicts is hollow, and its
+//! label counts them.
 
 use history::report::svg::Svg;
 
-/// The point of a method.
+/// A point of the plot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
-    /// Label beside the point.
+    /// Label beside the point; empty for none.
     pub name: String,
     /// Value along the x axis, above 0.
     pub x: f64,
@@ -16,7 +16,7 @@ pub struct Point {
     pub y: f64,
     /// Number of wrong verdicts; above 0 the point is hollow, so that speed does not hide wrong answers.
     pub wrong: u64,
-    /// Number of the series, which chooses the colour; a line joins the points of one series.
+    /// Number of the series, which chooses the colour.
     pub series: usize,
 }
 
@@ -29,8 +29,12 @@ pub struct Scatter {
     pub x_title: String,
     /// Title of the y axis.
     pub y_title: String,
-    /// Points; neighbours of one series are joined.
+    /// Points, in the order of their lines.
     pub points: Vec<Point>,
+    /// Whether a line joins neighbours of one series.
+    pub is_joined: bool,
+    /// Value of the lowest line, labelled `less`; `None` lets the points choose it.
+    pub least: Option<f64>,
 }
 
 const LEFT: f64 = 92.0;
@@ -39,9 +43,9 @@ const WIDE: f64 = 700.0;
 const HIGH: f64 = 380.0;
 const RIGHT: f64 = 30.0;
 const BELOW: f64 = 64.0;
-/// Errors below this lie on the bottom line, mm.
-const LEAST: f64 = 1e-10;
-const COLOURS: [&str; 5] = ["#4a7ba6", "#c05621", "#2f855a", "#6b46c1", "#718096"];
+const COLOURS: [&str; 6] = [
+    "#4a7ba6", "#c05621", "#2f855a", "#6b46c1", "#718096", "#b83280",
+];
 /// Least distance of two labels, px.
 const LINE: f64 = 15.0;
 
@@ -51,7 +55,9 @@ impl Scatter {
         let mut svg = Svg::new([LEFT + WIDE + RIGHT, TOP + HIGH + BELOW]);
         let (xs, ys) = (self.x_axis(), self.y_axis());
         self.grid(&mut svg, &xs, &ys);
-        self.joined(&mut svg, &xs, &ys);
+        if self.is_joined {
+            self.joined(&mut svg, &xs, &ys);
+        }
         self.labelled(&mut svg, &xs, &ys);
         svg.file(&self.title)
     }
@@ -62,8 +68,10 @@ impl Scatter {
     }
 
     fn y_axis(&self) -> Axis {
-        let values = self.points.iter().map(|it| it.y.max(LEAST));
-        Axis::over(values.chain([LEAST]), TOP + HIGH, TOP)
+        let values = self.points.iter().map(|it| it.y);
+        let least = self.least;
+        let above = values.map(|it| least.map_or(it, |least| it.max(least)));
+        Axis::over(above.chain(least), TOP + HIGH, TOP)
     }
 
     fn grid(&self, svg: &mut Svg, xs: &Axis, ys: &Axis) {
@@ -76,9 +84,9 @@ impl Scatter {
         }
         for decade in ys.low..=ys.high {
             let y = ys.place(10f64.powi(decade));
-            let text = match decade == ys.low {
-                true => "less".to_owned(),
-                false => power(decade),
+            let text = match (self.least, decade == ys.low) {
+                (Some(_), true) => "less".to_owned(),
+                (_, _) => power(decade),
             };
             svg.line([LEFT, y], [right, y], grey);
             svg.text([LEFT - 8.0, y + 4.0], "text-anchor=\"end\"", &text);
@@ -90,7 +98,7 @@ impl Scatter {
     }
 
     fn joined(&self, svg: &mut Svg, xs: &Axis, ys: &Axis) {
-        let at = |it: &Point| [xs.place(it.x), ys.place(it.y.max(LEAST))];
+        let at = |it: &Point| [xs.place(it.x), ys.place(it.y)];
         for (a, b) in self.points.iter().zip(self.points.iter().skip(1)) {
             if a.series == b.series {
                 let style = format!("stroke=\"{}\" stroke-dasharray=\"3 3\"", colour(a));
@@ -102,12 +110,18 @@ impl Scatter {
     fn labelled(&self, svg: &mut Svg, xs: &Axis, ys: &Axis) {
         let mut taken: Vec<(f64, f64)> = Vec::new();
         for point in &self.points {
-            let (x, y) = (xs.place(point.x), ys.place(point.y.max(LEAST)));
+            let (x, y) = (xs.place(point.x), ys.place(point.y));
             let fill = if point.wrong == 0 {
                 colour(point)
             } else {
                 "#fff"
             };
+            let stroke = colour(point);
+            let style = format!("fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"2\"");
+            svg.circle([x, y], 5.0, &style);
+            if point.name.is_empty() {
+                continue;
+            }
             let mut line = y - 8.0;
             while taken
                 .iter()
@@ -127,9 +141,6 @@ impl Scatter {
                 1 => ", 1 wrong".to_owned(),
                 some => format!(", {some} wrong"),
             };
-            let stroke = colour(point);
-            let style = format!("fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"2\"");
-            svg.circle([x, y], 5.0, &style);
             let style = format!("text-anchor=\"{anchor}\"");
             svg.text([x + aside, line], &style, &format!("{}{wrong}", point.name));
         }

@@ -1,11 +1,12 @@
-//! The full storm on links to instruments: `cargo bench --bench link_storm [-- QUERIES [SEED]]`.
+//! The full storm on links to instruments: `cargo bench --bench link_storm [-- QUERIES [SEED] [--json]]`.
 //!
 //! Every fault has a probability of 1 %, in storms of ten minutes of rig time with a calm after each. Counts the values
 //! that reach another query, the programs that hang, the failures without a name and the links that do not recover; ends
-//! with status 1 when there is one.
+//! with status 1 when there is one. `--json` prints the sums over all ways as figures, a line of JSON each.
 
 mod storm;
 
+use serde_json::json;
 use std::collections::BTreeMap;
 use std::process::ExitCode;
 use storm::{WAYS, Way, Weather, every_fault, storm};
@@ -16,16 +17,46 @@ const QUERIES: u64 = 100_000;
 const STORM_S: f64 = 600.0;
 
 fn main() -> ExitCode {
-    let words = std::env::args().skip(1);
-    let numbers: Vec<u64> = words.filter_map(|word| word.parse().ok()).collect();
+    let words = || std::env::args().skip(1);
+    let numbers: Vec<u64> = words().filter_map(|word| word.parse().ok()).collect();
     let queries = numbers.first().copied().unwrap_or(QUERIES);
     let seed = numbers.get(1).copied().unwrap_or(1);
-    let honest = WAYS.map(|way| {
-        let storms = storms(way, seed, queries / WAYS.len() as u64);
-        print(way, &storms);
-        storms.iter().all(Weather::is_honest)
-    });
-    ExitCode::from(u8::from(honest.contains(&false)))
+    let all = WAYS.map(|way| (way, storms(way, seed, queries / WAYS.len() as u64)));
+    match words().any(|word| word == "--json") {
+        true => print_figures(all.iter().flat_map(|(_, storms)| storms)),
+        false => all.iter().for_each(|(way, storms)| print(*way, storms)),
+    }
+    let mut every = all.iter().flat_map(|(_, storms)| storms);
+    ExitCode::from(u8::from(!every.all(Weather::is_honest)))
+}
+
+fn print_figures<'a>(storms: impl Iterator<Item = &'a Weather> + Clone) {
+    let sum = |of: fn(&Weather) -> u64| storms.clone().map(of).sum::<u64>();
+    for (figure, count, bar) in [
+        (
+            "values of another query",
+            sum(|it| it.foreign),
+            Some("<= 0"),
+        ),
+        ("programs that hang", sum(|it| it.hangs), Some("<= 0")),
+        (
+            "failures without a name",
+            sum(|it| it.nameless),
+            Some("<= 0"),
+        ),
+        (
+            "links that do not recover",
+            sum(|it| it.unrecovered),
+            Some("<= 0"),
+        ),
+        ("values delivered", sum(|it| it.delivered), None),
+    ] {
+        let n = sum(|it| it.queries);
+        println!(
+            "{}",
+            json!({"type": "figure", "study": "link_storm", "figure": figure, "n": n, "value": count, "unit": "", "bar": bar})
+        );
+    }
 }
 
 /// Returns storms with at least `queries` queries together.

@@ -6,13 +6,14 @@
 //! with that of a bare client on the same pseudo-terminal in the same run (`peer`). No host can exceed the bound, and
 //! on this machine hardly any exceeds the peer.
 
-use super::bare;
+use super::{bare, figure};
 use bus::{Answer, LineSettings, Pace, Request, Wire};
 use dcon::{
     Address, AnalogIn, Channel, Command, Counter, DataFormat, Digital, InputForm, OutputWord,
     TypeCode, UpTo, Width,
 };
 use rigsim::pty::Rates;
+use serde_json::json;
 use std::error::Error;
 use std::time::Duration;
 use tokio::sync::mpsc;
@@ -95,6 +96,26 @@ struct Row {
     peer: f64,
     /// Times from one request to the next, microseconds, sorted.
     each_us: Vec<u64>,
+}
+
+/// Measures every workload at every baud rate and prints the utilisation as figures.
+pub fn print_figures() {
+    for (baud, bar) in BARS {
+        for workload in workloads() {
+            let row = measured(baud, &workload.commands).ok();
+            let of = |value: fn(&Row) -> f64| row.as_ref().map(value);
+            figure(json!({
+                "figure": format!("use of a line at {baud} baud, {}", workload.name),
+                "n": row.as_ref().map_or(0, |it| it.asked),
+                "value": of(|it| it.share),
+                "unit": "",
+                "bound": of(|it| it.bound),
+                "peer": of(|it| it.peer),
+                "median_us": of(|it| it.each_us[it.each_us.len() / 2] as f64),
+                "bar": format!(">= {bar}"),
+            }));
+        }
+    }
 }
 
 /// Measures and prints every workload at every baud rate.

@@ -1,5 +1,5 @@
 //! `cargo bench -p bus`: speed and allocations of the parser, utilisation of a line with the paced simulated modules,
-//! and ten million random frames.
+//! and ten million random frames. `--json` prints utilisation and random frames as figures, a line of JSON each.
 
 #![allow(missing_docs)]
 
@@ -12,6 +12,7 @@ use dcon::{
 };
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
+use serde_json::{Value, json};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -22,9 +23,28 @@ static ALLOC: divan::AllocProfiler = divan::AllocProfiler::system();
 const FUZZED: u64 = 10_000_000;
 
 fn main() {
+    if std::env::args().any(|word| word == "--json") {
+        busy::print_figures();
+        let seconds = fuzz().seconds;
+        figure(json!({
+            "figure": "random frames decoded per second", "n": FUZZED, "value": FUZZED as f64 / seconds, "unit": "/s",
+        }));
+        return;
+    }
     busy::print();
-    fuzz();
+    let fuzzed = fuzz();
+    println!(
+        "{FUZZED} random frames, seed 1: no panic, {} replies taken, {} requests read, {:.0} s",
+        fuzzed.taken, fuzzed.read, fuzzed.seconds
+    );
     divan::main();
+}
+
+/// Prints a figure of this benchmark as a line of JSON.
+fn figure(mut line: Value) {
+    line["type"] = json!("figure");
+    line["study"] = json!("bus");
+    println!("{line}");
 }
 
 // ---- parser: divan prints MB/s, and allocations where there are any -------------------------------------------------
@@ -64,7 +84,17 @@ fn sealed(text: &str) -> Vec<u8> {
 
 // ---- random frames --------------------------------------------------------------------------------------------------
 
-fn fuzz() {
+/// What became of the random frames.
+struct Fuzzed {
+    /// Frames accepted as a reply.
+    taken: u64,
+    /// Requests read from the frames.
+    read: u64,
+    /// Wall time.
+    seconds: f64,
+}
+
+fn fuzz() -> Fuzzed {
     const LETTERS: &[u8] = b"!>?#$%@~0123456789ABCDEF+-. RDOCLHPSTGIM*";
     let asks = [
         Common::ReadConfig.to(Address(1)),
@@ -104,8 +134,9 @@ fn fuzz() {
             read += black_box(dcon::decode_request(&frame[..frame.len() - 1])).len() as u64;
         }
     }
-    println!(
-        "{FUZZED} random frames, seed 1: no panic, {taken} replies taken, {read} requests read, {:.0} s",
-        begun.elapsed().as_secs_f64()
-    );
+    Fuzzed {
+        taken,
+        read,
+        seconds: begun.elapsed().as_secs_f64(),
+    }
 }

@@ -3,9 +3,11 @@
 //! Prints nanoseconds and ratios (peer to core) of mean and 99th percentile: with warm caches, in random order, and
 //! with cold caches. Prints how many answers differ and, below a missed bar, where the time goes ([`missed`]). `--
 //! --quick` stops at 1,000 elements, `-- --bar` measures only 1,000 elements, `-- --growth` measures how the cost of
-//! the core alone grows from 10 to 100,000 elements.
+//! the core alone grows from 10 to 100,000 elements. `--json` prints the questions with a bar, at 1,000 elements or over
+//! all sizes (`--growth`), as figures, a line of JSON each.
 
 mod answers;
+mod figures;
 mod growth;
 mod missed;
 mod peer;
@@ -31,12 +33,17 @@ const RANGE_MM: f64 = 25.0;
 
 fn main() {
     let clock = clock_ns();
+    let asked = |name: &str| std::env::args().any(|argument| argument == name);
+    match (asked("--growth"), asked("--json")) {
+        (true, true) => return growth::print_figures(clock),
+        (false, true) => return figures::print(clock),
+        (_, false) => {}
+    }
     println!(
         "one query alone, best of several passes, ns; cost of the clock taken off: {clock:.1} ns"
     );
-    let asked = |name: &str| std::env::args().any(|argument| argument == name);
     if asked("--growth") {
-        return growth::report(clock);
+        return growth::print(clock);
     }
     let sizes: &[usize] = match (asked("--quick"), asked("--bar")) {
         (_, true) => &[1_000],
@@ -60,6 +67,20 @@ struct Bench {
     mover: Mover,
     double: peer::double::Peer,
     single: peer::single::Peer,
+}
+
+/// Times of building, copying and editing a model, ns.
+struct Edits {
+    build: Spread,
+    /// Building the compound of the peer, in double and in single precision.
+    rebuild: Spread,
+    single_rebuild: Spread,
+    copy: Spread,
+    /// Inserting and removing an element.
+    edit: Spread,
+    /// Inserting and removing a leaf of the peer's raw tree, in double and in single precision.
+    double_edit: Spread,
+    single_edit: Spread,
 }
 
 fn built(world: &World) -> Model {
@@ -255,36 +276,28 @@ impl Bench {
         row(kind, "", "first contact", &first, &[one, pairs]);
     }
 
-    fn edits(&self, world: &World) {
+    /// Measures building a model, copying it, and editing it.
+    fn measured_edits(&self, world: &World) -> Edits {
         let count = world.elements.len();
         let times = if count > 5_000 { 9 } else { 201 };
         let bodies = peer::double::Peer::bodies(&world.elements);
         let single_bodies = peer::single::Peer::bodies(&world.elements);
-        let [mut ours, mut rebuild, mut single, mut copy] = [(); 4].map(|()| Rounds::new(times));
+        let [mut whole, mut rebuild, mut single, mut copy] = [(); 4].map(|()| Rounds::new(times));
         for _ in 0..TURNS {
-            ours.turn(|| (), |()| built(world));
+            whole.turn(|| (), |()| built(world));
             peer::double::Peer::build(&bodies, &mut rebuild);
             peer::single::Peer::build(&single_bodies, &mut single);
             copy.turn(|| (), |()| self.model.clone());
         }
-        let (ours, rebuild, single) = (ours.spread(), rebuild.spread(), single.spread());
-        row(
-            "build",
-            "",
-            "whole model",
-            &ours,
-            &[rebuild, rebuild, single],
-        );
-        missed::of_build(&copy.spread(), &ours, &rebuild);
         let picked: Vec<usize> = (0..QUERIES)
             .map(|index| 1 + index * 7919 % (count - 1))
             .collect();
         let mut model = self.model.clone();
         let (mut double, mut single) = (self.double.editor(), self.single.editor());
         let timed = || Timed::new(&picked, self.clock);
-        let (mut ours, mut double_edit, mut single_edit) = (timed(), timed(), timed());
+        let (mut edit, mut double_edit, mut single_edit) = (timed(), timed(), timed());
         for _ in 0..TURNS {
-            ours.turn(|index| {
+            edit.turn(|index| {
                 let (shape, pose) = &world.elements[*index];
                 let key = model.insert("element", shape, pose);
                 model.remove(key.expect("a valid body"))
@@ -292,18 +305,39 @@ impl Bench {
             double_edit.turn(&mut double);
             single_edit.turn(&mut single);
         }
-        let ours = ours.spread();
+        Edits {
+            build: whole.spread(),
+            rebuild: rebuild.spread(),
+            single_rebuild: single.spread(),
+            copy: copy.spread(),
+            edit: edit.spread(),
+            double_edit: double_edit.spread(),
+            single_edit: single_edit.spread(),
+        }
+    }
+
+    fn edits(&self, world: &World) {
+        let it = self.measured_edits(world);
+        let rebuild = it.rebuild;
+        row(
+            "build",
+            "",
+            "whole model",
+            &it.build,
+            &[rebuild, rebuild, it.single_rebuild],
+        );
+        missed::of_build(&it.copy, &it.build, &rebuild);
         row(
             "edit",
             "",
             "insert, remove",
-            &ours,
-            &[rebuild, double_edit.spread(), single_edit.spread()],
+            &it.edit,
+            &[rebuild, it.double_edit, it.single_edit],
         );
         println!(
             "(edit: against a rebuild of the compound, and against insert and remove of a leaf of the raw tree)"
         );
-        let bytes = self.model.heap_bytes() as f64 / count as f64;
+        let bytes = self.model.heap_bytes() as f64 / world.elements.len() as f64;
         println!("memory: {bytes:.0} bytes per element");
     }
 }

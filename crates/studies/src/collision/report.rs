@@ -10,6 +10,9 @@ use crate::scatter::{Point, Scatter};
 use quality::spread::median;
 use quality::{Ordered, Spread};
 
+/// Errors below this lie on the bottom line of the plot, mm.
+const LEAST_MM: f64 = 1e-10;
+
 /// A method with its results.
 pub(super) struct Scored {
     pub(super) name: String,
@@ -202,5 +205,7 @@ pub(super) fn speed_against_error(scored: &[Scored]) -> Scatter {
         x_title: "mean time per move, us".to_owned(),
         y_title: "error of the stop (99 of 100), mm".to_owned(),
         points: scored.iter().map(point).collect(),
+        is_joined: true,
+        least: Some(LEAST_MM),
     }
 }

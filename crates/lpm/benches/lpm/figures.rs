@@ -1,0 +1,81 @@
+//! The questions that have a bar, as figures: a line of JSON each, with how many times as fast as parry3d-f64 the core
+//! is.
+
+use super::timing::{Spread, TURNS, Timed};
+use super::world::{KINDS, moves, world};
+use super::{BAR, Bench, QUERIES, stop};
+use lpm::Move;
+use serde_json::{Value, json};
+
+/// Number of elements at which the bars apply.
+const ELEMENTS: usize = 1_000;
+/// Bar: least ratio for an edit of the peer's raw tree.
+const EDIT_BAR: f64 = 3.0;
+/// Bar: least ratio for a rebuild of the peer's compound, against an edit.
+const REBUILD_BAR: f64 = 1_000.0;
+
+/// Prints a figure of this benchmark.
+pub fn line(mut figure: Value) {
+    figure["type"] = json!("figure");
+    figure["study"] = json!("lpm");
+    println!("{figure}");
+}
+
+/// Measures and prints all figures; `clock` is what reading the clock costs, ns.
+pub fn print(clock: f64) {
+    let world = world(ELEMENTS);
+    let bench = Bench::new(&world, clock);
+    for kind in KINDS {
+        question(&bench, kind, &moves(&world, kind, QUERIES));
+    }
+    let it = bench.measured_edits(&world);
+    against(
+        "building a model",
+        1,
+        &it.build,
+        &it.rebuild,
+        [Some(BAR), None],
+    );
+    let edit = "inserting and removing an element";
+    against(
+        edit,
+        QUERIES,
+        &it.edit,
+        &it.double_edit,
+        [Some(EDIT_BAR); 2],
+    );
+    let rebuilt = format!("{edit}, against a rebuild");
+    against(
+        &rebuilt,
+        QUERIES,
+        &it.edit,
+        &it.rebuild,
+        [Some(REBUILD_BAR), None],
+    );
+}
+
+fn question(bench: &Bench, kind: &str, ways: &[Move]) {
+    let timed = || Timed::new(ways, bench.clock);
+    let (mut any, mut first, mut peer) = (timed(), timed(), timed());
+    for _ in 0..TURNS {
+        any.turn(|way| bench.model.any_hit(&bench.mover, way));
+        first.turn(|way| stop(&bench.model, &bench.mover, way));
+        peer.turn(|way| bench.double.compound(way));
+    }
+    let peer = peer.spread();
+    for (question, ours) in [("any hit", any), ("first contact", first)] {
+        let name = format!("{kind}, {question}");
+        against(&name, QUERIES, &ours.spread(), &peer, [Some(BAR); 2]);
+    }
+}
+
+/// Prints the ratios of mean and 99th percentile, with their bars.
+fn against(name: &str, n: usize, ours: &Spread, peer: &Spread, bars: [Option<f64>; 2]) {
+    let ratios = [("mean", ours.mean, peer.mean), ("p99", ours.p99, peer.p99)];
+    for ((which, ours_ns, peer_ns), bar) in ratios.into_iter().zip(bars) {
+        line(json!({
+            "figure": format!("{name}: {which}"), "n": n, "value": peer_ns / ours_ns, "unit": "times as fast",
+            "ours_ns": ours_ns, "peer_ns": peer_ns, "bar": bar.map(|bar| format!(">= {bar}")),
+        }));
+    }
+}

@@ -1,0 +1,156 @@
+//! The plan of the figures, `figures/plan.toml` in the folder of the documents: the runs that make them, in sections,
+//! with what a reader has to know.
+
+use super::page::anchor;
+use anyhow::{Context, ensure};
+use serde::Deserialize;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// The whole plan.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Plan {
+    /// Markdown below the title of the document.
+    pub about: String,
+    /// Sections, in the order of the document.
+    #[serde(rename = "section")]
+    pub sections: Vec<Section>,
+}
+
+/// A section of the document.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Section {
+    /// Heading.
+    pub title: String,
+    /// Sentences below the heading.
+    pub about: String,
+    /// Runs, in the order of the document.
+    #[serde(rename = "run")]
+    pub runs: Vec<Run>,
+}
+
+/// A command that prints figures as lines of JSON.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Run {
+    /// Name of the result, in small letters, digits and hyphens.
+    pub name: String,
+    /// Heading of the figures.
+    pub title: String,
+    /// Sentences below the heading.
+    #[serde(default)]
+    pub about: String,
+    /// Words that start the run, separated by spaces; the run adds `--json`. A word `relayrig` stands for this program.
+    pub command: String,
+    /// Machine that the figures need.
+    pub machine: Machine,
+    /// Beginnings of the names of the figures to show; without them the document shows all. A missed bar always shows.
+    #[serde(default)]
+    pub shows: Vec<String>,
+    /// Pictures below the figures.
+    #[serde(default)]
+    pub pictures: Vec<Picture>,
+    /// Larger runs, which take too long for the plan.
+    #[serde(default)]
+    pub larger: Vec<Larger>,
+}
+
+/// Machine that the figures of a run need.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Machine {
+    /// Rig time and counts, which are the same on every machine.
+    Any,
+    /// Wall times, which need a machine that does nothing else.
+    Quiet,
+}
+
+/// A picture of a run.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Picture {
+    /// Name of the file in the folder `pictures`.
+    pub file: String,
+    /// What the picture shows.
+    pub about: String,
+    /// How to draw the picture from the figures; without it the study draws it (`--out`).
+    pub plot: Option<Plot>,
+}
+
+/// A plot of figures, both axes logarithmic.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Plot {
+    /// Words that the name of each drawn figure contains.
+    #[serde(default)]
+    pub figures: Vec<String>,
+    /// Column of the x axis: its name for a point per figure, with the value above it; its beginning and a `*` for a
+    /// curve per figure over all such columns, with x in the place of the `*`.
+    pub column: String,
+    /// Title of the x axis.
+    pub x: String,
+    /// Title of the y axis.
+    pub y: String,
+}
+
+/// A run by hand.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Larger {
+    /// Words that start the run.
+    pub command: String,
+    /// What the run shows, and how long it takes.
+    pub about: String,
+}
+
+impl Plan {
+    /// Loads the plan of a folder of documents.
+    ///
+    /// # Errors
+    /// Fails when the file cannot be read, has an unknown key, or names a run or a heading twice.
+    pub fn load(docs: &Path) -> anyhow::Result<Self> {
+        let file = docs.join("figures/plan.toml");
+        let named = || file.display().to_string();
+        let text = std::fs::read_to_string(&file).with_context(named)?;
+        Self::read(&text).with_context(named)
+    }
+
+    /// Reads a plan.
+    ///
+    /// # Errors
+    /// Fails as [`Plan::load`] does.
+    pub fn read(text: &str) -> anyhow::Result<Self> {
+        let plan: Self = toml::from_str(text)?;
+        let (mut names, mut anchors) = (BTreeSet::new(), BTreeSet::new());
+        let sections = plan.sections.iter().map(|it| it.title.as_str());
+        for title in sections.chain(plan.runs().map(|it| it.title.as_str())) {
+            ensure!(
+                anchors.insert(anchor(title)),
+                "title: found {title:?} twice, expected each heading once"
+            );
+        }
+        for Run { name, command, .. } in plan.runs() {
+            let is_name = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+            ensure!(
+                !name.is_empty() && name.chars().all(is_name),
+                "name: found {name:?}, expected small letters, digits and hyphens"
+            );
+            ensure!(
+                names.insert(name),
+                "name: found {name:?} twice, expected each run once"
+            );
+            ensure!(
+                command.split_whitespace().count() > 1,
+                "command of {name}: found {command:?}, expected a program and its arguments"
+            );
+        }
+        Ok(plan)
+    }
+
+    /// Returns the runs of all sections.
+    pub fn runs(&self) -> impl Iterator<Item = &Run> {
+        self.sections.iter().flat_map(|section| &section.runs)
+    }
+}
