@@ -119,10 +119,10 @@ test("an engineer edits the prompts of a recipe", async () => {
   await page.selectOption('#r_fields [data-path="prompt.0.choices.0.stops"]', "false");
   await page.click("#r_save");
   await shown(page, "#r_history li li", "prompt.0.text_en: Change the track -> Empty the track");
-  await page.locator(request).scrollIntoViewIfNeeded();
+  await shown(page, "#r_answer", "Saved as revision 2");
   await looks(page, "recipes-prompts");
   await page.setViewportSize(PHONE);
-  await page.locator(request).scrollIntoViewIfNeeded();
+  await page.$eval(request, (it) => it.scrollIntoView());
   await looks(page, "recipes-prompts-390");
   await leave(page);
 });
