@@ -6,7 +6,7 @@ use crate::inquiry::export::spreadsheet;
 use crate::report::sheet::{Sheet, SheetFacts};
 use crate::report::{Lang, Paper};
 use crate::{Filter, OrderRecord, Part, Row};
-use calamine::{Data, Reader, Xlsx};
+use calamine::{DataType, Data, Reader, Xlsx};
 use jiff::tz::TimeZone;
 use quality::Limits;
 use std::io::Cursor;
@@ -73,7 +73,7 @@ fn a_spreadsheet_of_a_lot_has_its_answers() {
     let summary = book.worksheet_range("Summary").unwrap();
     let told = summary
         .rows()
-        .filter(|row| row[0].as_string().as_deref() == Some("Prompt: nest"));
+        .filter(|row| row[0].get_string() == Some("Prompt: nest"));
     let told: Vec<String> = told.map(|row| row[1].to_string()).collect();
     assert_eq!(told, ["changed, li, 1970-01-01 00:00:00 +00:00"]);
 }
