@@ -251,7 +251,7 @@ motion-axis_nest = axis: to the nest
 motion-axis_park = axis: to park
 motion-axis_retest = axis: to retest
 
-## Reasons why a part did not pass: what follows the name of its characteristic; .row is the string of rows and files
+## Reasons why a part did not pass: what follows the name of its characteristic; .row is the string of rows and files; .any has no detail
 
 reason-outside_limit = outside its limits
     .high = above the upper limit
@@ -1221,10 +1221,11 @@ paper-closed = Closed
 paper-measured_on = Measured on
 paper-reference_parts = Reference parts
 paper-tested = Tested
+paper-retests = Retests
 paper-first_pass_yield = First-pass yield
 paper-final_yield = Final yield
 paper-bin = Bin
-paper-parts = Parts
+paper-tests = Tests
 paper-share = Share
 paper-parameter = Parameter
 paper-limits = Limits

@@ -9,7 +9,7 @@ use super::spc::{NamedChart, spc};
 use super::*;
 use crate::inquiry::comparison::{ComparedLot, Comparison};
 use crate::inquiry::pareto::{Ranked, Rejects};
-use crate::{Alarm, AlarmState, LotSummary, Measurement, Part, Passed, Reopening, Shelf, Yield};
+use crate::{Alarm, AlarmState, LotSummary, LotYield, Measurement, Part, Reopening, Shelf, Yield};
 use config::{Folder, load_recipe};
 use machine::dut::card::{CardSettings, Quota, STEPS};
 use machine::dut::{Reason, Recipe};
@@ -119,9 +119,11 @@ fn lot_report_on(paper: &Paper) -> String {
             who: "zhao".into(),
             why: EVIL.into(),
         }],
-        passed: Passed {
-            finally: 2,
-            at_first: 1,
+        counts: LotYield {
+            parts: 3,
+            first_pass: 1,
+            retest_pass: 1,
+            suspect: 0,
         },
         parameters: vec![values],
         effectiveness: None,
