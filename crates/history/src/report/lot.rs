@@ -188,6 +188,7 @@ impl LotReport<'_> {
 
     fn table(&self, language: Lang) -> Markup {
         let say = |id| language.text(id);
+        let tests = self.runs.iter().map(|it| it.counts.parts).sum();
         html! {
             table {
                 thead { tr {
@@ -197,7 +198,7 @@ impl LotReport<'_> {
                     th.n { (say("paper-median")) } th.n { (say("paper-max")) }
                     th.n { "Cpk" } th.n { "Ppk" } th.n { (say("paper-skewed")) }
                 } }
-                tbody { @for it in &self.parameters { (row(language, it)) } }
+                tbody { @for it in &self.parameters { (row(language, it, tests)) } }
             }
         }
     }
@@ -223,11 +224,15 @@ fn reopening(paper: &Paper, it: &Reopening) -> String {
         .say(paper.language)
 }
 
-fn row(language: Lang, it: &ParameterValues) -> Markup {
+fn row(language: Lang, it: &ParameterValues, tests: u64) -> Markup {
     let moments = Spread::of(&it.values);
     let ordered = Ordered::of(&it.values);
     let within = spread::mean_moving_range(&it.values).map(|range| range / D2_PAIR);
     let able = Capability::of(it.limits, moments.n(), moments.mean(), within, moments.sd());
+    let n = match moments.n() {
+        n if n < tests => format!("{n} / {tests}"),
+        n => n.to_string(),
+    };
     let figures = [
         moments.mean(),
         moments.sd(),
@@ -236,7 +241,7 @@ fn row(language: Lang, it: &ParameterValues) -> Markup {
         moments.max(),
     ];
     html! { tr {
-        td { (unbroken(&parameter(language, &it.key))) } td.n { (moments.n()) }
+        td { (unbroken(&parameter(language, &it.key))) } td.n { (unbroken(&n)) }
         td.n { (limits(it.limits)) }
         @for value in figures { td.n { (figure(value)) } }
         td.n { (index(able.cpk)) } td.n { (index(able.ppk)) }
@@ -284,13 +289,14 @@ fn use_of_time(language: Lang, it: &Effectiveness) -> Markup {
             thead { tr {
                 th.n { "OEE" } th.n { (say("paper-availability")) }
                 th.n { (say("paper-performance")) } th.n { (say("paper-quality")) }
-                th.n { (say("paper-lost_alarms")) } th.n { (say("paper-lost_slow_cycles")) }
-                th.n { (say("paper-lost_rejects")) }
+                th.n { (say("paper-lost_alarms")) } th.n { (say("paper-lost_setup")) }
+                th.n { (say("paper-lost_slow_cycles")) } th.n { (say("paper-lost_rejects")) }
             } }
             tbody { tr {
                 td.n { (share(it.oee)) } td.n { (share(it.availability)) }
                 td.n { (share(it.performance)) } td.n { (share(it.quality)) }
-                td.n { (span(it.stopped_s)) } td.n { (span(it.slow_s)) } td.n { (span(it.rejected_s)) }
+                td.n { (span(it.stopped_s)) } td.n { (span(it.setup_s)) } td.n { (span(it.slow_s)) }
+                td.n { (span(it.rejected_s)) }
             } }
         }
     }
