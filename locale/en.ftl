@@ -31,9 +31,10 @@ alarm-motion_refused = { $motion } refused: { $detail }
     .consequence = All outputs are safe; a part inside goes to retest after the reset.
     .action = Remove the obstacle that the message names, then clear and reset.
 alarm-bus_trouble = { $detail }. Check cable, power and address of the module.
+    .taken = { $detail }. End the other program.
     .cause = A line or module does not answer, or has restarted.
     .consequence = All outputs are safe; a part inside goes to retest after the reset.
-    .action = Check cable, power and address of the module named, then clear and reset.
+    .action = Check cable, power and address of the module named, or end the program that took the port; then clear and reset.
 alarm-sensor_stale = { $input } was not read for too long. Check cable, power and address of its module.
     .cause = A safety input is not read any more.
     .consequence = All outputs are safe; a part inside goes to retest after the reset.
@@ -1638,6 +1639,7 @@ transaction-out_of_step = line { $line }, module { $address }, { $request }: rep
 transaction-contradicted = line { $line }, module { $address }, { $request }: reply rejected, repeated reads disagree after damaged replies
 transaction-never_silent = line { $line }, module { $address }, { $request }: not sent, the line never falls silent
 transaction-port_lost = line { $line }, module { $address }, { $request }: port lost: { $said }
+    .taken = line { $line }, module { $address }, { $request }: { $said }
 transaction-foreign_reply = line { $line }: { $said }
 
 ## Exchanges on a line, in words

@@ -31,9 +31,10 @@ alarm-motion_refused = { $motion }被防碰撞检查拒绝：{ $detail }
     .consequence = 所有输出已安全；复位后机内工件送入复测箱。
     .action = 查看阻挡物并移开，然后清除并复位。
 alarm-bus_trouble = 总线故障：{ $detail }。请检查电缆、电源和模块地址。
+    .taken = 总线故障：{ $detail }。请结束另一程序。
     .cause = 通信线路或模块无应答，或模块已重启。
     .consequence = 所有输出已安全；复位后机内工件送入复测箱。
-    .action = 检查所示模块的电缆、电源和地址，然后清除并复位。
+    .action = 检查所示模块的电缆、电源和地址，或结束占用串口的程序，然后清除并复位。
 alarm-sensor_stale = 安全输入“{ $input }”长时间未读到。请检查电缆、电源和模块地址。
     .cause = 安全输入长时间未读到。
     .consequence = 所有输出已安全；复位后机内工件送入复测箱。
@@ -1623,6 +1624,7 @@ transaction-out_of_step = 线路 { $line }，模块 { $address }，{ $request }�
 transaction-contradicted = 线路 { $line }，模块 { $address }，{ $request }：应答被拒绝，应答受损后重复读数不一致
 transaction-never_silent = 线路 { $line }，模块 { $address }，{ $request }：未发送，线路从不静默
 transaction-port_lost = 线路 { $line }，模块 { $address }，{ $request }：端口丢失
+    .taken = 线路 { $line }，模块 { $address }，{ $request }：端口被另一程序占用
 transaction-foreign_reply = 线路 { $line }：应答不属于所发的请求
 
 ## Exchanges on a line, in words
