@@ -18,13 +18,13 @@ pub(super) fn use_of_time(
     ideal_cycle_s: Option<f64>,
 ) -> Result<Option<Effectiveness>> {
     let mut observed = Observed::default();
-    let mut busy_otherwise = Vec::new();
+    let mut not_running = Vec::new();
     for run in runs.iter().filter(|run| run.source != "import") {
         let Some(closed) = run.closed else { continue };
         observed.planned_s += seconds(run.opened, closed);
         observed.parts += run.counts.parts;
         observed.good += run.counts.pass;
-        busy_otherwise.extend(set_up(archive, run, closed)?);
+        not_running.extend(set_up(archive, run, closed)?);
     }
     let mut stood = Vec::new();
     for alarm in archive.alarms(filter)? {
@@ -37,9 +37,9 @@ pub(super) fn use_of_time(
         });
         stood.extend(end.map(|end| (alarm.raised, end)));
     }
-    busy_otherwise.extend(&stood);
+    not_running.extend(&stood);
     observed.stopped_s = covered_s(stood);
-    observed.setup_s = covered_s(busy_otherwise) - observed.stopped_s;
+    observed.setup_s = covered_s(not_running) - observed.stopped_s;
     observed.ideal_cycle_s = match ideal_cycle_s {
         Some(ideal) => ideal,
         None => Ordered::of(&archive.cycles(filter)?)
