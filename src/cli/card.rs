@@ -8,7 +8,7 @@ use history::report::card::card;
 
 /// Arguments of `card`.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: relayrig card --recipe jzc-22f-012 --out card.html")]
+#[command(after_help = "Example: relayrig card --recipe jzc-22f-012 --lang zh --out card.html")]
 pub struct CardArgs {
     /// Recipe in config/recipes
     #[arg(long, value_name = "NAME")]

@@ -119,7 +119,7 @@ fn show(archive: &Archive, lot: &str, as_json: bool) -> anyhow::Result<()> {
         lot: Some(lot.to_owned()),
         ..Filter::default()
     };
-    let (runs, counts) = (archive.lots(&filter)?, archive.lot_yield(lot)?);
+    let (runs, counts) = (archive.lots(&filter)?, archive.lot_yield(&filter)?);
     let checks = archive.reference_checks(&filter)?;
     let reopenings = archive.reopenings(lot)?;
     let mut out = std::io::stdout().lock();
@@ -170,7 +170,7 @@ fn show(archive: &Archive, lot: &str, as_json: bool) -> anyhow::Result<()> {
         "first-pass yield {:.2} % of {}, final {:.2} %, {} suspect",
         percent(counts.first_pass),
         counts.parts,
-        percent(counts.first_pass + counts.retest_pass),
+        percent(counts.finally()),
         counts.suspect
     )?;
     for it in &checks {

@@ -25,7 +25,10 @@ use std::path::PathBuf;
   relayrig run --lot A --recipe jzc-22f-012 --count 12 --retest 'Li Na'
   relayrig run --lot A --recipe jzc-22f-012 --count 12 --answer reference_parts=loaded --by li
   relayrig run --sim --study grr --lot G --recipe jzc-22f-012
-  relayrig run --lot A --recipe jzc-22f-012 --line measure=/dev/ttyUSB0 --line motion=/dev/ttyUSB1")]
+  relayrig run --lot A --recipe jzc-22f-012 --line measure=/dev/ttyUSB0 --line motion=/dev/ttyUSB1
+
+`bodies: not watched` in the summary: the simulated rig of this program does not look for bodies that touch; a build with
+`--features bodies` does.")]
 pub struct RunArgs {
     /// The rig.
     #[command(flatten)]

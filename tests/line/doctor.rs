@@ -184,3 +184,11 @@ fn a_history_of_an_older_schema_is_not_migrated() {
     let schema = still.pragma_query_value(None, "user_version", |row| row.get::<_, i64>(0));
     assert_eq!(schema.unwrap(), 10);
 }
+
+#[test]
+fn a_missing_configuration_is_one_fault_with_its_remedy() {
+    let workshop = Workshop::empty("doctor_empty");
+    let said = workshop.run("doctor --sim").with_status(1);
+    let fault = "config: found no such folder, expected a configuration\n         do: `relayrig init config`";
+    assert!(said.stdout.contains(fault), "{said}");
+}

@@ -198,6 +198,13 @@ fn a_retest_keeps_first_results_and_names_its_person() {
     assert_eq!(shown["yield"]["first_pass"], first);
     assert_eq!(shown["yield"]["retest_pass"], 2);
     assert_eq!(shown["runs"][1]["retest"], "li");
+    let paper = workshop
+        .run("history report --lot A --lang en")
+        .with_status(0);
+    for passed in [first, first + 2] {
+        let share = format!("{:.2} %", 100.0 * passed as f64 / 6.0);
+        assert!(paper.stdout.contains(&share), "{share}");
+    }
 }
 
 #[test]

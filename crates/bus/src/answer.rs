@@ -114,6 +114,9 @@ impl LineError {
             Failure::OutOfStep => of("out_of_step"),
             Failure::Contradicted => of("contradicted"),
             Failure::NeverSilent => of("never_silent"),
+            Failure::PortLost(why @ PortError::Taken { .. }) => {
+                of("port_lost").with("said", why).case("taken")
+            }
             Failure::PortLost(why) => of("port_lost").with("said", why),
         }
     }

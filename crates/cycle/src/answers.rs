@@ -218,6 +218,19 @@ mod tests {
         assert!(said(&late, Lang::En).ends_with("; this computer was 45 ms late"));
         assert!(said(&late, Lang::Zh).ends_with("本机迟了 45 毫秒"));
         assert!(said(&in_time, Lang::En).ends_with("no whole reply within 31 ms (3 of 3 tries)"));
+        let taken = LineError {
+            failure: Failure::PortLost(bus::PortError::Taken {
+                path: "/dev/ttyUSB0".to_owned(),
+            }),
+            ..error.clone()
+        };
+        let taken = AnswerTrouble::of(&taken, 1, 3).alarm();
+        assert!(
+            taken
+                .text(Lang::En)
+                .ends_with("(1 of 3 tries). End the other program.")
+        );
+        assert!(taken.text(Lang::Zh).contains("端口被另一程序占用"));
         let repeated = in_time.repeated(3);
         assert!(repeated.text(Lang::Zh).contains("连续 3 次"));
     }

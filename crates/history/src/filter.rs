@@ -209,17 +209,22 @@ impl Filter {
         select
     }
 
-    /// Counts the parts that passed, and among them those that passed their first test without any second attempt.
-    pub(super) fn passed(&self) -> Select {
-        let mut select = Select::new(
-            "SELECT count(*), ifnull(sum(NOT EXISTS (SELECT 1 FROM measurement AS m \
-             WHERE m.part_id = part.id AND m.attempt > 1) \
-             AND part.run_id NOT IN (SELECT run_id FROM retest)), 0) \
-             FROM part WHERE part.verdict = 'pass'",
+    /// Counts the parts judged in first tests, those of them that passed, and the parts that passed in a retest.
+    pub(super) fn lot_yield(&self) -> Select {
+        let mut tests = Select::new(
+            "SELECT part.verdict AS verdict, part.run_id IN (SELECT run_id FROM retest) AS again \
+             FROM part WHERE part.verdict <> 'unjudged'",
         );
-        self.run_conditions(&mut select, "part");
-        self.part_conditions(&mut select, false);
-        select
+        self.run_conditions(&mut tests, "part");
+        self.part_conditions(&mut tests, false);
+        Select {
+            sql: format!(
+                "SELECT ifnull(sum(NOT again), 0), ifnull(sum(NOT again AND verdict = 'pass'), 0),
+                   ifnull(sum(again AND verdict = 'pass'), 0) FROM ({})",
+                tests.sql
+            ),
+            values: tests.values,
+        }
     }
 
     fn values(&self, param: &str, columns: &str, joined: bool) -> Select {

@@ -127,7 +127,8 @@ pub struct LotStatus {
     pub recipe_hash: String,
 }
 
-/// Yield of a lot over its runs.
+/// Yield of a lot over its runs: list of lots, report and command line show these counts. A part with a confirmation
+/// measurement has one test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, ToSchema)]
 pub struct LotYield {
     /// Parts judged in first tests, that is, not in a retest.
@@ -138,6 +139,13 @@ pub struct LotYield {
     pub retest_pass: u64,
     /// Suspect parts: judged after a passed reference check and before a failed one.
     pub suspect: u64,
+}
+
+impl LotYield {
+    /// Returns the number of parts that passed, in their first test or in a retest.
+    pub const fn finally(&self) -> u64 {
+        self.first_pass + self.retest_pass
+    }
 }
 
 /// A reference check, as the history shows it.
@@ -264,29 +272,25 @@ impl Archive {
             .doing("reading the state of a lot")
     }
 
-    /// Counts the parts of a lot: first tests, those of them that passed, parts that passed in a retest, suspect parts.
-    pub fn lot_yield(&self, lot: &str) -> Result<LotYield> {
-        const DOING: &str = "counting a lot over its runs";
-        let count = |sql: &str| {
-            let found = self
-                .connection
-                .query_row(sql, [lot], |row| row.get::<_, i64>(0));
-            found.map(i64::unsigned_abs).doing(DOING)
-        };
-        let parts = "SELECT count(*) FROM part JOIN run ON run.id = part.run_id
-            JOIN lot ON lot.id = run.lot_id WHERE lot.name = ?1 AND part.kind = 'lot'";
-        let again = "AND run.id IN (SELECT run_id FROM retest)";
-        let first = "AND run.id NOT IN (SELECT run_id FROM retest)";
-        Ok(LotYield {
-            parts: count(&format!("{parts} {first}"))?,
-            first_pass: count(&format!("{parts} {first} AND part.verdict = 'pass'"))?,
-            retest_pass: count(&format!("{parts} {again} AND part.verdict = 'pass'"))?,
-            suspect: self.count_parts(&Filter {
-                lot: Some(lot.to_owned()),
-                suspect: true,
-                ..Filter::default()
-            })?,
-        })
+    /// Counts the selected parts of a lot: first tests, those of them that passed, parts that passed in a retest,
+    /// suspect parts.
+    pub fn lot_yield(&self, filter: &Filter) -> Result<LotYield> {
+        let suspect = self.count_parts(&Filter {
+            suspect: true,
+            ..filter.clone()
+        })?;
+        filter
+            .lot_yield()
+            .first(&self.connection, |row| {
+                let count = |at: usize| row.get::<_, i64>(at).map(i64::unsigned_abs);
+                Ok(LotYield {
+                    parts: count(0)?,
+                    first_pass: count(1)?,
+                    retest_pass: count(2)?,
+                    suspect,
+                })
+            })
+            .doing("counting a lot over its runs")
     }
 
     /// Returns the reference checks of the selected runs in order of time.

@@ -75,7 +75,7 @@ pub use import::{ImportError, ImportRow, parse_records};
 pub use inside::InsideRecord;
 pub use lot_book::LotEntry;
 pub use lot_name::{LOT_NAME, is_lot_name};
-pub use lots::{LotSummary, Passed, Yield};
+pub use lots::{LotSummary, Yield};
 pub use moment::{Moment, MomentError};
 pub use open::{APPLICATION_ID, SCHEMA, is_in_use, with_end};
 pub use orders::{OrderEntry, OrderRecord, RevisionEntry};

@@ -1,7 +1,7 @@
 //! The list of all lots that were run, the latest first; an entry covers all runs of its lot.
 
 use super::error::{Doing, Result};
-use super::{Archive, alarms};
+use super::{Archive, Filter, alarms};
 use super::{LotStatus, LotYield, Moment, Reopening};
 use serde::Serialize;
 use texts::{Args, Lang, Message};
@@ -67,8 +67,12 @@ impl Archive {
             let Some(standing) = self.standing(&lot)? else {
                 continue;
             };
+            let of_lot = Filter {
+                lot: Some(lot.clone()),
+                ..Filter::default()
+            };
             book.push(LotEntry {
-                counts: self.lot_yield(&lot)?,
+                counts: self.lot_yield(&of_lot)?,
                 reopenings: self.reopenings(&lot)?,
                 opened: Moment(opened_us),
                 lot,

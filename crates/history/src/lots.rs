@@ -62,15 +62,6 @@ pub struct Yield {
     pub unjudged: u64,
 }
 
-/// Number of parts that passed, in two ways of counting.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub struct Passed {
-    /// Parts that passed after any number of attempts.
-    pub finally: u64,
-    /// Parts that passed in their first test without a second attempt at any measurement.
-    pub at_first: u64,
-}
-
 impl Yield {
     /// Returns the passed share of the judged parts, %; `None` without judged parts.
     pub fn percent(&self) -> Option<f64> {
@@ -168,19 +159,6 @@ impl Archive {
                 Ok(counts)
             })
             .doing("counting verdicts")
-    }
-
-    /// Counts the selected parts that passed, and among them those that passed at the first attempt.
-    pub fn passed(&self, filter: &Filter) -> Result<Passed> {
-        filter
-            .passed()
-            .first(&self.connection, |row| {
-                Ok(Passed {
-                    finally: row.get::<_, i64>(0)?.unsigned_abs(),
-                    at_first: row.get::<_, i64>(1)?.unsigned_abs(),
-                })
-            })
-            .doing("counting parts that passed")
     }
 
     fn count(&self, run: i64, summary: &mut LotSummary) -> rusqlite::Result<()> {

@@ -3,7 +3,8 @@
 //! - Cp and Cpk use the short-term standard deviation: mean moving range / d2, with d2 = 1.128 for pairs. Pp and Ppk
 //!   use the standard deviation of all values.
 //! - Interval of Cp and Pp: `c sqrt(chi2(q; n-1) / (n-1))` for q = 0.025 and 0.975, exact for normal values.
-//! - Interval of Cpk and Ppk: Bissell (1990), `c -+ z sqrt(1 / (9 n) + c^2 / (2 (n - 1)))`.
+//! - Interval of Cpk and Ppk: Bissell (1990), `c -+ z sqrt(1 / (9 n) + c^2 / (2 (n - 1)))`. [`lower_bound`] is its
+//!   one-sided form.
 //! - With one limit there are only Cpk and Ppk; Cp and Pp need both limits.
 //! - For skewed values (contact resistance, bounce), [`by_percentiles`] uses the three percentiles of ISO 22514-2
 //!   instead: `(high - x50) / (x99.865 - x50)` and `(x50 - low) / (x50 - x0.135)`.
@@ -18,6 +19,9 @@ pub const D2_PAIR: f64 = 1.128;
 
 /// Quantile of the normal distribution for a two-sided 95 % interval.
 const Z_95: f64 = 1.959_963_984_540_054;
+
+/// Quantile of the normal distribution for a one-sided 95 % bound.
+const Z_ONE_SIDED_95: f64 = 1.644_853_626_951_473;
 
 /// Probability that a normal value lies more than three standard deviations below the mean.
 const TAIL: f64 = 0.001_349_898_031_630_095;
@@ -125,13 +129,23 @@ fn least(one: Option<f64>, other: Option<f64>) -> Option<f64> {
     }
 }
 
+/// Returns the one-sided lower 95 % confidence bound of a Cpk or Ppk of `n` values; `None` with fewer than two.
+pub fn lower_bound(index: f64, n: u64) -> Option<f64> {
+    Some(index - Z_ONE_SIDED_95 * deviation(index, n)?)
+}
+
 fn bissell(index: f64, n: u64) -> Option<Interval> {
-    let n = n as f64;
-    let half = Z_95 * (1.0 / (9.0 * n) + index * index / (2.0 * (n - 1.0))).sqrt();
-    (n >= 2.0).then_some(Interval {
+    let half = Z_95 * deviation(index, n)?;
+    Some(Interval {
         low: index - half,
         high: index + half,
     })
+}
+
+/// Returns Bissell's standard deviation of an estimated Cpk or Ppk.
+fn deviation(index: f64, n: u64) -> Option<f64> {
+    let n = n as f64;
+    (n >= 2.0).then(|| (1.0 / (9.0 * n) + index * index / (2.0 * (n - 1.0))).sqrt())
 }
 
 fn chi_square(index: f64, n: u64) -> Option<Interval> {
@@ -183,6 +197,18 @@ mod tests {
         let found = of(None, Some(13.0)).cpk.unwrap().interval.unwrap();
         assert!((found.low - (1.0 - half)).abs() < 1e-6);
         assert!((found.high - (1.0 + half)).abs() < 1e-6);
+    }
+
+    /// Quality Digest, May 2000, last page: a Cpk of 1.15 from 45 values lies between 0.89 and 1.41 with 95 %. The same
+    /// standard deviation, 0.26 / 1.96, gives the one-sided bound.
+    #[test]
+    fn a_published_interval_gives_the_one_sided_bound() {
+        let found = bissell(1.15, 45).unwrap();
+        assert!((found.low - 0.89).abs() < 0.005 && (found.high - 1.41).abs() < 0.005);
+        let bound = lower_bound(1.15, 45).unwrap();
+        assert!((bound - (1.15 - 1.645 * 0.26 / 1.96)).abs() < 0.005);
+        assert!(bound > found.low + 0.03);
+        assert_eq!(lower_bound(1.15, 1), None);
     }
 
     #[test]

@@ -3,11 +3,12 @@
 //! OEE = availability x performance x quality. Of the four times below, each factor divides one by the time before it:
 //!
 //! 1. planned: from the start of a run to its end;
-//! 2. running: planned time without the time in alarm;
+//! 2. running: planned time without the time in alarm and without set-up (calibration, reference parts), which
+//!    ISO 22400-2 takes out of the production time and hence out of availability;
 //! 3. net: the time that the tested parts take at the ideal cycle;
 //! 4. valuable: the time that the good parts take at the ideal cycle.
 //!
-//! So every second is either valuable or belongs to exactly one of three losses.
+//! So every second is either valuable or belongs to exactly one of four losses.
 
 use serde::Serialize;
 
@@ -18,6 +19,8 @@ pub struct Observed {
     pub planned_s: f64,
     /// Part of the planned time in which an alarm stopped the line, s.
     pub stopped_s: f64,
+    /// Part of the planned time, without alarms, in which the line was set up, s.
+    pub setup_s: f64,
     /// Shortest time per part that the line can achieve, s.
     pub ideal_cycle_s: f64,
     /// Number of parts tested.
@@ -39,6 +42,8 @@ pub struct Effectiveness {
     pub oee: f64,
     /// Time lost by alarms, s.
     pub stopped_s: f64,
+    /// Time lost by set-up, s.
+    pub setup_s: f64,
     /// Time lost by waiting and by slow cycles, s.
     pub slow_s: f64,
     /// Time lost on parts that did not pass, s.
@@ -47,7 +52,7 @@ pub struct Effectiveness {
 
 /// Computes the effectiveness; `None` when there was no running time or no part was tested.
 pub fn effectiveness(observed: Observed) -> Option<Effectiveness> {
-    let running = observed.planned_s - observed.stopped_s;
+    let running = observed.planned_s - observed.stopped_s - observed.setup_s;
     let net = observed.ideal_cycle_s * observed.parts as f64;
     let valuable = observed.ideal_cycle_s * observed.good as f64;
     (running > 0.0 && net > 0.0).then(|| Effectiveness {
@@ -56,6 +61,7 @@ pub fn effectiveness(observed: Observed) -> Option<Effectiveness> {
         quality: valuable / net,
         oee: valuable / observed.planned_s,
         stopped_s: observed.stopped_s,
+        setup_s: observed.setup_s,
         slow_s: running - net,
         rejected_s: net - valuable,
     })
@@ -70,7 +76,8 @@ mod tests {
     fn every_second_is_valuable_or_in_one_loss() {
         let observed = Observed {
             planned_s: 28_800.0,
-            stopped_s: 2_880.0,
+            stopped_s: 1_880.0,
+            setup_s: 1_000.0,
             ideal_cycle_s: 1.2,
             parts: 18_000,
             good: 17_100,
@@ -81,7 +88,7 @@ mod tests {
         assert!((it.quality - 0.95).abs() < 1e-12);
         assert!((it.oee - it.availability * it.performance * it.quality).abs() < 1e-12);
         let valuable = 1.2 * 17_100.0;
-        let all = valuable + it.stopped_s + it.slow_s + it.rejected_s;
+        let all = valuable + it.stopped_s + it.setup_s + it.slow_s + it.rejected_s;
         assert!((all - 28_800.0).abs() < 1e-9);
     }
 
@@ -92,6 +99,7 @@ mod tests {
         let shift = Observed {
             planned_s: 420.0 * 60.0,
             stopped_s: 47.0 * 60.0,
+            setup_s: 0.0,
             ideal_cycle_s: 1.0,
             parts: 19_271,
             good: 19_271 - 423,

@@ -1,6 +1,6 @@
 //! Statistics of one parameter; the fields are the keys of `history stats --json`.
 
-use super::capability::{Capability, D2_PAIR, Index, Limits};
+use super::capability::{Capability, D2_PAIR, Index, Limits, lower_bound};
 use super::spread::{self, Spread};
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -12,6 +12,9 @@ pub struct Summary {
     pub param: String,
     /// Number of values.
     pub n: u64,
+    /// Number of tests without a value, for example because the coil current was over range; `None` when the values do
+    /// not come from tests, or from recipes that may not measure the parameter.
+    pub without_value: Option<u64>,
     /// Mean.
     pub mean: Option<f64>,
     /// Standard deviation with n - 1.
@@ -28,7 +31,7 @@ pub struct Summary {
     pub cp: Option<f64>,
     /// Cpk, with the short-term deviation from the mean moving range.
     pub cpk: Option<f64>,
-    /// Lower end of the two-sided 95 % interval of `cpk`.
+    /// One-sided lower 95 % confidence bound of `cpk`.
     pub cpk_low95: Option<f64>,
     /// Ppk, with `sd`.
     pub ppk: Option<f64>,
@@ -44,6 +47,7 @@ impl Summary {
         Self {
             param: param.to_owned(),
             n: spread.n(),
+            without_value: None,
             mean: spread.mean(),
             sd: spread.sd(),
             min: spread.min(),
@@ -52,7 +56,7 @@ impl Summary {
             lag1: spread::lag1_about(&spread, values),
             cp: value(able.cp),
             cpk: value(able.cpk),
-            cpk_low95: able.cpk.and_then(|it| it.interval).map(|it| it.low),
+            cpk_low95: value(able.cpk).and_then(|it| lower_bound(it, spread.n())),
             ppk: value(able.ppk),
         }
     }
@@ -68,7 +72,7 @@ mod tests {
         let json = serde_json::to_value(Summary::of("x", &[1.0, 2.0], Limits::default())).unwrap();
         let mut keys: Vec<_> = json.as_object().unwrap().keys().cloned().collect();
         keys.sort();
-        let agreed = "cp cpk cpk_low95 lag1 max mean median min n param ppk sd";
+        let agreed = "cp cpk cpk_low95 lag1 max mean median min n param ppk sd without_value";
         assert_eq!(keys.join(" "), agreed);
         assert!(json["cpk"].is_null());
     }

@@ -31,9 +31,9 @@ pub(super) struct ExportArgs {
     /// Form of the file; when absent, from the end of its name
     #[arg(long, value_enum)]
     format: Option<Kind>,
-    /// Language of the spreadsheet; CSV has keys and codes
-    #[arg(long, value_enum, default_value = "zh")]
-    lang: LangArg,
+    /// Language of the spreadsheet, by default that of the locale, else en; CSV has keys and codes
+    #[arg(long, value_enum)]
+    lang: Option<LangArg>,
 }
 
 pub(super) fn run(db: &Path, args: &ExportArgs) -> anyhow::Result<()> {
@@ -80,7 +80,7 @@ fn spreadsheet(
     );
     let name = file.display();
     let bar = progress(Some(archive.count_parts(filter)?), PIECES);
-    let paper = paper::paper_of(archive, filter, args.lang.language())?;
+    let paper = paper::paper_of(archive, filter, LangArg::or_locale(args.lang))?;
     let mut workbook = export::spreadsheet(archive, filter, parameters, &paper, || bar.inc(1))?;
     bar.finish_and_clear();
     workbook

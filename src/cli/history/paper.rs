@@ -20,33 +20,47 @@ pub(in crate::cli) enum LangArg {
 /// File and language of a page.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct PaperArgs {
-    /// Language of the page
-    #[arg(long, value_enum, default_value = "zh")]
-    lang: LangArg,
+    /// Language of the page; that of the locale (LC_ALL, LC_MESSAGES, LANG) when absent, and en when it names neither
+    #[arg(long, value_enum)]
+    lang: Option<LangArg>,
     /// HTML file to write, for A4 (print it from a browser); - is stdout
     #[arg(long, default_value = "-")]
     out: PathBuf,
 }
 
 impl LangArg {
-    pub fn language(self) -> Lang {
-        match self {
-            Self::En => Lang::En,
-            Self::Zh => Lang::Zh,
+    /// Returns the language of the option; without the option, that of the locale.
+    pub fn or_locale(option: Option<Self>) -> Lang {
+        match option {
+            Some(Self::En) => Lang::En,
+            Some(Self::Zh) => Lang::Zh,
+            None => of_locale(LOCALE.map(|it| std::env::var(it).unwrap_or_default())),
         }
+    }
+}
+
+/// Variables of the locale; the first that is not empty decides (POSIX.1-2017, 8.2).
+const LOCALE: [&str; 3] = ["LC_ALL", "LC_MESSAGES", "LANG"];
+
+/// Returns the language that the values of [`LOCALE`] name; English when they name neither.
+fn of_locale(values: [String; 3]) -> Lang {
+    let decides = values.into_iter().find(|it| !it.is_empty());
+    match decides.is_some_and(|it| it.starts_with("zh")) {
+        true => Lang::Zh,
+        false => Lang::En,
     }
 }
 
 impl PaperArgs {
     /// Returns paper of this language for the selected runs, made now.
     pub(super) fn paper_of(&self, archive: &Archive, filter: &Filter) -> anyhow::Result<Paper> {
-        let language = self.lang.language();
+        let language = LangArg::or_locale(self.lang);
         Ok(inquiry::paper::paper_of(archive, filter, language)?)
     }
 
     /// Returns the settings of a printed page: its language, and now as the time of printing.
     pub fn paper(&self) -> Paper {
-        inquiry::paper::paper(self.lang.language())
+        inquiry::paper::paper(LangArg::or_locale(self.lang))
     }
 
     pub fn write(&self, page: &str) -> anyhow::Result<()> {
@@ -65,4 +79,19 @@ pub(super) fn sink(file: &Path) -> anyhow::Result<Output> {
     let name = file.display();
     let made = File::create(file).with_context(|| format!("making {name}"))?;
     Ok(Output::to(made))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_variable_of_the_locale_decides() {
+        let said = |values: [&str; 3]| of_locale(values.map(str::to_owned));
+        assert_eq!(said(["", "", "zh_CN.UTF-8"]), Lang::Zh);
+        assert_eq!(said(["", "zh_TW", "en_GB.UTF-8"]), Lang::Zh);
+        assert_eq!(said(["C.UTF-8", "", "zh_CN.UTF-8"]), Lang::En);
+        assert_eq!(said(["", "", "de_DE.UTF-8"]), Lang::En);
+        assert_eq!(said(["", "", ""]), Lang::En);
+    }
 }

@@ -69,7 +69,8 @@ fn table(it: &Summary, out: &mut Output) -> anyhow::Result<()> {
         ("ppk", it.ppk),
     ];
     let shown = |value: Option<f64>| value.map_or("-".to_owned(), |it| figure(Some(it)));
-    let mut rows = vec![("n", it.n.to_string())];
+    let without = it.without_value.map_or("-".to_owned(), |it| it.to_string());
+    let mut rows = vec![("n", it.n.to_string()), ("without_value", without)];
     rows.extend(figures.map(|(name, value)| (name, shown(value))));
     let columns: [Column<(&str, String)>; 2] = [
         ("param", |it| it.0.to_owned()),

@@ -57,7 +57,13 @@ pub fn examine(installation: &Installation<'_>) -> Vec<Finding> {
 }
 
 fn configuration(folder: &Folder, plant: &Result<Plant, ConfigFaults>) -> Finding {
-    let subject = Subject::new(Check::Configuration, folder.root().display(), "no fault");
+    let name = folder.root().display();
+    if folder.check_exists().is_err() {
+        let remedy = format!("`relayrig init {name}`, or name another folder by --config");
+        let subject = Subject::new(Check::Configuration, name, "a configuration");
+        return subject.fault("no such folder", remedy);
+    }
+    let subject = Subject::new(Check::Configuration, name, "no fault");
     match plant {
         Ok(_) => subject.ok(format!("{} recipes, no fault", recipe_names(folder).len())),
         Err(faults) => subject.fault(

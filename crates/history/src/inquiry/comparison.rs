@@ -1,6 +1,6 @@
 //! Lots side by side: figures of one parameter, tests of equality, and shares in common classes.
 
-use super::figures::agreed;
+use super::figures::{agreed, without_value};
 use super::{InquiryError, Result, checks};
 use crate::{Archive, Filter};
 use quality::equality::{Equality, means, spreads};
@@ -66,17 +66,22 @@ pub fn compare(archive: &Archive, param: &str, lots: &[String]) -> Result<Compar
         if !archive.has_runs(&filter)? {
             return Err(InquiryError::missing(format!("no lot {lot:?}")));
         }
-        Ok(archive.values(param, &filter)?)
+        let found = archive.values(param, &filter)?;
+        let without = without_value(archive, &filter, found.values.len() as u64)?;
+        Ok((found, without))
     };
     let found = lots.iter().map(of_lot).collect::<Result<Vec<_>>>()?;
-    let groups: Vec<&[f64]> = found.iter().map(|it| it.values.as_slice()).collect();
+    let groups: Vec<&[f64]> = found.iter().map(|it| it.0.values.as_slice()).collect();
     let all = Ordered::of(&groups.concat()).histogram(CLASSES);
-    let compared = lots.iter().zip(&found).map(|(lot, found)| {
+    let compared = lots.iter().zip(&found).map(|(lot, (found, without))| {
         let limits = agreed(found.limits);
         ComparedLot {
             lot: lot.clone(),
             limits,
-            summary: Summary::of(param, &found.values, limits),
+            summary: Summary {
+                without_value: *without,
+                ..Summary::of(param, &found.values, limits)
+            },
             shares: shares(all.as_ref(), &found.values),
         }
     });

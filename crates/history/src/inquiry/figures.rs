@@ -32,9 +32,27 @@ pub fn figures(
     let differ = limits.is_none() && found.limits == LimitsSeen::Differ;
     let limits = limits.unwrap_or_else(|| agreed(found.limits));
     Ok(Figures {
-        summary: Summary::of(param, &found.values, limits),
+        summary: Summary {
+            without_value: without_value(archive, filter, found.values.len() as u64)?,
+            ..Summary::of(param, &found.values, limits)
+        },
         limits_differ: differ,
     })
+}
+
+/// Counts the selected parts that have none of the `n` values; `None` unless the filter selects whole parts of one lot
+/// or recipe, because other recipes may measure other parameters.
+pub(super) fn without_value(archive: &Archive, filter: &Filter, n: u64) -> Result<Option<u64>> {
+    let by_value = filter.min.is_some() || filter.max.is_some();
+    let paged = filter.limit.is_some() || filter.offset.is_some();
+    if by_value || paged || (filter.lot.is_none() && filter.recipe.is_none()) {
+        return Ok(None);
+    }
+    let tests = archive.count_parts(&Filter {
+        param: None,
+        ..filter.clone()
+    })?;
+    Ok(Some(tests.saturating_sub(n)))
 }
 
 /// Members of a [`Histogram`] that may be absent, for the schema of [`Classes`].

@@ -59,7 +59,7 @@ pub fn lot_report(
         lot,
         runs: &runs,
         reopenings: &archive.reopenings(lot)?,
-        passed: archive.passed(filter)?,
+        counts: archive.lot_yield(filter)?,
         parameters: measured(archive, filter)?,
         effectiveness: use_of_time(archive, filter, &runs, ideal_cycle_s)?,
         rejects: pareto::rejects(archive, filter, LISTED)?,

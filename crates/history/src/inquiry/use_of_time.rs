@@ -9,7 +9,8 @@ use quality::effectiveness::{Effectiveness, Observed, effectiveness};
 const QUICKEST: f64 = 0.05;
 
 /// Computes the effectiveness (OEE) of `runs`. The time from start to end of each run is planned time; an alarm that
-/// was not cleared ends with its run. Returns `None` for imports, which have no times.
+/// was not cleared ends with its run, and set-up under an alarm counts as alarm. Returns `None` for imports, which have
+/// no times.
 pub(super) fn use_of_time(
     archive: &Archive,
     filter: &Filter,
@@ -17,11 +18,13 @@ pub(super) fn use_of_time(
     ideal_cycle_s: Option<f64>,
 ) -> Result<Option<Effectiveness>> {
     let mut observed = Observed::default();
+    let mut not_running = Vec::new();
     for run in runs.iter().filter(|run| run.source != "import") {
         let Some(closed) = run.closed else { continue };
         observed.planned_s += seconds(run.opened, closed);
         observed.parts += run.counts.parts;
         observed.good += run.counts.pass;
+        not_running.extend(set_up(archive, run, closed)?);
     }
     let mut stood = Vec::new();
     for alarm in archive.alarms(filter)? {
@@ -34,7 +37,9 @@ pub(super) fn use_of_time(
         });
         stood.extend(end.map(|end| (alarm.raised, end)));
     }
+    not_running.extend(&stood);
     observed.stopped_s = covered_s(stood);
+    observed.setup_s = covered_s(not_running) - observed.stopped_s;
     observed.ideal_cycle_s = match ideal_cycle_s {
         Some(ideal) => ideal,
         None => Ordered::of(&archive.cycles(filter)?)
@@ -42,6 +47,34 @@ pub(super) fn use_of_time(
             .unwrap_or(0.0),
     };
     Ok(effectiveness(observed))
+}
+
+/// Returns the spans of a run in which the line was set up: from its start to the test of the first production part,
+/// which includes a calibration, and the cycles of reference parts.
+fn set_up(archive: &Archive, run: &LotSummary, closed: Moment) -> Result<Vec<(Moment, Moment)>> {
+    let parts = |kind: &str, limit| {
+        archive.query(&Filter {
+            lot: Some(run.lot.clone()),
+            run: Some(run.run),
+            kind: Some(kind.to_owned()),
+            limit,
+            ..Filter::default()
+        })
+    };
+    let first = parts("lot", Some(1))?;
+    let begun = first
+        .first()
+        .map_or(closed, |it| before(it.time, it.test_s));
+    let mut spans = vec![(run.opened, begun)];
+    for it in parts("golden", None)? {
+        let cycle = it.cycle_s.or(it.test_s);
+        spans.push((before(it.time, cycle).max(run.opened), it.time));
+    }
+    Ok(spans)
+}
+
+fn before(at: Moment, seconds: Option<f64>) -> Moment {
+    Moment(at.0 - (1e6 * seconds.unwrap_or(0.0)) as i64)
 }
 
 /// Returns the total time that the spans cover, seconds; time that several spans share counts once.

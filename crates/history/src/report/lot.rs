@@ -5,7 +5,7 @@ use super::page::{Format, facts, head, page, sign_off};
 use super::words::{figure, parameter, percent, short_hash, span, unbroken};
 use super::{Paper, alarms, pareto};
 use crate::inquiry::pareto::Rejects;
-use crate::{Alarm, LotSummary, Passed, PromptAnswer, Reopening};
+use crate::{Alarm, LotSummary, LotYield, PromptAnswer, Reopening};
 use maud::{Markup, PreEscaped, html};
 use quality::capability::{Index, by_percentiles};
 use quality::effectiveness::Effectiveness;
@@ -21,8 +21,8 @@ pub struct LotReport<'a> {
     pub runs: &'a [LotSummary],
     /// Decisions to open the complete lot again.
     pub reopenings: &'a [Reopening],
-    /// Parts that passed.
-    pub passed: Passed,
+    /// Yield over the runs.
+    pub counts: LotYield,
     /// Values of each parameter.
     pub parameters: Vec<ParameterValues>,
     /// Use of the time; `None` for an import.
@@ -133,8 +133,15 @@ impl LotReport<'_> {
     fn counts(&self, language: Lang) -> Markup {
         let say = |id| language.text(id);
         let sum = |count: fn(&LotSummary) -> u64| self.runs.iter().map(count).sum::<u64>();
-        let parts = sum(|it| it.counts.parts);
-        let judged = parts - sum(|it| it.counts.unjudged);
+        let tests = sum(|it| it.counts.parts);
+        let again = |it: &LotSummary| {
+            if it.retest.is_some() {
+                it.counts.parts
+            } else {
+                0
+            }
+        };
+        let retests = sum(again);
         let verdicts = [
             ("pass", sum(|it| it.counts.pass)),
             ("fail", sum(|it| it.counts.fail)),
@@ -143,23 +150,23 @@ impl LotReport<'_> {
         html! {
             table {
                 thead { tr {
-                    th.n { (say("paper-tested")) }
+                    th.n { (say("paper-tested")) } th.n { (say("paper-retests")) }
                     @for (verdict, _) in verdicts { th.n { (language.name("paper_verdict", verdict)) } }
                     th.n { (say("paper-first_pass_yield")) }
                     th.n { (say("paper-final_yield")) }
                 } }
                 tbody { tr {
-                    td.n { (parts) }
+                    td.n { (tests - retests) } td.n { (retests) }
                     @for (verdict, n) in verdicts { td.n { span class=(verdict) { (n) } } }
-                    td.n { (percent(self.passed.at_first, judged)) }
-                    td.n { (percent(self.passed.finally, judged)) }
+                    td.n { (percent(self.counts.first_pass, self.counts.parts)) }
+                    td.n { (percent(self.counts.finally(), self.counts.parts)) }
                 } }
             }
-            (self.bins(language, parts))
+            (self.bins(language, tests))
         }
     }
 
-    fn bins(&self, language: Lang, parts: u64) -> Markup {
+    fn bins(&self, language: Lang, tests: u64) -> Markup {
         let mut bins = std::collections::BTreeMap::<&str, u64>::new();
         for (bin, n) in self.runs.iter().flat_map(|it| &it.bins) {
             *bins.entry(bin).or_default() += n;
@@ -170,13 +177,13 @@ impl LotReport<'_> {
             table style="margin-top:2mm" {
                 thead { tr {
                     th style="width:22%" { (language.text("paper-bin")) }
-                    th.n style="width:14%" { (language.text("paper-parts")) }
+                    th.n style="width:14%" { (language.text("paper-tests")) }
                     th.n style="width:14%" { (language.text("paper-share")) }
                     th {}
                 } }
                 tbody { @for (bin, n) in bins { tr {
-                    td { (language.name("bin", bin)) } td.n { (n) } td.n { (percent(n, parts)) }
-                    td { (PreEscaped(charts::share(n as f64 / parts.max(1) as f64))) }
+                    td { (language.name("bin", bin)) } td.n { (n) } td.n { (percent(n, tests)) }
+                    td { (PreEscaped(charts::share(n as f64 / tests.max(1) as f64))) }
                 } } }
             }
         }
@@ -184,6 +191,7 @@ impl LotReport<'_> {
 
     fn table(&self, language: Lang) -> Markup {
         let say = |id| language.text(id);
+        let tests = self.runs.iter().map(|it| it.counts.parts).sum();
         html! {
             table {
                 thead { tr {
@@ -193,7 +201,7 @@ impl LotReport<'_> {
                     th.n { (say("paper-median")) } th.n { (say("paper-max")) }
                     th.n { "Cpk" } th.n { "Ppk" } th.n { (say("paper-skewed")) }
                 } }
-                tbody { @for it in &self.parameters { (row(language, it)) } }
+                tbody { @for it in &self.parameters { (row(language, it, tests)) } }
             }
         }
     }
@@ -236,11 +244,15 @@ fn reopening(paper: &Paper, it: &Reopening) -> String {
         .say(paper.language)
 }
 
-fn row(language: Lang, it: &ParameterValues) -> Markup {
+fn row(language: Lang, it: &ParameterValues, tests: u64) -> Markup {
     let moments = Spread::of(&it.values);
     let ordered = Ordered::of(&it.values);
     let within = spread::mean_moving_range(&it.values).map(|range| range / D2_PAIR);
     let able = Capability::of(it.limits, moments.n(), moments.mean(), within, moments.sd());
+    let n = match moments.n() {
+        n if n < tests => format!("{n} / {tests}"),
+        n => n.to_string(),
+    };
     let figures = [
         moments.mean(),
         moments.sd(),
@@ -249,7 +261,7 @@ fn row(language: Lang, it: &ParameterValues) -> Markup {
         moments.max(),
     ];
     html! { tr {
-        td { (unbroken(&parameter(language, &it.key))) } td.n { (moments.n()) }
+        td { (unbroken(&parameter(language, &it.key))) } td.n { (unbroken(&n)) }
         td.n { (limits(it.limits)) }
         @for value in figures { td.n { (figure(value)) } }
         td.n { (index(able.cpk)) } td.n { (index(able.ppk)) }
@@ -297,13 +309,14 @@ fn use_of_time(language: Lang, it: &Effectiveness) -> Markup {
             thead { tr {
                 th.n { "OEE" } th.n { (say("paper-availability")) }
                 th.n { (say("paper-performance")) } th.n { (say("paper-quality")) }
-                th.n { (say("paper-lost_alarms")) } th.n { (say("paper-lost_slow_cycles")) }
-                th.n { (say("paper-lost_rejects")) }
+                th.n { (say("paper-lost_alarms")) } th.n { (say("paper-lost_setup")) }
+                th.n { (say("paper-lost_slow_cycles")) } th.n { (say("paper-lost_rejects")) }
             } }
             tbody { tr {
                 td.n { (share(it.oee)) } td.n { (share(it.availability)) }
                 td.n { (share(it.performance)) } td.n { (share(it.quality)) }
-                td.n { (span(it.stopped_s)) } td.n { (span(it.slow_s)) } td.n { (span(it.rejected_s)) }
+                td.n { (span(it.stopped_s)) } td.n { (span(it.setup_s)) } td.n { (span(it.slow_s)) }
+                td.n { (span(it.rejected_s)) }
             } }
         }
     }

@@ -10,7 +10,8 @@ use super::*;
 use crate::inquiry::comparison::{ComparedLot, Comparison};
 use crate::inquiry::pareto::{Ranked, Rejects};
 use crate::{
-    Alarm, AlarmState, LotSummary, Measurement, Part, Passed, PromptAnswer, Reopening, Shelf, Yield,
+    Alarm, AlarmState, LotSummary, LotYield, Measurement, Part, PromptAnswer, Reopening, Shelf,
+    Yield,
 };
 use config::{Folder, load_recipe};
 use machine::dut::card::{CardSettings, Quota, STEPS};
@@ -121,9 +122,11 @@ fn lot_report_on(paper: &Paper) -> String {
             who: "zhao".into(),
             why: EVIL.into(),
         }],
-        passed: Passed {
-            finally: 2,
-            at_first: 1,
+        counts: LotYield {
+            parts: 3,
+            first_pass: 1,
+            retest_pass: 1,
+            suspect: 0,
         },
         parameters: vec![values],
         effectiveness: None,

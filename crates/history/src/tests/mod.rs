@@ -3,6 +3,7 @@
 
 mod approval;
 mod gates;
+mod inquiring;
 mod migrating;
 mod plans;
 mod reading;

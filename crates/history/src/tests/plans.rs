@@ -178,7 +178,7 @@ fn no_query_scans_a_growing_table() {
             filter.parts(),
             filter.count(),
             filter.cycles(),
-            filter.passed(),
+            filter.lot_yield(),
             filter.series("operate_voltage_v"),
         ] {
             let plan = plan(&file, &select);

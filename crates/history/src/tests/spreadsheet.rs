@@ -6,7 +6,7 @@ use crate::inquiry::export::spreadsheet;
 use crate::report::sheet::{Sheet, SheetFacts};
 use crate::report::{Lang, Paper};
 use crate::{Filter, OrderRecord, Part, Row};
-use calamine::{DataType, Data, Reader, Xlsx};
+use calamine::{Data, DataType, Reader, Xlsx};
 use jiff::tz::TimeZone;
 use quality::Limits;
 use std::io::Cursor;

@@ -192,11 +192,12 @@ impl Reason {
             ..self.clone()
         };
         let row = |detail| detailed(detail).to_string();
-        let detail = match row(PLACE).split_once(PLACE) {
-            Some((before, after)) => text.strip_prefix(before)?.strip_suffix(after)?,
-            None if row("") == text => "",
-            None => return None,
-        };
+        if row("") == text {
+            return Some(detailed(""));
+        }
+        let with_place = row(PLACE);
+        let (before, after) = with_place.split_once(PLACE)?;
+        let detail = text.strip_prefix(before)?.strip_suffix(after)?;
         Some(detailed(detail))
     }
 
@@ -209,6 +210,9 @@ impl Reason {
         }
         let message = message.with("detail", &self.detail);
         match (self.code, self.side) {
+            (Code::Finding(_) | Code::Serial(_), _) if self.detail.is_empty() => {
+                message.case("any")
+            }
             (Code::Interrupted, _) => message.with("interruption", &self.detail),
             (Code::Finding(_), None) => message.with("pins", &self.detail),
             (Code::RigTrouble, _) if self.detail.is_empty() => message,
@@ -417,6 +421,22 @@ mod tests {
         assert_eq!(high.short(Lang::En), "Operate voltage high");
         assert_eq!(high.short(Lang::Zh), "动作电压偏高");
         assert_eq!(high.text(Lang::Zh), "超出上限");
+    }
+
+    #[test]
+    fn a_reason_without_detail_leaves_no_gap() {
+        let serials = SerialFault::ALL.iter().map(|it| Reason::serial(*it, ""));
+        for reason in Finding::all().map(Reason::from).chain(serials) {
+            let message = reason.message();
+            let (id, case) = (message.id(), message.args().get("case"));
+            for lang in Lang::ALL {
+                let used = texts::arguments(lang, &id, case);
+                let used = used.or_else(|| texts::arguments(lang, &id, None)).unwrap();
+                assert!(!used.contains("detail") && !used.contains("pins"), "{id}");
+            }
+        }
+        let pin = Reason::from(em_relay::Finding::PinOpen);
+        assert_eq!(pin.short(Lang::Zh), "无开尔文接触：缺引脚或探针脏污");
     }
 
     #[test]

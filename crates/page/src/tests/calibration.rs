@@ -145,8 +145,8 @@ async fn a_reference_part_has_certificate_and_last_reading() {
         failure: Some(AlarmCode::ReferenceCheckFailed.into()),
     });
     let rows = [
-        Row::Part(golden(1, 5_000_000, Some(0.01))),
-        Row::Part(golden(2, 4_000_000, Some(0.5))),
+        Row::Part(golden(1, 4_000_000, Some(0.5))),
+        Row::Part(golden(2, 5_000_000, Some(0.01))),
         check,
     ];
     let answer = fixture(&rows, &[]).get("/api/calibration").await.json();

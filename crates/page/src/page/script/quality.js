@@ -56,7 +56,7 @@ async function readQuality() {
 
 function showCapability(stats, unit) {
   const figure = (value) => (Number.isFinite(value) ? String(Number(value.toPrecision(5))) : NONE);
-  const rows = [["n", ""], ["mean", unit], ["sd", unit], ["min", unit], ["max", unit], ["median", unit],
+  const rows = [["n", ""], ["without_value", ""], ["mean", unit], ["sd", unit], ["min", unit], ["max", unit], ["median", unit],
     ["cp", ""], ["cpk", ""], ["cpk_low95", ""], ["ppk", ""], ["lag1", ""]];
   at("q_stats").replaceChildren(...(stats ? rows : []).map(([key, of]) => row(word("q-" + key), figure(stats[key]), of)));
 }
