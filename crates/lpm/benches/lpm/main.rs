@@ -282,11 +282,11 @@ impl Bench {
         let times = if count > 5_000 { 9 } else { 201 };
         let bodies = peer::double::Peer::bodies(&world.elements);
         let single_bodies = peer::single::Peer::bodies(&world.elements);
-        let [mut whole, mut rebuild, mut single, mut copy] = [(); 4].map(|()| Rounds::new(times));
+        let [mut whole, mut rebuild, mut single_rebuild, mut copy] = [(); 4].map(|()| Rounds::new(times));
         for _ in 0..TURNS {
             whole.turn(|| (), |()| built(world));
             peer::double::Peer::build(&bodies, &mut rebuild);
-            peer::single::Peer::build(&single_bodies, &mut single);
+            peer::single::Peer::build(&single_bodies, &mut single_rebuild);
             copy.turn(|| (), |()| self.model.clone());
         }
         let picked: Vec<usize> = (0..QUERIES)
@@ -308,7 +308,7 @@ impl Bench {
         Edits {
             build: whole.spread(),
             rebuild: rebuild.spread(),
-            single_rebuild: single.spread(),
+            single_rebuild: single_rebuild.spread(),
             copy: copy.spread(),
             edit: edit.spread(),
             double_edit: double_edit.spread(),
