@@ -22,13 +22,14 @@ pub(super) struct AnswerTrouble {
 }
 
 impl AnswerTrouble {
-    /// Returns the trouble of a failed transaction, without lateness.
-    pub(super) fn of(error: &LineError, used: u8, tries: u8) -> Self {
+    /// Returns the trouble of a failed transaction; `late` is the lateness of this computer if it is long enough to
+    /// explain a missing reply.
+    pub(super) fn of(error: &LineError, used: u8, tries: u8, late: Option<Span>) -> Self {
         Self {
             transaction: error.message(),
             used,
             tries,
-            late: None,
+            late: late.filter(|_| comes_of_lateness(&error.failure)),
         }
     }
 
@@ -151,13 +152,8 @@ impl Cycle {
                 })
             }
             Err(error) => {
-                let late = self
-                    .host_late()
-                    .filter(|_| comes_of_lateness(&error.failure));
-                Some(AnswerTrouble {
-                    late,
-                    ..AnswerTrouble::of(error, used, tries)
-                })
+                let late = self.lateness.explaining(&self.wiring);
+                Some(AnswerTrouble::of(error, used, tries, late))
             }
         }
     }
@@ -167,12 +163,6 @@ impl Cycle {
         if !self.bus_alarms.iter().any(|it| it.is_same(&alarm)) {
             self.bus_alarms.push(alarm);
         }
-    }
-
-    /// Returns the lateness of this computer in the last seconds when it explains a missing or late reply.
-    pub(super) fn host_late(&self) -> Option<Span> {
-        let recent = self.lateness.recent();
-        (recent >= self.wiring.explaining_lateness()).then_some(recent)
     }
 }
 
@@ -207,10 +197,7 @@ mod tests {
             command: dcon::Common::ReadResetStatus.to(dcon::Address(1)),
             failure: Failure::TimeOut(Span::ms(31)),
         };
-        let trouble = |late| AnswerTrouble {
-            late,
-            ..AnswerTrouble::of(&error, 3, 3)
-        };
+        let trouble = |late| AnswerTrouble::of(&error, 3, 3, late);
         let (late, in_time) = (trouble(Some(Span::ms(45))), trouble(None));
         let codes = [late.alarm().code, in_time.alarm().code];
         assert_eq!(codes, [AlarmCode::HostLate, AlarmCode::BusTrouble]);
@@ -224,7 +211,7 @@ mod tests {
             }),
             ..error.clone()
         };
-        let taken = AnswerTrouble::of(&taken, 1, 3).alarm();
+        let taken = AnswerTrouble::of(&taken, 1, 3, Some(Span::ms(45))).alarm();
         assert!(
             taken
                 .text(Lang::En)

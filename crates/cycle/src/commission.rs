@@ -3,8 +3,9 @@
 //! allow.
 
 use super::answers::AnswerTrouble;
+use super::lateness::Lateness;
 use super::traffic::{Purpose, Traffic};
-use bus::{Answer, Pace};
+use bus::{Answer, Pace, Timer};
 use dcon::{AnalogIn, Command, Common, Reply};
 use machine::dut;
 use machine::rig::commission::{Check, judge, verification};
@@ -12,6 +13,10 @@ use machine::rig::wiring::{ModuleId, Wiring};
 use machine::station::trouble::Alarm;
 use std::collections::{BTreeMap, VecDeque};
 use texts::Message;
+use units::Span;
+
+/// Longest wait without a look at the clock; a stall of this computer shows in the next look.
+const LOOK: Span = Span::ms(5);
 
 /// A setting that an interrupted run of the controller left in a module.
 struct Leftover {
@@ -29,63 +34,121 @@ enum Setting {
     Masked,
 }
 
-/// Reads all settings, on all lines in parallel; fails with an alarm at the first mismatch or silent module. Restores
-/// the settings that an interrupted run of the controller left behind; returns alarms that name their modules.
-pub async fn verify(
-    wiring: &Wiring,
-    pace: &Pace,
-    traffic: &mut Traffic,
-) -> Result<Vec<Alarm>, Alarm> {
-    let left = ask(wiring, pace, traffic).await?;
-    if left.is_empty() {
-        traffic.start_scan();
-        return Ok(Vec::new());
-    }
-    for one in &left {
-        restore(wiring, pace, traffic, one).await?;
-    }
-    let still = ask(wiring, pace, traffic).await?;
-    traffic.start_scan();
-    let name = |one: &Leftover| wiring.module(one.module).name.clone();
-    if let Some(one) = still.first() {
-        let detail = Message::new("detail", "not_restored").with("module", name(one));
-        return Err(Alarm::bus(&detail));
-    }
-    let names = |what: Setting| {
-        let those: Vec<String> = left.iter().filter(|it| it.what == what).map(name).collect();
-        (!those.is_empty()).then(|| those.join(", "))
-    };
-    let tripped = names(Setting::Tripped).map(|names| Alarm::watchdog_tripped(&names));
-    let masked = names(Setting::Masked).map(|names| Alarm::calibration_cut_off(&names));
-    Ok(tripped.into_iter().chain(masked).collect())
+/// What the verification uses of the cycle.
+pub struct Verification<'a> {
+    pub wiring: &'a Wiring,
+    pub pace: &'a Pace,
+    pub traffic: &'a mut Traffic,
+    pub timer: &'a mut Timer,
+    pub lateness: &'a mut Lateness,
 }
 
-async fn restore(
-    wiring: &Wiring,
-    pace: &Pace,
-    traffic: &mut Traffic,
-    left: &Leftover,
-) -> Result<(), Alarm> {
-    for command in &left.remedies {
-        let line = wiring.module(left.module).line;
-        traffic.queue(line, *command, Purpose::Check);
-        loop {
-            traffic.dispatch(pace.now());
-            traffic.answer().await;
-            if let Some((_, Purpose::Check, answer)) = traffic.next_answer() {
-                replied(wiring, answer)?;
-                break;
+impl Verification<'_> {
+    /// Reads all settings, on all lines in parallel; fails with an alarm at the first mismatch or silent module. Restores
+    /// the settings that an interrupted run of the controller left behind; returns alarms that name their modules.
+    pub async fn run(&mut self) -> Result<Vec<Alarm>, Alarm> {
+        let left = self.ask().await?;
+        if left.is_empty() {
+            self.traffic.start_scan();
+            return Ok(Vec::new());
+        }
+        for one in &left {
+            self.restore(one).await?;
+        }
+        let still = self.ask().await?;
+        self.traffic.start_scan();
+        let name = |one: &Leftover| self.wiring.module(one.module).name.clone();
+        if let Some(one) = still.first() {
+            let detail = Message::new("detail", "not_restored").with("module", name(one));
+            return Err(Alarm::bus(&detail));
+        }
+        let names = |what: Setting| {
+            let those: Vec<String> = left.iter().filter(|it| it.what == what).map(name).collect();
+            (!those.is_empty()).then(|| those.join(", "))
+        };
+        let tripped = names(Setting::Tripped).map(|names| Alarm::watchdog_tripped(&names));
+        let masked = names(Setting::Masked).map(|names| Alarm::calibration_cut_off(&names));
+        Ok(tripped.into_iter().chain(masked).collect())
+    }
+
+    async fn restore(&mut self, left: &Leftover) -> Result<(), Alarm> {
+        for command in &left.remedies {
+            let line = self.wiring.module(left.module).line;
+            self.traffic.queue(line, *command, Purpose::Check);
+            loop {
+                self.traffic.dispatch(self.pace.now());
+                self.wait().await;
+                if let Some((_, Purpose::Check, answer)) = self.traffic.next_answer() {
+                    self.replied(answer)?;
+                    break;
+                }
             }
         }
+        Ok(())
     }
-    Ok(())
-}
 
-/// Returns the reply of an answer; fails with an alarm when there is none.
-fn replied(wiring: &Wiring, answer: Answer) -> Result<Reply, Alarm> {
-    let (used, tries) = (answer.tries_used, wiring.bus.tries);
-    let alarm = |error| AnswerTrouble::of(&error, used, tries).alarm();
-    answer.outcome.map_err(alarm)
+    /// Waits for an answer, and counts how late this computer wakes.
+    async fn wait(&mut self) {
+        let mut answered = false;
+        while !answered {
+            let until = self.pace.now() + LOOK;
+            tokio::select! {
+                biased;
+                () = self.traffic.answer() => answered = true,
+                () = self.timer.until(until) => {}
+            }
+            self.lateness.count(until, self.pace.now());
+        }
+    }
+
+    /// Returns the reply of an answer; fails with an alarm when there is none.
+    fn replied(&self, answer: Answer) -> Result<Reply, Alarm> {
+        let (used, tries) = (answer.tries_used, self.wiring.bus.tries);
+        let late = self.lateness.explaining(self.wiring);
+        let alarm = |error| AnswerTrouble::of(&error, used, tries, late).alarm();
+        answer.outcome.map_err(alarm)
+    }
+
+    /// Requests every name and setting once; returns the leftovers, or an alarm about any other mismatch.
+    async fn ask(&mut self) -> Result<Vec<Leftover>, Alarm> {
+        let mut all: Vec<Leftover> = Vec::new();
+        let wiring = self.wiring;
+        let checks = verification(wiring);
+        let mut pending: BTreeMap<usize, VecDeque<&Check>> = BTreeMap::new();
+        for check in &checks {
+            let line = wiring.module(check.module).line;
+            self.traffic.queue(line, check.command, Purpose::Check);
+            pending.entry(line.0).or_default().push_back(check);
+        }
+        while pending.values().any(|checks| !checks.is_empty()) {
+            self.traffic.dispatch(self.pace.now());
+            self.wait().await;
+            while let Some((line, purpose, answer)) = self.traffic.next_answer() {
+                if purpose != Purpose::Check {
+                    continue;
+                }
+                let Some(check) = pending.get_mut(&line.0).and_then(VecDeque::pop_front) else {
+                    continue;
+                };
+                let is_status =
+                    matches!(answer.command, Command::Common(_, Common::ReadResetStatus));
+                if is_status && answer.outcome.is_err() {
+                    continue;
+                }
+                let reply = self.replied(answer)?;
+                if let Some(mismatch) = judge(wiring, check, &reply) {
+                    let Some(left) = leftover(wiring, check, &reply, mismatch.remedy) else {
+                        return Err(Alarm::bus(&mismatch.message()));
+                    };
+                    let known = |it: &Leftover| it.module == left.module && it.what == left.what;
+                    if !all.iter().any(known) {
+                        all.push(left);
+                    }
+                }
+            }
+        }
+        Ok(all)
+    }
 }
 
 /// Returns the leftover that explains a wrong reply; `None` when the controller did not cause it. `remedy` is the
@@ -120,43 +183,4 @@ fn leftover(
         what,
         remedies,
     })
-}
-
-/// Requests every name and setting once; returns the leftovers, or an alarm about any other mismatch.
-async fn ask(wiring: &Wiring, pace: &Pace, traffic: &mut Traffic) -> Result<Vec<Leftover>, Alarm> {
-    let mut all: Vec<Leftover> = Vec::new();
-    let checks = verification(wiring);
-    let mut pending: BTreeMap<usize, VecDeque<&Check>> = BTreeMap::new();
-    for check in &checks {
-        let line = wiring.module(check.module).line;
-        traffic.queue(line, check.command, Purpose::Check);
-        pending.entry(line.0).or_default().push_back(check);
-    }
-    while pending.values().any(|checks| !checks.is_empty()) {
-        traffic.dispatch(pace.now());
-        traffic.answer().await;
-        while let Some((line, purpose, answer)) = traffic.next_answer() {
-            if purpose != Purpose::Check {
-                continue;
-            }
-            let Some(check) = pending.get_mut(&line.0).and_then(VecDeque::pop_front) else {
-                continue;
-            };
-            let is_status = matches!(answer.command, Command::Common(_, Common::ReadResetStatus));
-            if is_status && answer.outcome.is_err() {
-                continue;
-            }
-            let reply = replied(wiring, answer)?;
-            if let Some(mismatch) = judge(wiring, check, &reply) {
-                let Some(left) = leftover(wiring, check, &reply, mismatch.remedy) else {
-                    return Err(Alarm::bus(&mismatch.message()));
-                };
-                let known = |it: &Leftover| it.module == left.module && it.what == left.what;
-                if !all.iter().any(known) {
-                    all.push(left);
-                }
-            }
-        }
-    }
-    Ok(all)
 }

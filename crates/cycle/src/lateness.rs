@@ -1,6 +1,7 @@
 //! How late this computer wakes the cycle: from the deadline of a wait to its end.
 
 use bus::Histogram;
+use machine::rig::wiring::Wiring;
 use machine::view::{Bucket, LatenessView};
 use units::{RigTime, Span};
 
@@ -48,6 +49,12 @@ impl Lateness {
     /// Returns the worst lateness of the last one to two seconds.
     pub fn recent(&self) -> Span {
         self.windows[0].max(self.windows[1])
+    }
+
+    /// Returns the worst lateness of the last one to two seconds when it explains a missing or late reply.
+    pub fn explaining(&self, wiring: &Wiring) -> Option<Span> {
+        let recent = self.recent();
+        (recent >= wiring.explaining_lateness()).then_some(recent)
     }
 
     /// Returns percentiles, worst values and buckets for screens and metrics.

@@ -295,7 +295,7 @@ impl Cycle {
             recorded: self.links.recorded.load(Ordering::Acquire),
             history: self.links.history.borrow().clone(),
             bus: std::mem::take(&mut self.bus_alarms),
-            host_late: self.host_late(),
+            host_late: self.lateness.explaining(&self.wiring),
             readings: std::mem::take(&mut self.readings),
             reader: self.reader.clone(),
             stop: self.links.stop.load(Ordering::Acquire),

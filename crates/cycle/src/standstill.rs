@@ -13,7 +13,14 @@ impl Cycle {
     pub(super) async fn verify(&mut self) {
         self.quiet().await;
         assert!(self.traffic.is_quiet(), "verified while a line is in use");
-        match commission::verify(&self.wiring, &self.pace, &mut self.traffic).await {
+        let mut verification = commission::Verification {
+            wiring: &self.wiring,
+            pace: &self.pace,
+            traffic: &mut self.traffic,
+            timer: &mut self.timer,
+            lateness: &mut self.lateness,
+        };
+        match verification.run().await {
             Ok(restored) => {
                 self.verified = true;
                 restored.into_iter().for_each(|it| self.note_alarm(it));

@@ -282,7 +282,8 @@ impl Bench {
         let times = if count > 5_000 { 9 } else { 201 };
         let bodies = peer::double::Peer::bodies(&world.elements);
         let single_bodies = peer::single::Peer::bodies(&world.elements);
-        let [mut whole, mut rebuild, mut single_rebuild, mut copy] = [(); 4].map(|()| Rounds::new(times));
+        let [mut whole, mut rebuild, mut single_rebuild, mut copy] =
+            [(); 4].map(|()| Rounds::new(times));
         for _ in 0..TURNS {
             whole.turn(|| (), |()| built(world));
             peer::double::Peer::build(&bodies, &mut rebuild);
