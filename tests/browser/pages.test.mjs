@@ -90,7 +90,7 @@ test("charts and histograms of the reports show with capability", async () => {
   await page.waitForSelector("#q_cycle rect");
   await page.waitForSelector("#q_stored rect");
   assert.ok(await page.$$eval("#q_stored rect", (all) => all.length) >= 12, "test and way of the last parts");
-  assert.equal(await rows(page, "#q_stats"), 11);
+  assert.equal(await rows(page, "#q_stats"), 12);
   await page.selectOption("#q_param", "release_time_ms");
   await shown(page, "#q_charts", "elease time");
   await leave(page);

@@ -12,6 +12,7 @@ mod safety;
 mod scans;
 mod side_by_side;
 mod spreadsheet;
+mod suspects;
 mod writing;
 
 use super::*;
@@ -122,4 +123,10 @@ fn count(connection: &rusqlite::Connection, table: &str) -> i64 {
             row.get(0)
         })
         .unwrap()
+}
+
+/// Returns parts 1 to `count`; part n is judged at second n.
+fn parts(name: &str, count: u64) -> Vec<Row> {
+    let one = |seq| Row::Part(part(name, seq, "pass", 7.0));
+    (1..=count).map(one).collect()
 }

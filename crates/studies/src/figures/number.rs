@@ -37,7 +37,7 @@ pub fn count(n: u64) -> String {
     grouped(&n.to_string())
 }
 
-/// Formats a number to so many digits; whole numbers keep all of theirs.
+/// Formats a number to `digits` digits; a whole number keeps all of its own.
 fn number(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".to_owned();
