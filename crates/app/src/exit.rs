@@ -1,14 +1,17 @@
 //! Reasons why a command ends, with their exit status, and the cause of exit status 3.
 //!
-//! An alarm ends a run in `machine/src/station/states.rs`. The cause of exit status 3 of a run is
+//! Three places end a run with `Ending::Alarm`: `machine/src/station/safety.rs` (an alarm while nobody attends),
+//! `machine/src/station/states.rs` (suspended for too long, or stopped in trouble) and `cycle/src/lib.rs` (a module that
+//! does not fit the wiring). The cause of exit status 3 of a run is
 //!
 //! - chosen in `lot/progress.rs` (the alarm, or an order); without an alarm in `lot/mod.rs` and `service/mod.rs` (lost
 //!   history, failed assertion), `lib.rs` (the rig refuses the lot before it begins) and `calibration/mod.rs` (reference
 //!   parts without a calibration);
-//! - written as a row by `lot/journal.rs` and `history/src/run_end.rs`;
-//! - printed by `src/cli/terminal.rs` (log, `--json`) and `src/cli/lot.rs` (`lot show`).
+//! - written as a row by `lot/journal.rs` (a refused lot: `admission.rs`) and `history/src/run_end.rs`;
+//! - printed by `src/cli/terminal.rs` (`--json`), `src/cli/lot.rs` (`lot show`) and `src/cli/history/lots.rs`.
 //!
-//! `story/mod.rs` chooses the cause of a story whose player failed; no row keeps that one.
+//! No row keeps a calibration that is missing, a history that is lost at the end, and the script of a story
+//! (`story/mod.rs`).
 
 use machine::station::trouble::Alarm;
 use serde::Serialize;

@@ -1,4 +1,4 @@
-//! Configuration: reads and checks the files of a plant, and returns them as settings of the modules that own these.
+//! Configuration: reads and checks the files of a plant, and makes the settings of each crate of them.
 //!
 //! | file | holds | becomes |
 //! |---|---|---|

@@ -33,7 +33,7 @@ pub fn from_slice<T: DeserializeOwned>(text: &[u8]) -> Result<T, Unreadable> {
     })
 }
 
-/// Reads the members of a query string, decoded, as a `T`.
+/// Makes a `T` of the names and values of a query string, percent-decoded by the caller.
 ///
 /// # Errors
 /// Fails on an unknown, repeated, missing or malformed member.

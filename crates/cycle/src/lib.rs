@@ -3,6 +3,8 @@
 //! ```text
 //! scan -> step -> clear -> apply -> record -> publish
 //! ```
+//! `step` decides; `clear` asks the guard whether each motion is free of collisions.
+//!
 //! One task owns the process image, the outputs, the guard and the station; each line is a task of its own with a queue
 //! for one request ([`traffic`]). A turn begins when an answer arrives, or at the instant that the last step requested.
 //! Only the station knows which kind of device is under test.

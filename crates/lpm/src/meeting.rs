@@ -219,8 +219,8 @@ impl<'a> Meeting<'a> {
     }
 }
 
-/// Returns a bound of all rounding for two pieces whose centres lie `apart`, mm: of the rounding that brought them to
-/// their places, and of that in computing from `apart` at rest.
+/// Returns an upper bound of the rounding error for an element and a piece of a mover whose centres lie `apart`, mm: the
+/// error of both positions, plus that of the distances computed from `apart`.
 #[inline]
 pub(crate) fn slack(element: &Prism, mover: &Prism, apart: Vec3) -> f64 {
     NOISE * (element.span + mover.span) + ROUNDING * reach(apart)

@@ -8,7 +8,7 @@
 //! | `upset` | modules that restart, trip, or are replaced by another product |
 //! | `port` | dead lines, ports that vanish and come back |
 //!
-//! `instrument` has the faults of SCPI instruments, which `scpi/port.rs` applies; a new one is a variant there, with its
+//! `instrument` has the faults of SCPI instruments, which `scpi/` applies; a new one is a variant there, with its
 //! line in that file's `LIST`.
 //!
 //! Faults combine freely, and one name may appear more than once; `value` describes the form of a value. All

@@ -76,7 +76,7 @@ impl Gates {
         }
     }
 
-    /// Applies the edge opposite to the start.
+    /// Closes the window: the drive of the coil has the edge opposite to the one that opened it.
     pub fn opposite(&mut self, t_us: f64) {
         self.window = false;
         self.window_ends_us = None;

@@ -16,8 +16,8 @@ use super::lumped::{Drive, Element, Event, LAMBDA, Model, Solver, State, V, W, X
 
 /// Relative tolerance of a step: instants to a nanosecond, while the counters resolve 20 us.
 const RTOL: f64 = 1e-6;
-/// Force on a stop below which the armature is integrated, N: half the force at rest, so that it still moves
-/// slowly then.
+/// Force on a stop below which the model integrates the motion of the armature, N; above it the armature rests. Half the
+/// force with which a relay without current rests on its stop, so that an armature about to leave is integrated.
 const LEAST_PUSH_N: f64 = 0.02;
 /// Speed above which the armature is not at rest, m/s; slower hops stay below 0.2 um.
 const CALM_M_PER_S: f64 = 4e-3;

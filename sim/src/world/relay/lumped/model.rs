@@ -128,7 +128,8 @@ impl Model {
     }
 
     /// Returns the time constant of the flux linkage while the armature rests, s: of winding and eddy currents
-    /// together, or of eddy currents alone while the suppression blocks.
+    /// together, or of eddy currents alone while the suppression circuit lets no current through
+    /// the winding.
     pub fn flux_time_s(&self, s: &State, flux_rate: f64, drive: &Drive) -> f64 {
         let reluctance = self.reluctance(s[LAMBDA] / self.p.N, self.p.X - s[X]);
         let eddy = self.p.k_ec / reluctance;
