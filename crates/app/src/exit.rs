@@ -1,8 +1,8 @@
 //! Reasons why a command ends, with their exit status, and the cause of exit status 3.
 //!
-//! Three places end a run with `Ending::Alarm`: `machine/src/station/safety.rs` (an alarm while nobody attends),
-//! `machine/src/station/states.rs` (suspended for too long, or stopped in trouble) and `cycle/src/lib.rs` (a module that
-//! does not fit the wiring). The cause of exit status 3 of a run is
+//! The station ends a run with `Ending::Alarm` when an alarm stops an unattended rig (`machine/src/station/safety.rs`),
+//! when the rig stays suspended for too long, or when a person stops it in trouble (`states.rs` beside it). The cycle does
+//! so when a module does not fit the wiring (`cycle/src/lib.rs`). The cause of exit status 3 of a run is
 //!
 //! - chosen in `lot/progress.rs` (the alarm, or an order); without an alarm in `lot/mod.rs` and `service/mod.rs` (lost
 //!   history, failed assertion), `lib.rs` (the rig refuses the lot before it begins) and `calibration/mod.rs` (reference

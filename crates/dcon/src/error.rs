@@ -63,7 +63,7 @@ pub enum ReplyError {
     BadField {
         /// Position of the field in the reply, from 0.
         at: usize,
-        /// Characters that may stand there.
+        /// Characters that the protocol allows in this field.
         expected: &'static str,
     },
     /// A field has the right form, but a value that the module cannot send.

@@ -46,6 +46,7 @@ fn no_sentence_has_an_unwanted_phrase() {
 
 #[test]
 fn a_phrase_is_found_across_the_end_of_a_line() {
-    let text = "/// Done after so many\n/// microseconds; the bus is\n/// told.\nlet toldies = 1;";
+    // Both phrases are wrong on purpose; a line end divides the second one. The last line has neither.
+    let text = "/// Waits so many\n/// seconds; the line is\n/// told.\nlet toldies = 1;";
     assert_eq!(found(text), [(1, "so many"), (2, "is told")]);
 }

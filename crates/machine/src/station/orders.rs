@@ -93,7 +93,8 @@ pub enum Refused {
     ShelveWithoutReason,
     /// The scan cannot be the serial number of a further part.
     Scan(ScanRefused),
-    /// Nobody has acknowledged this alarm about the scanned parts of an earlier run, which may still lie in the magazine.
+    /// An earlier run dropped scans whose parts may still lie in the magazine. Holds the alarm that names them: the rig takes
+    /// no scan until a person acknowledges it.
     ScansDropped(Box<Alarm>),
     /// A prompt waits for its answer.
     PromptOpen,
