@@ -3,7 +3,7 @@
 //! Lengths are px. Plain text and fixed colours make the file look the same in a page, in a viewer and on paper.
 
 use super::figure::{Figure, shown};
-use history::report::svg::Svg;
+use history::report::svg::{Svg, text_width};
 
 /// Content of a chart.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -20,11 +20,14 @@ pub struct Chart {
     pub bars: Vec<(String, Option<f64>)>,
 }
 
+/// Width of the column of labels, px; longer labels make it wider.
 const LABEL: f64 = 300.0;
 const PLOT: f64 = 480.0;
 const NUMBER: f64 = 100.0;
 const TOP: f64 = 44.0;
 const ROW: f64 = 24.0;
+/// Height of a line of numbers below the axis, px.
+const NUMBER_LINE: f64 = 15.0;
 
 impl Chart {
     /// Creates a chart of labels and values; its axis starts at 0.
@@ -69,15 +72,25 @@ impl Chart {
         }
     }
 
+    /// Returns the x coordinate of the left end of the axis.
+    fn left(&self) -> f64 {
+        let labels = self.bars.iter().map(|(label, _)| text_width(label) + 16.0);
+        labels.fold(LABEL, f64::max)
+    }
+
     /// Returns the x coordinate of a value, clamped to the plot.
     fn x(&self, value: f64) -> f64 {
-        LABEL + PLOT * ((value - self.from) / (self.to() - self.from)).clamp(0.0, 1.0)
+        self.left() + PLOT * ((value - self.from) / (self.to() - self.from)).clamp(0.0, 1.0)
     }
 
     /// Returns the chart as an SVG file.
     pub fn svg(&self) -> String {
-        let bottom = TOP + ROW * self.bars.len() as f64;
-        let mut svg = Svg::new([LABEL + PLOT + NUMBER, bottom + 28.0]);
+        let (left, bottom) = (self.left(), TOP + ROW * self.bars.len() as f64);
+        let ends = std::iter::once(&self.from).chain(&self.marks);
+        let lines = self.number_lines(ends.copied());
+        let last = lines.iter().map(|(_, line)| *line).max().unwrap_or(0);
+        let below = 28.0 + f64::from(last) * NUMBER_LINE;
+        let mut svg = Svg::new([left + PLOT + NUMBER, bottom + below]);
         for (place, (label, value)) in self.bars.iter().enumerate() {
             self.bar(&mut svg, TOP + ROW * place as f64, label, *value);
         }
@@ -85,19 +98,43 @@ impl Chart {
             let x = self.x(*mark);
             let dashed = "stroke=\"#b00\" stroke-dasharray=\"4 3\"";
             svg.line([x, TOP], [x, bottom], dashed);
-            let middle = "fill=\"#b00\" text-anchor=\"middle\"";
-            svg.text([x, bottom + 16.0], middle, &shown(*mark));
         }
-        svg.text([LABEL, bottom + 16.0], "", &shown(self.from));
+        for (place, (value, line)) in lines.into_iter().enumerate() {
+            let colour = if place == 0 { "" } else { "fill=\"#b00\" " };
+            let style = format!("{colour}text-anchor=\"middle\"");
+            let y = bottom + 16.0 + f64::from(line) * NUMBER_LINE;
+            svg.text([self.x(value), y], &style, &shown(value));
+        }
         svg.file(&self.title)
+    }
+
+    /// Returns each value below the axis with the number of its line, 0 for the highest, so that no two numbers overlap.
+    fn number_lines(&self, values: impl Iterator<Item = f64>) -> Vec<(f64, u32)> {
+        let mut placed: Vec<(f64, u32)> = Vec::new();
+        for value in values {
+            let overlaps = |line: u32| {
+                let reach = |it: f64| text_width(&shown(it)) / 2.0;
+                placed.iter().any(|(other, on)| {
+                    let apart = (self.x(*other) - self.x(value)).abs();
+                    *on == line && apart < reach(*other) + reach(value)
+                })
+            };
+            let free = (0..).find(|line| !overlaps(*line));
+            placed.push((value, free.unwrap_or(0)));
+        }
+        placed
     }
 
     fn bar(&self, svg: &mut Svg, top: f64, label: &str, value: Option<f64>) {
         let line = top + 16.0;
-        svg.text([LABEL - 8.0, line], "text-anchor=\"end\"", label);
+        svg.text([self.left() - 8.0, line], "text-anchor=\"end\"", label);
         let Some(value) = value else { return };
         let end = self.x(value);
-        svg.rect([LABEL, top + 4.0], [end - LABEL, 16.0], "#4a7ba6");
+        svg.rect(
+            [self.left(), top + 4.0],
+            [end - self.left(), 16.0],
+            "#4a7ba6",
+        );
         let number = format!("{} {}", shown(value), self.unit);
         svg.text([end + 6.0, line], "", &number);
     }

@@ -1,9 +1,9 @@
 //! Points and curves as SVG, both axes logarithmic.
 //!
-//! Lengths are px. A point below the lowest line lies on it. The point of a method with wrong verdicts is hollow, and its
-//! label counts them.
+//! Lengths are px. The plot puts a point whose value is below the lowest line on that line. When a method gives wrong
+//! verdicts, its point is hollow and its label states their number.
 
-use history::report::svg::Svg;
+use history::report::svg::{Svg, text_width};
 
 /// A point of the plot.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,8 +46,12 @@ const BELOW: f64 = 64.0;
 const COLOURS: [&str; 6] = [
     "#4a7ba6", "#c05621", "#2f855a", "#6b46c1", "#718096", "#b83280",
 ];
-/// Least distance of two labels, px.
+/// Height of a label, px.
 const LINE: f64 = 15.0;
+/// Distance from the foot of a label to the line on which its letters stand, px.
+const DESCENT: f64 = 3.0;
+/// Radius of a point, px.
+const RADIUS: f64 = 5.0;
 
 impl Scatter {
     /// Returns the plot as an SVG file.
@@ -108,42 +112,87 @@ impl Scatter {
     }
 
     fn labelled(&self, svg: &mut Svg, xs: &Axis, ys: &Axis) {
-        let mut taken: Vec<(f64, f64)> = Vec::new();
+        let at = |it: &Point| [xs.place(it.x), ys.place(it.y)];
+        let mut taken: Vec<Area> = self.points.iter().map(|it| Area::around(at(it))).collect();
         for point in &self.points {
-            let (x, y) = (xs.place(point.x), ys.place(point.y));
-            let fill = if point.wrong == 0 {
-                colour(point)
-            } else {
-                "#fff"
-            };
+            let centre = at(point);
             let stroke = colour(point);
+            let fill = if point.wrong == 0 { stroke } else { "#fff" };
             let style = format!("fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"2\"");
-            svg.circle([x, y], 5.0, &style);
+            svg.circle(centre, RADIUS, &style);
             if point.name.is_empty() {
                 continue;
             }
-            let mut line = y - 8.0;
-            while taken
-                .iter()
-                .any(|(tx, ty)| (tx - x).abs() < 220.0 && (ty - line).abs() < LINE)
-            {
-                line -= LINE;
-            }
-            taken.push((x, line));
-            // The labels point towards the middle, so that none leaves the plot.
-            let (anchor, aside) = if x > LEFT + 0.7 * WIDE {
-                ("end", -6.0)
-            } else {
-                ("start", 6.0)
+            let text = match point.wrong {
+                0 => point.name.clone(),
+                some => format!("{}, {some} wrong", point.name),
             };
-            let wrong = match point.wrong {
-                0 => String::new(),
-                1 => ", 1 wrong".to_owned(),
-                some => format!(", {some} wrong"),
+            let area = Area::beside(centre, text_width(&text), &taken);
+            let is_right = area.left > centre[0];
+            let (anchor, x) = match is_right {
+                true => ("start", area.left),
+                false => ("end", area.right),
             };
             let style = format!("text-anchor=\"{anchor}\"");
-            svg.text([x + aside, line], &style, &format!("{}{wrong}", point.name));
+            svg.text([x, area.bottom - DESCENT], &style, &text);
+            taken.push(area);
         }
+    }
+}
+
+/// A rectangle that a point or a label covers.
+#[derive(Debug, Clone, Copy)]
+struct Area {
+    left: f64,
+    top: f64,
+    right: f64,
+    bottom: f64,
+}
+
+impl Area {
+    fn around([x, y]: [f64; 2]) -> Self {
+        let reach = RADIUS + 1.0;
+        let ([left, right], [top, bottom]) = ([x - reach, x + reach], [y - reach, y + reach]);
+        Self {
+            left,
+            top,
+            right,
+            bottom,
+        }
+    }
+
+    /// Returns the place of a label of this width: the one nearest to the height of its point, right before left, that
+    /// covers nothing and does not leave the plot; above its point when there is none.
+    fn beside([x, y]: [f64; 2], width: f64, taken: &[Self]) -> Self {
+        let label = |step: f64, left: f64| {
+            let top = y - LINE / 2.0 + step * LINE / 2.0;
+            Self {
+                left,
+                top,
+                right: left + width,
+                bottom: top + LINE,
+            }
+        };
+        let steps = (0..60).flat_map(|step| [-f64::from(step), f64::from(step)]);
+        let aside = RADIUS + 4.0;
+        let places = steps.flat_map(|step| [(step, x + aside), (step, x - aside - width)]);
+        let mut free = places
+            .map(|(step, left)| label(step, left))
+            .filter(|it| it.is_in_plot() && !taken.iter().any(|other| it.covers(other)));
+        free.next().unwrap_or_else(|| label(-2.0, x + aside))
+    }
+
+    fn is_in_plot(&self) -> bool {
+        self.left >= LEFT && self.right <= LEFT + WIDE + RIGHT && self.is_in_height()
+    }
+
+    fn is_in_height(&self) -> bool {
+        self.top >= TOP - LINE && self.bottom <= TOP + HIGH
+    }
+
+    fn covers(&self, other: &Self) -> bool {
+        let wide = self.left < other.right && other.left < self.right;
+        wide && self.top < other.bottom && other.top < self.bottom
     }
 }
 
@@ -193,5 +242,22 @@ fn power(decade: i32) -> String {
         -3..=0 => format!("{:.*}", decade.unsigned_abs() as usize, 10f64.powi(decade)),
         1..=5 => format!("{:.0}", 10f64.powi(decade)),
         _ => format!("1e{decade}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_cover_neither_points_nor_each_other() {
+        let centres = (0..24u8).map(|it| [LEFT + WIDE - f64::from(it) * 9.0, TOP + f64::from(it)]);
+        let mut taken: Vec<Area> = centres.clone().map(Area::around).collect();
+        for centre in centres {
+            let area = Area::beside(centre, text_width("25 ms, scans 1"), &taken);
+            assert!(area.is_in_plot(), "{area:?}");
+            assert!(!taken.iter().any(|it| area.covers(it)), "{area:?}");
+            taken.push(area);
+        }
     }
 }

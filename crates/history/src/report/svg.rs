@@ -73,6 +73,12 @@ impl Svg {
     }
 }
 
+/// Returns the greatest width of a text in a file of [`Svg::file`], px; viewers differ in their fonts.
+pub fn text_width(text: &str) -> f64 {
+    const LETTER: f64 = 7.8;
+    text.chars().count() as f64 * LETTER
+}
+
 /// Escapes the characters that have a meaning in XML.
 pub fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
