@@ -1,9 +1,9 @@
 //! Lines as pseudo-terminals in real time.
 //!
-//! The slave is in raw mode before a client opens it, and one slave descriptor stays open, so that clients may
-//! open and close the port per request and a killed client does not keep it exclusive. Two threads serve a line:
-//! one reads the master and stamps the bytes, the other keeps absolute deadlines, so that late wake-ups never add
-//! up. A pseudo-terminal has no baud rate: this module adds the time of every character, and a client may set any
+//! The slave is in raw mode before a client opens it. One slave descriptor stays open, so that clients may open
+//! and close the port for each request. A killed client leaves the terminal exclusive, so this module ends that
+//! mode. Two threads serve a line: one reads the master and stamps the bytes with their time of arrival; the other
+//! sends each reply at an absolute time, so that late wake-ups never add up. A pseudo-terminal has no baud rate: this module adds the time of every character, and a client may set any
 //! rate unless [`Rates::Enforced`]. Each reply is one write. The rig advances while no client talks, so that
 //! watchdogs expire in time.
 //! A lost port closes its terminal: clients get an end of file or an I/O error, as with an unplugged

@@ -4,14 +4,13 @@
 //! when the rig stays suspended for too long, or when a person stops it in trouble (`states.rs` beside it). The cycle does
 //! so when a module does not fit the wiring (`cycle/src/lib.rs`). The cause of exit status 3 of a run is
 //!
-//! - chosen in `lot/progress.rs` (the alarm, or an order); without an alarm in `lot/mod.rs` and `service/mod.rs` (lost
-//!   history, failed assertion), `lib.rs` (the rig refuses the lot before it begins) and `calibration/mod.rs` (reference
-//!   parts without a calibration);
+//! - chosen in `lot/progress.rs`: the first alarm of the last trouble, or `aborted` after an order; for a lost history
+//!   or a failed assertion in `lot/mod.rs` and `service/mod.rs`; for a lot that the rig refuses before it begins in
+//!   `admission.rs`; for reference parts without a calibration in `calibration/mod.rs`;
 //! - written as a row by `lot/journal.rs` (a refused lot: `admission.rs`) and `history/src/run_end.rs`;
 //! - printed by `src/cli/terminal.rs` (`--json`), `src/cli/lot.rs` (`lot show`) and `src/cli/history/lots.rs`.
 //!
-//! No row keeps a calibration that is missing, a history that is lost at the end, and the script of a story
-//! (`story/mod.rs`).
+//! Three causes get no row: `not_calibrated`, a `history_lost` at the end of the run, and `script` (`story/mod.rs`).
 
 use machine::station::trouble::Alarm;
 use serde::Serialize;

@@ -6,8 +6,9 @@
 //! 2. after the request: [`OutstandingReplies::could_be`] recognises a reply that may be late, and the transaction
 //!    rejects it unless [`Transaction::confirm`] proves that the module meant it;
 //! 3. while resynchronising: [`Transaction::resynchronise`] discards what arrives before the module names itself, or
-//!    before the line falls silent;
-//! 4. after a reply: [`Transaction::rest`] finds what follows it, so that neither of the two counts.
+//!    before the line falls silent; the next transaction goes on waiting for that silence;
+//! 4. after a reply: when more bytes arrive during the turnaround ([`Transaction::rest`]), the line drops the reply and
+//!    those bytes, because either may be the late one.
 
 use super::exchange::{Exchange, Frame, FrameEnd, SilenceEnd};
 use super::outstanding::{OutstandingReplies, identification};

@@ -69,11 +69,11 @@ pub use transient::{USUAL_RTOL, study as transient};
 pub enum Study {
     /// Error of every parameter against the truth, and bins of the parts
     Accuracy,
-    /// Seconds against error of the coil resistance: settling, scans, self-heating, temperature
+    /// Measuring time against error of the coil resistance: settling, scans, self-heating, temperature
     Coil,
     /// Ways to check a move: time against error and wrong verdicts
     Collision,
-    /// Seconds against error of contacts: polarities, drifting EMF, closures, early stop
+    /// Measuring time against error of contacts: polarities, drifting EMF, closures, early stop
     Contact,
     /// How often the stated uncertainty covers the truth
     Coverage,

@@ -1,12 +1,12 @@
-//! Study `promises`: whether a rig notices that it breaks a promise, and how often the stated uncertainty covers the
-//! truth all the same.
+//! Study `promises`: whether a rig notices that it breaks a promise, and if not, whether the stated uncertainty still
+//! covers the truth.
 //!
-//! The uncertainty rests on what `rig.toml` and the recipe promise. Each term of [`TERMS`] is a world that breaks one
-//! promise by [`FACTOR`] and keeps the others. A term keeps its bar when the run notices it in enough lots, or when the
-//! uncertainty of every parameter still covers the truth often enough: coverage has no bar where enough lots notice, and
-//! notice has none where only the coverage is enough. A run has noticed the broken promise when it raises the alarm of
-//! a promise, or when it refuses the calibration. Worlds that keep every promise give the share of lots with a false
-//! alarm.
+//! A promise is a value of `rig.toml` or of the recipe on which the uncertainty rests. For each term of [`TERMS`] a world
+//! multiplies one promised value by [`FACTOR`] and keeps the others. A term passes when it meets one of two bars: at least
+//! [`NOTICED_PCT`] of its lots notice the broken promise, or the uncertainty of every parameter covers at least
+//! [`COVERED_PCT`] of its values. The report then sets no bar for the other figure. A run notices the broken promise when
+//! it raises the alarm of a promise or refuses the calibration. Worlds that keep every promise give the share of lots with
+//! a false alarm.
 
 use super::chart::Chart;
 use super::error::Pooled;
@@ -30,7 +30,7 @@ const FACTOR: f64 = 2.0;
 const NOTICED_PCT: f64 = 95.0;
 /// Least coverage of a parameter, percent of values.
 const COVERED_PCT: f64 = 92.0;
-/// Greatest share of lots with a false alarm, percent.
+/// Greatest permitted share of lots with a false alarm, percent.
 const FALSE_ALARMS_PCT: f64 = 0.5;
 /// Confidence of the upper bound of the share of false alarms, 0 to 1.
 const CONFIDENCE: f64 = 0.95;
@@ -61,8 +61,8 @@ const TERMS: [(&str, &str); 12] = [
     ("reference.counter_clock_tolerance_ppm", "devices.clock_ppm"),
 ];
 
-/// Name of the term for the scatter of closures, which the recipe states in percent, and the key of the world, which
-/// states it as a share.
+/// Name of the term for the scatter between closures of a contact, and the key of the world that sets it. The recipe
+/// states the scatter in percent, the world as a share (0.01 is 1 %).
 const CLOSURES: (&str, &str) = ("closure_scatter_pct", "lot.closure_ln_sd");
 
 /// A world that breaks a promise, and its lots.

@@ -1,9 +1,10 @@
 //! Global risks of a wrong decision about a part (JCGM 106:2012, 9.5).
 //!
-//! Process and measurement are normal. With a guard band `w = U` the decision rule accepts a value inside the limit by
-//! w and rejects a value outside by w. In between it takes a confirmation measurement, and accepts the part only if the
-//! mean of all readings lies inside the limit by the U of that mean. Both readings share the systematic errors: the
-//! first one is the mean plus the noise that averaging removes.
+//! Values of the process and errors of the measurement are normally distributed. The guard band w is `guard` times the
+//! expanded uncertainty U (k = 2). The decision rule accepts a first reading that lies inside the limits by at least w,
+//! and rejects one that lies outside by at least w. In between, the rig measures the part again, and the rule accepts
+//! it only if the mean of all readings lies inside the limits by at least the guard band of that mean. The first reading
+//! and the mean share the systematic error; the first reading has more noise, which averaging reduces.
 
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::ops::RangeInclusive;

@@ -12,7 +12,7 @@ use super::output::Report;
 use super::variant::Variant;
 use machine::dut::em_relay::{Parameter, Strategy};
 
-/// Operate threshold, with the settling of flux and armature at the pre-bias, and release threshold.
+/// Operate and release threshold. The operate threshold takes 0.025 s more: flux and armature settle at the pre-bias.
 const THRESHOLDS: [TimedParameter; 2] = [
     TimedParameter {
         more_s: 0.025,

@@ -1,10 +1,11 @@
-//! Error of times and bounce: how far the latch reduces it, and the errors of clock, gate delay and bus.
+//! Error of times and bounces: how much smaller it is when a latch ends the count at the first make, and what reference
+//! clock, gate delay and bus add.
 //!
-//! Gate 0 ends at the first make; gate 1 counts while the contact is open, and alone would measure the time with its
-//! bounce. The row of the raw gate is therefore the sum of two values of the same test. A count is the number of whole
-//! clock periods, whose phase is random: its error is 8.2 us rms at 50 kHz for any baud rate. A bounce is the
-//! difference of two counts. The truth of a time is that of the last operation, so the study measures one operation and
-//! no mean over several.
+//! Gate 0 is latched: its count ends at the first make. Gate 1 is raw: it counts while the contact is open, bounces
+//! included. Gate 1 alone would report the time plus the bounce, so the row "raw gate" adds both values of the same test. A
+//! count is the number of whole clock periods, whose phase is random: its error is 8.2 us rms at 50 kHz and any baud rate.
+//! A bounce is the difference of two counts. The truth holds the time of the last operation only, so the study measures
+//! one operation instead of the mean of several.
 
 use super::error::Pooled;
 use super::figure::{Bar, Figure};

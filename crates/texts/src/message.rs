@@ -86,8 +86,12 @@ impl Args {
         self
     }
 
-    /// Adds the code of `inner` as argument `name`, for which texts show the text of `inner`; adds its arguments too.
-    /// Panics when texts show another family for `name`, or when an argument has another value already.
+    /// Adds argument `name` with the code of `inner` as its value, and all arguments of `inner`. Where a text uses
+    /// `name`, the catalogue shows the text of `inner`.
+    ///
+    /// # Panics
+    /// Panics when the catalogue looks `name` up in another family of codes than that of `inner`, or when both messages
+    /// have an argument of the same name with different values.
     #[must_use]
     pub fn with_inner(mut self, name: &'static str, inner: &Message) -> Self {
         assert_eq!(family(name), Some(inner.family), "family of {name}");

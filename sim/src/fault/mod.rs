@@ -11,7 +11,7 @@
 //! `instrument` has the faults of SCPI instruments, which `scpi/` applies; a new one is a variant there, with its
 //! line in that file's `LIST`.
 //!
-//! Faults combine freely, and one name may appear more than once; `value` describes the form of a value. All
+//! Faults combine freely, and one name may appear more than once; `value.rs` reads what follows the name: probability, duration, window. All
 //! draws come from a random stream of their own, so that adding a fault changes no other draw of the rig.
 //! `sim.toml` lists the faults of the world (mechanism, board, part).
 

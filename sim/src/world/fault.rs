@@ -1,5 +1,6 @@
-//! Faults of machine and parts, by name. A fault acts where its variant is read: mechanism, parts,
-//! sensors, magazine, and the board (`mod.rs`).
+//! Faults of machine and parts, by name. A fault acts where the thing is simulated, in this folder: drives and
+//! air in `mechanism.rs`, handing over of parts in `mechanism/parts.rs`, sensors and buttons in
+//! `mechanism/sensors.rs`, the part itself in `magazine.rs`, the board in `mod.rs`.
 
 use std::path::Path;
 

@@ -1,7 +1,8 @@
-//! The scenario of a seed: a rig, faults of world and line, and the lives of the controller.
+//! The scenario of a seed: a rig, faults of world and line, and the lives of the controller. A life is one run of the
+//! controller program, from its start to its end or kill.
 //!
-//! Every fault has begun and ended [`CEASES_US`] after the start; a fault that still waits for its part is cancelled
-//! then. The lives after that have no faults.
+//! No fault lasts beyond [`CEASES_US`] of rig time: the study then cancels each fault whose part has not come yet. Lives
+//! that start later have no faults.
 
 use crate::dice::Dice;
 use machine::rig::wiring::Wiring;
@@ -15,7 +16,7 @@ pub const DISTURBED_US: u64 = 3_000_000;
 /// Keys of the world that differ from the default: more defects, so that parts go to every bin.
 pub const WORLD: &str = "[defects]\nrate_pct = 25.0\n\n[mechanism]\nfault_hold_ms = 3000.0\n";
 
-/// Faults that happen once, at a part.
+/// Faults that happen once, when the part with the drawn number comes.
 const AT_A_PART: [&str; 10] = [
     "jam_pusher",
     "stuck_clamp",
@@ -30,12 +31,12 @@ const AT_A_PART: [&str; 10] = [
 ];
 /// Faults of safety inputs, at an instant; the rig must drive no motion during them.
 const SAFETY: [&str; 3] = ["door", "estop", "air"];
-/// Faults of replies and requests, each with a probability.
+/// Faults that hit single replies or requests; the scenario draws a probability for each that it uses.
 const OF_A_REPLY: [&str; 8] = [
     "drop", "deaf", "truncate", "late", "flip", "noise", "garble", "delay",
 ];
 
-/// Plan of one life of the controller, that is, of its program from start to end.
+/// Plan of one life of the controller.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Life {
     /// Parts of the lot that the life runs.
@@ -44,7 +45,7 @@ pub struct Life {
     pub attended: bool,
     /// Time from the start of the program to its kill, microseconds; `None` for a life that ends by itself.
     pub killed_after_us: Option<u64>,
-    /// Pause after the life before, microseconds.
+    /// Time from the end of the previous life to the start of this one, microseconds.
     pub pause_us: u64,
 }
 
