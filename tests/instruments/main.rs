@@ -1,19 +1,43 @@
-//! Drives the simulated instruments with pyvisa-py and the drivers of pymeasure; `run` installs them from PyPI.
+//! Drives the simulated instruments with pyvisa-py and the drivers of pymeasure, and servers of other makers with
+//! `relayrig instrument`; `run` installs them from PyPI.
 //!
 //! A test binary of its own, so that nothing else loads the computer beside instruments in real time.
 
 #![cfg(all(feature = "sim", unix))]
 #![allow(clippy::unwrap_used)]
 
-use std::path::Path;
+mod serve;
+
+use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// One test at a time: the first installs, and none loads the computer beside another.
+static TURN: Mutex<()> = Mutex::new(());
+
+fn turn() -> MutexGuard<'static, ()> {
+    TURN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn file(name: &str) -> PathBuf {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    root.join("tests/instruments").join(name)
+}
+
+/// Returns python with what `requirements.txt` names.
+fn python() -> Command {
+    let mut python = Command::new(file("run"));
+    python.arg(Path::new(env!("CARGO_TARGET_TMPDIR")).join("instruments"));
+    python
+}
 
 #[test]
 fn other_programs_drive_the_simulated_instruments() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let done = Command::new(root.join("tests/instruments/run"))
-        .arg(env!("CARGO_BIN_EXE_relayrig"))
-        .arg(Path::new(env!("CARGO_TARGET_TMPDIR")).join("instruments"))
+    let _turn = turn();
+    let done = python()
+        .arg(file("drive.py"))
+        .args([env!("CARGO_BIN_EXE_relayrig"), "sim", "--instruments"])
+        .arg(file("bench.toml"))
         .output()
         .unwrap();
     let said = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
