@@ -98,6 +98,20 @@ enum Phase {
     ClearStatus,
 }
 
+impl Phase {
+    /// Returns the failure of a search: after discarded replies, silence means that none was the expected one, not that
+    /// the instrument is silent.
+    fn explained(self, failure: Failure) -> Failure {
+        match (self, failure) {
+            (
+                Self::Echo { discarded: 1.., .. } | Self::Identity { discarded: 1.., .. },
+                Failure::Timeout { command, .. },
+            ) => Failure::OutOfStep { command },
+            (_, failure) => failure,
+        }
+    }
+}
+
 /// Replies that are discarded in search of an echo.
 const DISCARDED: u8 = 32;
 
@@ -209,6 +223,7 @@ impl Session {
         match mem::replace(&mut self.doing, Doing::Nothing) {
             Doing::Nothing => Move::Done(outcome.map(|_| Vec::new())),
             Doing::Sync { attempt, phase } => {
+                let outcome = outcome.map_err(|failure| phase.explained(failure));
                 let next = outcome.and_then(|raw| self.after(phase, raw.as_ref()));
                 self.synced(attempt, next)
             }

@@ -15,6 +15,8 @@ struct Bench {
     /// Reply to every other query.
     value: Result<&'static str, Failure>,
     sent: Vec<String>,
+    /// False for an instrument that ignores `*ESE`.
+    ese_works: bool,
 }
 
 impl Bench {
@@ -39,6 +41,7 @@ impl Bench {
             identity: IDENTITY,
             value: Ok("1.5"),
             sent: Vec::new(),
+            ese_works: true,
         }
     }
 
@@ -59,6 +62,11 @@ impl Bench {
                     self.write(&bytes);
                     Ok(None)
                 }
+                // Only the next reply is wanted, and each query has one.
+                Move::Ask(question) if question.bytes.is_empty() => Err(Failure::Timeout {
+                    command: question.command,
+                    limit: question.limit,
+                }),
                 Move::Ask(question) => {
                     self.write(&question.bytes);
                     self.reply(&question.command).map(Some)
@@ -71,7 +79,9 @@ impl Bench {
 
     fn write(&mut self, bytes: &[u8]) {
         let text = String::from_utf8_lossy(bytes).trim().to_owned();
-        if let Some(number) = text.strip_prefix("*ESE ") {
+        if let Some(number) = text.strip_prefix("*ESE ")
+            && self.ese_works
+        {
             self.ese = number.to_owned();
         }
         self.sent.push(text);
@@ -227,4 +237,19 @@ fn codes_of_failures_are_unique() {
     codes.sort_unstable();
     codes.dedup();
     assert_eq!(codes.len(), Failure::CODES.len());
+}
+
+#[test]
+fn a_reply_without_echo_or_identity_is_no_silence() {
+    for (command, identity, ese_works) in
+        [("*IDN?", "ACME Counter", true), ("*ESE?", IDENTITY, false)]
+    {
+        let mut bench = Bench::new();
+        (bench.identity, bench.ese_works) = (identity, ese_works);
+        let Err(Failure::Down { last, .. }) = bench.run() else {
+            panic!("in step without {command}");
+        };
+        let command = command.to_owned();
+        assert_eq!(*last, Failure::OutOfStep { command });
+    }
 }
