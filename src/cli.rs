@@ -58,8 +58,8 @@ pub struct Cli {
     /// /etc/relayrig of an installed rig where the working folder has neither config nor relayrig.db]
     #[arg(long, global = true, value_name = "DIR")]
     pub config: Option<PathBuf>,
-    /// History file of one rig, real or simulated [default: relayrig.db; relayrig-demo.db for demo;
-    /// /var/lib/relayrig/relayrig.db with --config /etc/relayrig by default]
+    /// History file of one rig, real or simulated [default: relayrig.db; relayrig-demo.db for demo, relayrig-story.db
+    /// for story; /var/lib/relayrig/relayrig.db with --config /etc/relayrig by default]
     #[arg(long, global = true, value_name = "FILE")]
     pub db: Option<PathBuf>,
     /// Log on stderr: off, error, warn, info, debug, trace, or a filter per module (warn,app=debug); the word json, alone
@@ -129,6 +129,8 @@ impl Command {
         match self {
             #[cfg(feature = "sim")]
             Self::Demo(_) => Some("relayrig-demo.db"),
+            #[cfg(feature = "sim")]
+            Self::Story(_) => Some("relayrig-story.db"),
             _ => None,
         }
     }
