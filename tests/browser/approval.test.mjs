@@ -75,7 +75,17 @@ test("a second engineer approves what the first one saved", async () => {
   await saver.selectOption("#r_name", "customer-a");
   await shown(saver, "#r_approval", WORDS["r-waits"].en + " " + rig.who("engineer"));
   await looks(saver, "recipes-waiting-1280");
+  let letGo;
+  const late = new Promise((resolve) => { letGo = resolve; });
+  await saver.route("**/api/recipes/show*", (route) => late.then(() => route.continue()), { times: 1 });
+  const read = saver.waitForResponse("**/api/recipes/show*");
+  await saver.click("#language");
   await saver.click("#r_approve", { force: true });
+  await shown(saver, "#r_answer", WORDS["r-signed"].zh);
+  // The answer outlasts a read that began before the order, and follows the language.
+  letGo();
+  await (await read).finished();
+  await saver.click("#language");
   await shown(saver, "#r_answer", WORDS["r-signed"].en);
   await leave(saver);
   const second = await recipes("chen");

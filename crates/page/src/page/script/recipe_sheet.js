@@ -6,7 +6,8 @@ let recipe = null, revisions = [], drawnRecipe = "";
 // `typed`: texts typed into the newest revision, by path of the key. `refusedField`: the last refusal of a value.
 // `recipeMessage` returns the last message in the present language.
 const typed = new Map();
-let refusedField = null, recipeMessage = () => ["", false];
+const NO_MESSAGE = () => ["", false];
+let refusedField = null, recipeMessage = NO_MESSAGE;
 
 const mayRevise = () => me !== null && me.role === "engineer" && recipe !== null && recipe.number === recipe.newest;
 const recipeSection = (path) => (path.startsWith("test.strategy.") ? "strategy" : path.includes(".") ? path.split(".")[0] : "about");

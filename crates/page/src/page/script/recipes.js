@@ -53,20 +53,25 @@ function showRevisions() {
 
 // --- reading and saving ---
 
+// Returns the message of a read that failed, which the next read replaces.
+const failedRead = (error) => Object.assign(() => [error.message, true], {ofRead: true});
+
 async function readRecipe(revision = "") {
   const isNewest = newest(readRecipe), name = at("r_name").value;
   typed.clear();
-  let found = null, lines = [], message = () => ["", false];
+  let found = null, lines = [], message = NO_MESSAGE;
   try {
     [found, lines] = await Promise.all([
       ask("/api/recipes/show" + query({name, revision})).then((it) => it.json()),
       // Without a history there are no revisions yet.
       ask("/api/recipes/revisions" + query({name})).then((it) => it.json()).catch(() => [])]);
   } catch (error) {
-    message = () => [error.message, true];
+    message = failedRead(error);
   }
   if (!isNewest()) return;
-  [recipe, revisions, refusedField, drawnRecipe, recipeMessage] = [found, lines, null, "", message];
+  // The answer to an order stays when a change of language or page reads the same text again.
+  if (found === null || found.hash !== recipe?.hash || recipeMessage.ofRead) [refusedField, recipeMessage] = [null, message];
+  [recipe, revisions, drawnRecipe] = [found, lines, ""];
   showRecipe();
 }
 
@@ -79,7 +84,7 @@ async function enterRecipes(chosen = "") {
   try {
     all = await (await ask("/api/recipes")).json();
   } catch (error) {
-    recipeMessage = () => [error.message, true];
+    recipeMessage = failedRead(error);
     return showRecipe();
   }
   fillSelect(at("r_name"), all.map((it) => [it.name, it.name + (it.trouble ? " ▲" : it.approved ? "" : bracketed(word("r-not_approved")))]));
@@ -148,12 +153,14 @@ at("r_new").addEventListener("submit", async (event) => {
   await revise(at("r_new_reason"), {save_as: at("r_new_name").value.trim()}, (answer) => word("r-created") + " " + answer.name);
 });
 at("r_approve").addEventListener("click", async () => {
-  const {title} = at("r_approve");
-  recipeMessage = title ? () => [title, false]
+  recipeMessage = at("r_approve").title ? () => [word("r-signed"), false]
     : await change("approve", {name: recipe.name, hash: recipe.hash}, (answer) => word(answer.approval?.approved === false ? "r-waits" : "r-approved") + " " + me.name);
   showRecipe();
 });
-at("r_discard").addEventListener("click", () => readRecipe());
+at("r_discard").addEventListener("click", () => {
+  [refusedField, recipeMessage] = [null, NO_MESSAGE];
+  return readRecipe();
+});
 at("r_name").addEventListener("change", () => readRecipe());
 at("r_revision").addEventListener("change", () => readRecipe(at("r_revision").value));
 
