@@ -14,6 +14,26 @@
 //! | [`service`] | one lot after another, ordered at a page |
 //! | [`calibration`], [`gauge_study`] | runs that measure the rig itself |
 //! | `story` | scripted faults and operator orders on the simulated rig |
+//!
+//! ```no_run
+//! use app::lot::Purpose;
+//! use app::order::{Files, LotOrder};
+//! use app::source::RigSource;
+//! use config::Folder;
+//!
+//! let files = Files { config: Folder::built_in(), db: "relayrig.db".into() };
+//! let order = LotOrder {
+//!     lot: "A".to_owned(),
+//!     recipe: "jzc-22f-012".to_owned(),
+//!     count: Some(20),
+//!     retest: None,
+//! };
+//! // The rig at the serial ports of rig.toml.
+//! let rig = RigSource::Serial(Vec::new());
+//! let exit = app::run_lot(&files, &rig, &order, Purpose::Lot, &mut ())?;
+//! println!("{exit:?}");
+//! # Ok::<(), anyhow::Error>(())
+//! ```
 
 pub mod admission;
 pub mod alarm_order;

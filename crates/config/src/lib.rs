@@ -20,6 +20,16 @@
 //!
 //! The files are those of a [`Folder`]: a directory, or files in memory that begin as the copy of `config/` in the program.
 //! [`init()`] writes that copy to a directory. The controller does not read `sim.toml`, which describes the simulated world.
+//!
+//! ```
+//! use config::{Folder, Plant, load_recipe};
+//! let folder = Folder::built_in();
+//! let plant = Plant::load(&folder)?;
+//! assert_eq!(plant.wiring.lines.len(), 2);
+//! let recipe = load_recipe(&folder, "jzc-22f-012")?;
+//! assert_eq!(recipe.name, "jzc-22f-012");
+//! # Ok::<(), config::ConfigError>(())
+//! ```
 
 mod built_in;
 mod card;

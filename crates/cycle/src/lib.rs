@@ -8,6 +8,16 @@
 //! One task owns the process image, the outputs, the guard and the station; each line is a task of its own with a queue
 //! for one request ([`traffic`]). A turn begins when an answer arrives, or at the instant that the last step requested.
 //! Only the station knows which kind of device is under test.
+//!
+//! The cycle counts how late this computer wakes it, so that a missed reply is not blamed on a cable:
+//!
+//! ```
+//! use cycle::Lateness;
+//! use units::{RigTime, Span};
+//! let mut lateness = Lateness::default();
+//! lateness.count(RigTime(10_000), RigTime(10_400));
+//! assert_eq!(lateness.recent(), Span(400));
+//! ```
 
 mod answers;
 mod commission;

@@ -14,6 +14,20 @@
 //!   `samples`, `curves` and `alarms` show local time and names instead of row numbers.
 //!
 //! The history makes no decisions, computes no statistics (crate `quality` does) and has no clock.
+//!
+//! ```no_run
+//! use history::{Archive, Filter};
+//! let archive = Archive::open("relayrig.db".as_ref())?;
+//! let failed = Filter {
+//!     lot: Some("A".to_owned()),
+//!     verdict: Some("fail".to_owned()),
+//!     ..Filter::default()
+//! };
+//! for part in archive.query(&failed)? {
+//!     println!("{} went to bin {}", part.seq, part.bin);
+//! }
+//! # Ok::<(), history::HistoryError>(())
+//! ```
 
 pub mod inquiry;
 pub mod report;

@@ -14,6 +14,24 @@
 //! - [`station`]: runs the whole rig: its state machine (PackML), lot, orders, alarms.
 //! - [`view`]: what a screen shows.
 //! - [`form`]: keys that a configuration file may hold.
+//!
+//! A result passes only where its uncertainty keeps it inside the limit:
+//!
+//! ```
+//! use machine::gauge::budget::{Budget, Reading, rectangular};
+//! use machine::gauge::judgement::{Judgement, Limit, Rule, judge};
+//! use units::Unit;
+//!
+//! let limit = Limit { unit: Unit::Volt, low: None, high: Some(9.0) };
+//! let read = |value| Reading {
+//!     value,
+//!     unit: Unit::Volt,
+//!     budget: Budget::default().with("ramp", rectangular(0.02)),
+//! };
+//! assert_eq!(judge(&read(8.90), &limit, Rule::GuardBand), Judgement::Pass);
+//! // U is 0.023 V: this value is inside the limit, but not by U.
+//! assert!(matches!(judge(&read(8.99), &limit, Rule::GuardBand), Judgement::Conditional(_)));
+//! ```
 
 #[macro_use]
 mod named;

@@ -27,6 +27,15 @@
 //! | `GET /metrics` | Prometheus text |
 //!
 //! Reading needs no login; orders and revisions do (`sessions.rs`). A route refuses every member that it does not take.
+//!
+//! Without a certificate the page listens on this computer alone:
+//!
+//! ```
+//! use page::{ListenError, Listener};
+//! use std::net::SocketAddr;
+//! let refused = Listener::open(SocketAddr::from(([0, 0, 0, 0], 8080)), None);
+//! assert!(matches!(refused, Err(ListenError::InTheClear(_))));
+//! ```
 
 pub mod access;
 mod answers;

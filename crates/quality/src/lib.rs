@@ -9,6 +9,16 @@
 //! - [`summary`]: mean, spread and capability of one parameter, as `history stats` prints them.
 //! - [`tally`]: mean, spread and histogram of values that arrive one at a time.
 //! - [`gauge_rr`], [`average_range`]: how much of the observed variation the gauge causes.
+//!
+//! ```
+//! use quality::{Capability, Limits, Spread};
+//! let operate_v = Spread::of(&[7.8, 7.9, 7.7, 7.8]);
+//! let limits = Limits { low: None, high: Some(9.0) };
+//! let sd = operate_v.sd();
+//! let capability = Capability::of(limits, operate_v.n(), operate_v.mean(), sd, sd);
+//! // The mean is 1.2 V below the limit, and three standard deviations are 0.245 V.
+//! assert!(capability.ppk.is_some_and(|it| (it.value - 4.9).abs() < 0.01));
+//! ```
 
 pub mod average_range;
 pub mod capability;

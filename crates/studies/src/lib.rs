@@ -15,6 +15,11 @@
 //! integrates the relay model of the simulated rig.
 //!
 //! [`figures`] runs a plan of studies and benchmarks and writes their figures as one document.
+//!
+//! ```
+//! // Without --lots and --parts, the study of accuracy runs 10 lots of 500 parts.
+//! assert_eq!(studies::Study::Accuracy.usual(), Some((10, 500)));
+//! ```
 
 mod bins;
 mod chart;

@@ -2,6 +2,12 @@
 //!
 //! Arithmetic stays within one unit; the only mixed operation is Ohm's law, [`Volt::over`]. Rig time is in whole
 //! microseconds: [`RigTime`] is an instant, [`Span`] a duration.
+//!
+//! ```
+//! use units::{Ampere, Ohm, RigTime, Span, Volt};
+//! assert_eq!(Volt(6.0).over(Ampere(0.015)), Ohm(400.0));
+//! assert_eq!((RigTime(1_500) + Span::ms(2)).since(RigTime(500)), Span(3_000));
+//! ```
 
 use serde::{Deserialize, Serialize, Serializer};
 use std::fmt;
