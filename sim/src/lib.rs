@@ -6,13 +6,13 @@
 //! | module | content, in reading order |
 //! |---|---|
 //! | [`terminal`] | screw terminals: the boundary between modules and world |
-//! | [`dcon`], [`module`], [`line`] | the device side of the protocol, one file per family |
+//! | [`dcon`], [`module`], [`mod@line`] | the device side of the protocol, one file per family |
 //! | [`world`], [`config`], [`truth`] | interface board, mechanism and specimens, with their true values |
 //! | [`rig`] | lines, modules and world together, from event to event |
 //! | [`fault`] | faults between a module and its host |
 //! | [`journal`] | record of the outputs, for tests of safety |
 //! | [`wire`], [`pace`], [`pty`] | lines as streams in virtual time, and as pseudo-terminals in real time |
-//! | [`bench`] | modules alone, with fixed signals |
+//! | [`mod@bench`] | modules alone, with fixed signals |
 //! | [`scpi`] | SCPI instruments, their links, and what they measure |
 //! | [`fingerprint`] | a line whose values identify their module and channel |
 //!

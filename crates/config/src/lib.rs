@@ -2,7 +2,7 @@
 //!
 //! | file | holds | becomes |
 //! |---|---|---|
-//! | `rig.toml` | lines, modules, points, mechanism, references | [`Wiring`], the settings of `gauge` |
+//! | `rig.toml` | lines, modules, points, mechanism, references | [`Wiring`](machine::rig::wiring::Wiring), the settings of `gauge` |
 //! | `scene.toml` | the bodies around the nest | `GuardSettings` |
 //! | `golden.toml` (named in `rig.toml`) | reference parts | `ReferenceSet` |
 //! | `card.toml` | what the plant states for the process card | `CardSettings` |

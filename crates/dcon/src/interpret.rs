@@ -1,7 +1,7 @@
 //! Interprets the traffic of a line, for traces and for commands typed by hand: which commands a family of modules has,
 //! which requests must never be sent, and what a request and its reply mean together.
 //!
-//! A request may fit several commands ([`decode_request`]). Its reply shows which of them the host meant: [`interpret`]
+//! A request may fit several commands ([`decode_request()`]). Its reply shows which of them the host meant: [`interpret`]
 //! returns those that the reply fits.
 
 use super::frame::{self, hex_digit};

@@ -20,7 +20,7 @@ pub fn unit(parameter: Parameter) -> &'static str {
     }
 }
 
-/// Returns the error of a reading in [`unit`].
+/// Returns the error of a reading in [`unit()`].
 pub fn error(parameter: Parameter, reading: &Reading) -> f64 {
     let difference = reading.value - reading.truth;
     match parameter.facts().definition.unit {

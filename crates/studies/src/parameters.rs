@@ -45,7 +45,7 @@ pub fn accuracy(order: &Order) -> anyhow::Result<Report> {
     study("accuracy", order, row, share, chart)
 }
 
-/// Returns the greatest accepted rms error in [`unit`]; that of a threshold is a share of the nominal voltage.
+/// Returns the greatest accepted rms error in [`unit()`]; that of a threshold is a share of the nominal voltage.
 fn allowed(parameter: Parameter, nominal_v: f64) -> f64 {
     let allowed = parameter.facts().allowed_rms;
     match parameter.facts().definition.unit {

@@ -3,12 +3,12 @@
 //! | module | content, in reading order |
 //! |---|---|
 //! | [`message`], [`status`] | program messages, headers, numbers, blocks; registers and error queue |
-//! | [`circuit`], [`line`], [`sources`] | terminals with what instruments connect to them |
+//! | [`circuit`], [`mod@line`], [`sources`] | terminals with what instruments connect to them |
 //! | [`passive`], [`relay`] | what the instruments measure |
 //! | [`instrument`] | the instruments |
 //! | [`device`] | an instrument behind its message queue |
 //! | [`adapter`], [`port`] | GPIB adapter; bytes in and out of a link, with its faults |
-//! | [`bench`], [`file`] | instruments and circuit together, from a file |
+//! | [`mod@bench`], [`mod@file`] | instruments and circuit together, from a file |
 //! | [`serve`] | sockets and pseudo-terminals in real time, streams in virtual time |
 
 pub mod adapter;

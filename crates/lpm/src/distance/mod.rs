@@ -2,7 +2,7 @@
 //!
 //! **Proof.** For a direction `n` (any non-zero vector), the plane normal to `n` separates the pieces by at least
 //! `(n·c - extent_a(n) - extent_b(-n)) / |n|`, where `c` is the vector between their centres. [`separation`] evaluates
-//! exactly this and subtracts a forward error bound ([`NOISE`](super::piece::NOISE)). Every *clear* of this module
+//! exactly this and subtracts a forward error bound ([`NOISE`]). Every *clear* of this module
 //! follows from planes evaluated in this way, and not from iteration counts, convergence or a simplex. The searches
 //! below only propose planes. A search that fails proposes a poor plane, whose bound is low, and that means blocked.
 //!

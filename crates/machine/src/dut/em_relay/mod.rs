@@ -13,7 +13,7 @@
 //! | which points a rig must have, and how acts and readings name them | [`points`], [`act`], [`readings`] |
 //! | how often coil and contacts are read | [`sampling`] |
 //! | how accurate the instruments are | [`calibration`], [`settings`] |
-//! | how the factors are found: board references, reference parts | [`reference`], [`reference_part`] |
+//! | how the factors are found: board references, reference parts | [`mod@reference`], [`reference_part`] |
 //! | coil resistance | [`coil`] |
 //! | operate and release voltage | [`threshold`], [`overshoot`], [`supply`] |
 //! | voltages of any coil in any supply range | [`scale`] |

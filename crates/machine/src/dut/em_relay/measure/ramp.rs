@@ -15,8 +15,8 @@ use units::{Celsius, Volt};
 
 // Voltages are those of a 12 V coil in the range of factor 1; see `scale`.
 
-/// Step of the level between ARM and ramp, because the fine ramp alone takes 33 ms to move by [`WINDOW`] and open the
-/// window. The 5 mV that this step leaves cover the comparator's tolerance. Flux and armature settle after the step.
+/// Step of the level between ARM and ramp, because the fine ramp alone takes 33 ms to move by
+/// [`WINDOW`](crate::dut::em_relay::threshold::WINDOW) and open the window. The 5 mV that this step leaves cover the comparator's tolerance. Flux and armature settle after the step.
 pub(super) const JUMP: Volt = Volt(0.045);
 /// Distance of a falling ramp before the interval that it searches: the flux of a sealed armature follows with a delay
 /// of 6 to 9 ms and still decays from the seal.
