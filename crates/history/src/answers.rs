@@ -1,7 +1,7 @@
 //! Answers of people to the prompts of a lot, from the audit of orders.
 
 use super::error::Result;
-use super::{Archive, Filter, Moment};
+use super::{Archive, Filter, Moment, OrderChoice};
 
 /// An answer to a prompt.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -21,7 +21,17 @@ pub struct PromptAnswer {
 impl Archive {
     /// Returns the answers in order of time; lot, run, recipe and time span of the filter select them.
     pub fn answers(&self, filter: &Filter) -> Result<Vec<PromptAnswer>> {
-        let orders = self.orders(filter, None, Some("answer"))?.into_iter();
+        // Limit and offset of the filter count parts.
+        let all = Filter {
+            limit: None,
+            offset: None,
+            ..filter.clone()
+        };
+        let answers = OrderChoice {
+            order: Some("answer".to_owned()),
+            ..OrderChoice::default()
+        };
+        let orders = self.orders(&all, &answers)?.into_iter();
         let taken = orders.filter(|it| it.refused.is_none());
         let member = |it: &serde_json::Value| it.as_str().unwrap_or_default().to_owned();
         Ok(taken

@@ -92,7 +92,7 @@ pub use lot_name::{LOT_NAME, is_lot_name};
 pub use lots::{LotSummary, Yield};
 pub use moment::{Moment, MomentError};
 pub use open::{APPLICATION_ID, SCHEMA, is_in_use, with_end};
-pub use orders::{OrderEntry, OrderRecord, RevisionEntry};
+pub use orders::{OrderChoice, OrderEntry, OrderRecord, RevisionEntry};
 pub use owner::check_rig;
 pub use part::{Measurement, Part, Sample};
 pub use record::{

@@ -52,6 +52,22 @@ pub struct OrderEntry {
     pub refused_zh: Option<String>,
 }
 
+/// Which orders of the audit to read, besides the filter.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct OrderChoice {
+    /// Name of the person; all people without it.
+    pub who: Option<String>,
+    /// Word of the order; all orders without it.
+    pub order: Option<String>,
+    /// True leaves out [`Self::OF_PEOPLE`].
+    pub without_people: bool,
+}
+
+impl OrderChoice {
+    /// Words of the entries about people: changes of people and passwords, refused logins.
+    pub const OF_PEOPLE: [&'static str; 2] = ["people", "login"];
+}
+
 pub(super) fn insert(tx: &Transaction<'_>, row_ids: &RowIds, it: &OrderRecord) -> Result<()> {
     let run = it.lot.as_deref().map(|lot| row_ids.run(lot)).transpose()?;
     let why = it.refused.as_ref();
@@ -135,16 +151,10 @@ impl Archive {
             .doing("reading revisions")
     }
 
-    /// Returns orders in order of time. `who` selects a person, `order` a word; of the filter, lot, run, recipe and
-    /// time span count.
-    pub fn orders(
-        &self,
-        filter: &Filter,
-        who: Option<&str>,
-        order: Option<&str>,
-    ) -> Result<Vec<OrderEntry>> {
+    /// Returns orders in order of time. Of the filter, lot, run, recipe, time span, limit and offset count.
+    pub fn orders(&self, filter: &Filter, choice: &OrderChoice) -> Result<Vec<OrderEntry>> {
         filter
-            .orders(who, order)
+            .orders(choice)
             .rows(&self.connection, |row| {
                 Ok(OrderEntry {
                     at: Moment(row.get(0)?),

@@ -320,9 +320,11 @@ fn of_history() -> Vec<Route> {
         ),
         Route::get(
             "/api/history/orders",
-            "The audit of orders: person, order and outcome, in order of time.",
+            "The audit of orders: person, order and outcome, in order of time. Logins and changes of people are for \
+             engineers.",
             history::orders,
-        ),
+        )
+        .refuses(&[401, 403]),
         Route::get(
             "/api/history/report/lot",
             "Report of a lot for A4.",

@@ -13,18 +13,21 @@ pub(super) mod paper;
 mod readers;
 pub(super) mod rejudge;
 
+use super::access::Role;
 use super::answers::{As, Stream};
 use super::asked::{Asked, members as asked_members};
 use super::error::{ApiError, JsonResult, blocking};
 use super::router::App;
+use super::sessions::require_role;
 use axum::Json;
 use axum::extract::State;
+use axum::http::HeaderMap;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::IntoResponse;
 use history::inquiry::charts::{Charted, charts};
 use history::inquiry::figures::{self, Classes};
 use history::inquiry::{InquiryError, checks};
-use history::{Alarm, Archive, Filter, LotSummary, Moment, OrderEntry, Part, Yield};
+use history::{Alarm, Archive, Filter, LotSummary, Moment, OrderChoice, OrderEntry, Part, Yield};
 use members::{Charting, OfParts, OneParameter, Paging, Runs, TimeSpan, ValueRange, filter};
 use quality::Summary;
 use quality::rules::Rules;
@@ -191,14 +194,25 @@ pub(super) async fn alarms(
     app.readers.read(read).await.map(Json)
 }
 
-/// `GET /api/history/orders`.
+/// `GET /api/history/orders`. Logins and changes of people are for engineers.
 pub(super) async fn orders(
     State(app): App,
+    headers: HeaderMap,
     Asked((asked, AuditQuery { who, order })): Asked<((Runs, TimeSpan, Paging), AuditQuery)>,
 ) -> JsonResult<Vec<OrderEntry>> {
-    let read = move |archive: &Archive| {
-        Ok(archive.orders(&filter(asked), who.as_deref(), order.as_deref())?)
+    let reader = app.shared.sessions.who(&headers).await?;
+    let of_people = |order: &str| OrderChoice::OF_PEOPLE.contains(&order);
+    if order.as_deref().is_some_and(of_people) {
+        let reader = reader.as_ref().ok_or(ApiError::NotLoggedIn)?;
+        require_role(reader, Role::Engineer)?;
+    }
+    let is_engineer = reader.is_some_and(|it| it.role >= Role::Engineer);
+    let choice = OrderChoice {
+        who,
+        order,
+        without_people: !is_engineer,
     };
+    let read = move |archive: &Archive| Ok(archive.orders(&filter(asked), &choice)?);
     app.readers.read(read).await.map(Json)
 }
 

@@ -3,7 +3,7 @@
 use super::filter::{RunArgs, SpanArgs};
 use crate::cli::output::{Column, FormatArgs, Output, text};
 use clap::Args;
-use history::{Archive, OrderEntry};
+use history::{Archive, OrderChoice, OrderEntry};
 
 #[derive(Debug, Args)]
 pub(super) struct OrdersArgs {
@@ -37,7 +37,14 @@ pub(super) const COLUMNS: [Column<OrderEntry>; 8] = [
 
 pub(super) fn run(archive: &Archive, args: &OrdersArgs) -> anyhow::Result<()> {
     let filter = args.span.within(args.runs.filter());
-    let mut orders = archive.orders(&filter, args.who.as_deref(), args.order.as_deref())?;
+    let mut orders = archive.orders(
+        &filter,
+        &OrderChoice {
+            who: args.who.clone(),
+            order: args.order.clone(),
+            without_people: false,
+        },
+    )?;
     orders.retain(|it| !args.refused || it.refused.is_some());
     Output::stdout().list(args.format.format(), &orders, &COLUMNS)
 }

@@ -3,7 +3,7 @@
 use super::{lots, orders};
 use crate::cli::output::{Column, Format, FormatArgs, Output, bins, figure, text};
 use clap::Args;
-use history::{Archive, Filter, LotSummary, Measurement, Moment, Part, Sample};
+use history::{Archive, Filter, LotSummary, Measurement, Moment, OrderChoice, Part, Sample};
 use machine::dut;
 use machine::instrument::curve::Curve;
 use std::io::{self, Write};
@@ -66,7 +66,7 @@ pub(super) fn run(archive: &Archive, args: &ShowArgs) -> anyhow::Result<()> {
                         if all.is_empty() { "none" } else { &all }
                     )?;
                 }
-                let ordered = archive.orders(&filter, None, None)?;
+                let ordered = archive.orders(&filter, &OrderChoice::default())?;
                 writeln!(out, "{} orders", ordered.len())?;
                 out.table(&ordered, &orders::COLUMNS)?;
             }

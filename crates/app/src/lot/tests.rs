@@ -6,7 +6,7 @@ use super::*;
 use crate::order::LotOrder;
 use crate::source::Simulated;
 use config::{Folder, Plant, load_recipe};
-use history::{Archive, Filter, LotState};
+use history::{Archive, Filter, LotState, OrderChoice};
 use machine::view::{By, Order, OrderRequest, View};
 use rusqlite::Connection;
 use serde_json::{Value, json};
@@ -172,7 +172,13 @@ fn the_end_of_a_run_leaves_no_order_unanswered() {
     let archive = Archive::open(&test.db).unwrap();
     for word in ["jog", "lamp_test"] {
         let recorded = archive
-            .orders(&Filter::default(), None, Some(word))
+            .orders(
+                &Filter::default(),
+                &OrderChoice {
+                    order: Some(word.to_owned()),
+                    ..OrderChoice::default()
+                },
+            )
             .unwrap();
         assert!(
             recorded.len() == 1 && recorded[0].refused.is_some(),

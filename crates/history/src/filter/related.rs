@@ -1,6 +1,7 @@
 //! SQL for the runs, alarms and orders that a filter selects.
 
 use super::{Filter, Select};
+use crate::OrderChoice;
 
 impl Filter {
     /// Selects the runs of the filter.
@@ -40,7 +41,7 @@ impl Filter {
     }
 
     /// Selects the orders of the filter, with their lot and run, in order of time.
-    pub(in super::super) fn orders(&self, who: Option<&str>, order: Option<&str>) -> Select {
+    pub(in super::super) fn orders(&self, choice: &OrderChoice) -> Select {
         let mut select = Select::new(
             "SELECT ordered.at_us, lot.name, run.number, ordered.who, ordered.role, ordered.origin, \
              ordered.what, ordered.refused, ordered.refusal FROM ordered LEFT JOIN run ON run.id = ordered.run_id \
@@ -48,13 +49,19 @@ impl Filter {
         );
         self.run_conditions(&mut select, "ordered");
         self.span(&mut select, "ordered.at_us");
-        if let Some(who) = who {
-            select.add(" AND ordered.who = ?", who.to_owned());
+        if let Some(who) = &choice.who {
+            select.add(" AND ordered.who = ?", who.clone());
         }
-        if let Some(order) = order {
-            select.add(" AND ordered.what ->> 'order' = ?", order.to_owned());
+        if let Some(order) = &choice.order {
+            select.add(" AND ordered.what ->> 'order' = ?", order.clone());
+        }
+        if choice.without_people {
+            for order in OrderChoice::OF_PEOPLE {
+                select.add(" AND ordered.what ->> 'order' IS NOT ?", order.to_owned());
+            }
         }
         select.sql.push_str(" ORDER BY ordered.id");
+        self.page(&mut select);
         select
     }
 }

@@ -246,7 +246,9 @@ fn an_order_keeps_person_origin_content_and_refusal() {
     ];
     store.record(&rows).unwrap();
     let archive = file.archive();
-    let all = archive.orders(&Filter::default(), None, None).unwrap();
+    let all = archive
+        .orders(&Filter::default(), &OrderChoice::default())
+        .unwrap();
     assert_eq!(all.len(), 3);
     assert_eq!(
         (all[0].run, all[0].refused.as_deref()),
@@ -260,19 +262,17 @@ fn an_order_keeps_person_origin_content_and_refusal() {
         lot: Some("A".into()),
         ..Filter::default()
     };
-    assert_eq!(archive.orders(&late, Some("li'na"), None).unwrap().len(), 1);
-    assert!(
-        archive
-            .orders(&late, None, Some("login"))
-            .unwrap()
-            .is_empty()
-    );
-    assert!(
-        archive
-            .orders(&late, Some("somebody else"), None)
-            .unwrap()
-            .is_empty()
-    );
+    let found = |who: Option<&str>, order: Option<&str>| {
+        let choice = OrderChoice {
+            who: who.map(str::to_owned),
+            order: order.map(str::to_owned),
+            without_people: false,
+        };
+        archive.orders(&late, &choice).unwrap().len()
+    };
+    assert_eq!(found(Some("li'na"), None), 1);
+    assert_eq!(found(None, Some("login")), 0);
+    assert_eq!(found(Some("somebody else"), None), 0);
 }
 
 fn change(code: Option<&str>, change: AlarmChange) -> Row {

@@ -1,7 +1,7 @@
 //! Tests of people: set-up of the first engineer, changes by an engineer, one's own password, the audit of all.
 
 use super::*;
-use ::history::{Archive, Filter};
+use ::history::{Archive, Filter, OrderChoice, OrderRecord, Row, Store};
 use axum::http::header::SET_COOKIE;
 use serde_json::{Value, json};
 
@@ -24,10 +24,13 @@ impl Fixture {
         self.post("/api/login", None, body).await
     }
 
+    async fn get_as(&self, token: &str, path: &str) -> Answer {
+        let request = Request::get(path).header("authorization", format!("Bearer {token}"));
+        self.ask(request.body(Body::empty()).unwrap()).await
+    }
+
     async fn people(&self, token: &str) -> Value {
-        let request =
-            Request::get("/api/people").header("authorization", format!("Bearer {token}"));
-        let answer = self.ask(request.body(Body::empty()).unwrap()).await;
+        let answer = self.get_as(token, "/api/people").await;
         assert_eq!(answer.status, 200, "{}", answer.text());
         answer.json()
     }
@@ -35,7 +38,9 @@ impl Fixture {
     /// Returns the audit as lines: who, what, refusal.
     fn lines(&self) -> Vec<String> {
         let archive = Archive::open(&self.db).unwrap();
-        let orders = archive.orders(&Filter::default(), None, None).unwrap();
+        let orders = archive
+            .orders(&Filter::default(), &OrderChoice::default())
+            .unwrap();
         let line = |it: ::history::OrderEntry| {
             let refused = it.refused.unwrap_or_default();
             format!("{} {} {} {refused}", it.who, it.role, it.what)
@@ -279,4 +284,42 @@ async fn a_password_typed_as_user_name_reaches_no_file() {
             );
         }
     }
+}
+
+#[tokio::test]
+async fn logins_and_people_are_for_engineers_alone() {
+    let fixture = Fixture::new();
+    let engineer = fixture.session(Role::Engineer);
+    let maintainer = fixture.session(Role::Maintainer);
+    let add = json!({"change": "add", "name": "sun", "role": "operator", "password": "first-one"});
+    fixture.change_person(&engineer, add).await;
+    fixture.log_in("sun", "wrong-one").await.refused(401);
+    let start = OrderRecord {
+        what: r#"{"order":"start"}"#.into(),
+        ..OrderRecord::default()
+    };
+    let mut store = Store::open(&fixture.db).unwrap();
+    store.record(&[Row::Order(start)]).unwrap();
+    let words = |answer: Answer| -> Vec<String> {
+        let all = answer.json();
+        let all = all.as_array().unwrap().iter();
+        all.map(|it| it["what"]["order"].as_str().unwrap().to_owned())
+            .collect()
+    };
+    const ALL: &str = "/api/history/orders";
+    let (mine, others) = (
+        words(fixture.get_as(&engineer, ALL).await),
+        words(fixture.get_as(&maintainer, ALL).await),
+    );
+    assert_eq!(mine, ["people", "login", "start"]);
+    assert_eq!(others, ["start"]);
+    assert_eq!(others, words(fixture.get(ALL).await));
+    let newest = fixture
+        .get_as(&engineer, "/api/history/orders?offset=1&limit=1")
+        .await;
+    assert_eq!(words(newest), ["login"]);
+    let logins = "/api/history/orders?order=login";
+    fixture.get(logins).await.refused(401);
+    fixture.get_as(&maintainer, logins).await.refused(403);
+    assert_eq!(words(fixture.get_as(&engineer, logins).await), ["login"]);
 }

@@ -1,7 +1,7 @@
 //! Tests of recipes over HTTP: reading, revising, and the refusals of both.
 
 use super::*;
-use ::history::{Archive, Filter, OrderEntry};
+use ::history::{Archive, Filter, OrderChoice, OrderEntry};
 use serde_json::{Value, json};
 
 impl Fixture {
@@ -37,7 +37,9 @@ impl Fixture {
 
     fn audit(&self) -> Vec<OrderEntry> {
         let archive = Archive::open(&self.db).unwrap();
-        archive.orders(&Filter::default(), None, None).unwrap()
+        archive
+            .orders(&Filter::default(), &OrderChoice::default())
+            .unwrap()
     }
 }
 
