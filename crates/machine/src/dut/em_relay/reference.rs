@@ -52,10 +52,12 @@ const SCANNED: [AnalogIn; 6] = [
 ];
 /// Scans per level: their mean lowers the uncertainty of 2.8 mV of one reading to 0.8 mV.
 const SCANS: usize = 12;
-/// Scans along the fine ramp, and the pause between two of them as a share of a round of conversions: a reading is up
-/// to one round old, and at this share the ages spread evenly over the ramp and do not tilt it.
+/// Number of scans along the fine ramp.
 const RAMP_SCANS: usize = 56;
-const RAMP_ROUND: f64 = 0.6;
+/// Time from one of these scans to the next, as a share of a round of conversions, however long the replies take. A
+/// reading is up to one round old; at this share the ages spread evenly over the ramp and do not tilt it, while scans
+/// at the pace of the rounds would drift through them.
+const RAMP_ROUND: f64 = 0.72;
 /// Longest time until the sources have fallen to zero and the relays of the range have switched.
 const SWITCHES: Span = Span::ms(4000);
 /// Number of drops read per polarity.
@@ -142,11 +144,13 @@ fn levels(context: &Context, scanned: &[AnalogIn]) -> Vec<Act> {
         Act::Supply(vec![(SupplyFine, levels.span())]),
         Act::Wait(Span::ms(100) + context.fresh(scanned.len())),
     ]);
-    let wait = Act::Wait(Span::seconds(
-        RAMP_ROUND * context.round(scanned.len()).as_seconds(),
-    ));
+    let period = RAMP_ROUND * context.round(scanned.len()).as_seconds();
     for _ in 0..RAMP_SCANS {
-        acts.extend([Act::Read(Read::Coil), wait.clone()]);
+        acts.extend([
+            Act::Mark,
+            Act::Read(Read::Coil),
+            Act::WaitSinceMark(Span::seconds(period)),
+        ]);
     }
     acts.push(Act::Wait(Span::ms(1500)));
     scans(context, (scanned, SCANS), &mut acts);
