@@ -1,9 +1,9 @@
 //! The filter that command line, page and exports share, and its SQL.
 //!
-//! Without a parameter, the indexes of the table `part` find the parts. With one, the index `measurement_value`
-//! (parameter, population, run, verdict, value) gives their row numbers: SQLite enters this index once per run and
-//! verdict, at the least value, and then visits the matching parts in ascending order, so a page of results ends the
-//! search early. `filter/related.rs` selects runs, alarms and orders.
+//! Without the member `param`, the indexes of the table `part` find the parts. With `param`, the index
+//! `measurement_value` (parameter, population, run, verdict, value) gives their row numbers: SQLite enters this index
+//! once per run and verdict, at the least value, and then visits the matching parts in ascending order, so a page of
+//! results ends the search early. `filter/related.rs` selects runs, alarms and orders.
 
 mod related;
 
@@ -39,7 +39,7 @@ pub struct Filter {
     pub min: Option<f64>,
     /// Greatest value of `param`, included.
     pub max: Option<f64>,
-    /// True selects only suspect parts: judged after a passed reference check and before a failed one.
+    /// True selects only suspect parts: judged before a failed reference check and after the check before it.
     pub suspect: bool,
     /// Largest number of parts to return, the first in order of judgement.
     pub limit: Option<u64>,
@@ -283,7 +283,8 @@ impl Filter {
         }
     }
 
-    /// Adds the conditions on `part`; with `by_value`, without kind and verdict, which [`Self::values`] sets.
+    /// Adds the conditions on the table `part`; with `by_value`, leaves out kind and verdict, which [`Self::values`]
+    /// adds.
     fn part_conditions(&self, select: &mut Select, by_value: bool) {
         if !by_value {
             match self.kind.as_deref() {

@@ -79,7 +79,7 @@ pub enum ImportError {
     },
 }
 
-/// Meaning of a column.
+/// How a column of the file is read.
 enum Column {
     Time,
     Verdict,

@@ -8,7 +8,8 @@ use super::store::RowIds;
 use super::{AlarmRecord, InterruptedRecord, LandingRecord};
 use rusqlite::{OptionalExtension, Transaction, params};
 
-/// Adds bin and time of the landing to the row of a part; only the first call changes the row.
+/// Adds bin and time of the landing to the row of a part. Later calls change nothing, and fail when they name another
+/// bin.
 pub(super) fn landing(tx: &Transaction<'_>, row_ids: &RowIds, it: &LandingRecord) -> Result<()> {
     const DOING: &str = "recording a landing";
     let run = row_ids.run(&it.lot)?;
@@ -43,7 +44,8 @@ pub(super) fn landing(tx: &Transaction<'_>, row_ids: &RowIds, it: &LandingRecord
     landed_before(it, first)
 }
 
-/// Makes a judged part void and assigns bin `retest`; only once, and only before the part has landed.
+/// Makes a judged part void, assigns bin `retest` and adds the reason; does nothing the second time, and nothing after
+/// the part has landed.
 pub(super) fn interrupted(
     tx: &Transaction<'_>,
     row_ids: &RowIds,

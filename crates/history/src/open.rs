@@ -85,7 +85,8 @@ pub(super) fn unchanged(path: &Path) -> Result<(Connection, i64)> {
     existing(path, OpenFlags::SQLITE_OPEN_READ_ONLY)
 }
 
-/// Returns true when another program has the file open. A damaged file, and one that is no database, counts as not in use.
+/// Returns true when another program has the file open. A damaged file, or a file that is no database, counts as not in
+/// use.
 ///
 /// # Errors
 /// Fails when the file cannot be opened or locked, because then another program may have it open.
@@ -131,8 +132,8 @@ fn existing(path: &Path, access: OpenFlags) -> Result<(Connection, i64)> {
     }
 }
 
-/// Returns a name with which SQLite opens the file as unchanging and makes no files beside it. Fails when SQLite's files
-/// are there already: it would ignore rows in them.
+/// Returns the URI by which SQLite opens the file as immutable and makes no files beside it. Fails when a write-ahead
+/// log or its index is there already, because SQLite would ignore the rows in it.
 fn immutable_name(path: &Path) -> Result<PathBuf> {
     for end in ["-wal", "-shm"] {
         let beside = with_end(path, end);

@@ -54,7 +54,7 @@ pub(super) fn pack_all(connection: &Connection) -> rusqlite::Result<()> {
     runs.into_iter().try_for_each(|run| pack(connection, run))
 }
 
-/// Reads the unpacked values of one run from the index `measurement_value`; `None` when the run has no value.
+/// Reads the values of one run from the index `measurement_value`; `None` when the run has no value.
 fn loose(connection: &Connection, parameter: i64, run: i64) -> rusqlite::Result<Option<Piece>> {
     let mut found: Vec<(i64, f64)> = connection
         .prepare_cached(OF_RUN)?

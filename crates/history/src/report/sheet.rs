@@ -228,7 +228,7 @@ fn counted(
     Ok((last + 2).max(row + CHART_ROWS))
 }
 
-/// Returns the count of each class; the name of a class is its lower edge.
+/// Returns the count of each class, named by its lower edge.
 fn classes(it: &Histogram) -> Vec<(String, u64)> {
     let edge = |at: usize| super::plot::ticked(it.from + at as f64 * it.width, it.width);
     it.counts
