@@ -2,9 +2,9 @@
 //!
 //! ```text
 //! parameters         SI units; a name left out is that of the default relay; T in Celsius
-//! mu0                optional
+//! parameters         SI units, temperatures in Celsius; a missing name has the value of the default relay
 //! cases[].name
-//!        .changed    parameters of this case that differ
+//! cases[].name
 //!        .s0         [flux linkage, x, v, y, w] at 0
 //!        .initial    without s0: "rest", or "sealed12" for a relay that holds with 12 V
 //!        .waveform   [[s, V], ...], linear between, held after; two points at one instant are a step
@@ -34,7 +34,7 @@ pub struct Case {
     pub end_s: f64,
 }
 
-/// Keys of a case; the reader ignores the second half, a note and answers.
+/// Keys of a case; the reader ignores the second half: a note, and answers.
 const KEYS: &[&str] = &[
     "name",
     "changed",
