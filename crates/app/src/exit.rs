@@ -21,7 +21,7 @@ use texts::Lang;
 pub enum Exit {
     /// The command finished, whatever the verdicts about parts.
     Done,
-    /// The command finished, and the answer is no: a move is blocked, a verification failed, or a figure misses its
+    /// The command finished with a negative answer: a move is blocked, a verification failed, or a figure misses its
     /// bar.
     AnswerIsNo,
     /// Bad input or configuration.

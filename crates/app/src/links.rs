@@ -25,7 +25,7 @@ const READER: &str = "serial_reader";
 /// Number of readings that may wait for the cycle.
 const READINGS: usize = 16;
 
-/// Returns the code reader that gives this run its serial numbers, if one does.
+/// Returns the code reader that gives this run its serial numbers; `None` when none does.
 fn reader<'a>(context: &LotContext<'a>) -> Option<&'a SerialReaderSettings> {
     let source = context.plant.lot.serial.as_ref().map(|it| it.source);
     let reads = context.purpose == Purpose::Lot && source == Some(SourceName::Reader);

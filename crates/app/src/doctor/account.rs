@@ -22,8 +22,8 @@ pub fn own_account() -> String {
 }
 
 impl Account {
-    /// Returns the account that runs the rig whose history lies in `folder`: this one when it may write there and is not
-    /// root, else the owner of the folder.
+    /// Returns the account that runs the rig whose history lies in `folder`: the account of this process when it may
+    /// write there and is not root, otherwise the owner of the folder.
     pub fn of_rig(folder: &Path) -> Self {
         let own = Self::new(Uid::effective());
         match std::fs::metadata(folder) {

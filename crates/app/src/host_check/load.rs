@@ -12,9 +12,9 @@ use std::thread::{Builder, JoinHandle};
 
 /// Busy threads per CPU.
 const BUSY_PER_CPU: usize = 2;
-/// Bytes between two syncs, as a commit of the history writes them.
+/// Bytes between two syncs: the size of a commit of the history.
 const BLOCK: usize = 64 * 1024;
-/// Steps of a busy thread between two looks at the flag.
+/// Steps that a busy thread takes between two checks of the stop flag.
 const STEPS: u32 = 10_000;
 
 /// Creates a file without a name in `folder`: the system removes it however the program ends.

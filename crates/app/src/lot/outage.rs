@@ -61,7 +61,7 @@ pub(crate) struct HistoryRetry<'a> {
 }
 
 impl HistoryRetry<'_> {
-    /// Repeats `write` while the history fails it, and shows the alarm at the page meanwhile.
+    /// Repeats `write` until the history can be written, and shows the alarm on the page meanwhile.
     ///
     /// # Errors
     /// Fails with any other error at once, and with that of the history after a stop or when the outage was too long.
