@@ -5,7 +5,7 @@ use machine::rig::wiring::ModuleId;
 use texts::Message;
 use units::RigTime;
 
-/// A measuring job under way; it ends when its last transaction ends.
+/// A measuring job under way; it ends with the last of its transactions.
 #[derive(Debug, Default)]
 pub(super) struct OpenJob {
     parts: usize,
@@ -19,7 +19,7 @@ impl OpenJob {
         self.parts += 1;
     }
 
-    /// Closes the transaction of a lost write; the job then waits for the repetition of this write, which begins later.
+    /// Closes the transaction of a lost write; the job stays open until the cycle has repeated this write.
     pub(super) fn rewrites(&mut self, module: ModuleId) {
         self.parts = self.parts.saturating_sub(1);
         self.rewrites.push(module);
