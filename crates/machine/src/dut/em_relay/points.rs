@@ -97,7 +97,8 @@ pub const BOARD_BITS: &str = "supply range 1 0 where the rig has ranges, \
 /// Thermometer of the magazine track, taken as that of the part.
 const TRACK: &str = "track_temperature";
 
-/// Inputs of the board that one reading samples together, from bit 0 on; those that read the range back follow.
+/// Inputs of the board that one reading samples together, from bit 0 on; the inputs that read the range back follow
+/// them.
 const BOARD_INPUTS: [DigitalIn; 9] = [
     DigitalIn::NoClosed,
     DigitalIn::NcClosed,
@@ -145,7 +146,7 @@ const QUANTITIES: [Quantity; 9] = [
     quantity("coil_current_fine", "A", 1e-8),
     quantity("coil_current_high", "A", 1e-7),
     quantity("reference_voltage", "V", 1e-5),
-    // Every test reads the track temperature, and no act sets the channel mask of its module.
+    // Every test reads the contact drop, and no act sets the channel mask of its module.
     Quantity {
         enabled: true,
         ..quantity("contact_drop", "V", 1e-7)

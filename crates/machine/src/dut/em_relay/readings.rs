@@ -22,8 +22,8 @@ pub struct BoardInputs {
     pub range: Option<u8>,
 }
 
-/// One scan of the coil converter, `None` for a channel outside the scan; the current ranges below hold for the shipped
-/// rig.
+/// One scan of the coil converter; `None` for a channel outside the scan. The stated current ranges are those of the
+/// shipped rig.
 #[derive(Debug, Clone)]
 pub struct CoilScan {
     /// Coil voltage.
@@ -53,7 +53,7 @@ pub struct Readings {
     pub drops: Vec<Sample>,
     /// Gate counters 0 and 1.
     pub gates: Vec<[CountSample; 2]>,
-    /// For each awaited input, true when it came in time.
+    /// For each awaited input, true when it became active in time.
     pub seen: Vec<bool>,
     /// Track temperatures.
     pub track: Vec<Sample>,
