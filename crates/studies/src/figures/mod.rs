@@ -1,4 +1,4 @@
-//! `relayrig study figures`: runs the plan of the figures, stores the results and writes `figures.md` with its pictures.
+//! `relayrig study figures`: runs the plan of the figures, stores the results, writes `figures.md` with its pictures.
 //!
 //! | file or folder, below that of the documents | holds |
 //! |---|---|

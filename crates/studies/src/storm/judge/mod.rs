@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `bodies` | every body lies in the one bin that its row names, or an alarm declares it lost; every row has one
 //! body, no body two rows |
-//! | `values` | every value belongs to the body of its row; no defect in the pass bin, no good part in the bin of a defect |
+//! | `motion` | no driven motion begins after a stop, while a safety input is open, or without a controller |
 //! | `motion` | no motion begins after a stop, while a safety input is open, or without a controller |
 //! | `endings` | every life ends, an alarm names every trouble, and production resumes after the faults |
 //!
