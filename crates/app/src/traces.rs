@@ -60,7 +60,7 @@ impl Traces {
         }
     }
 
-    /// Writes the trace of every line and returns the paths; writes nothing after [`MAX_TRACES`] calls. Then deletes
+    /// Writes the trace of every line and returns the paths; writes nothing after `MAX_TRACES` calls. Then deletes
     /// old traces, and these too when `[history]` keeps none. Logs a failed write; the run continues.
     pub fn dump(&mut self, at_us: i64) -> Vec<PathBuf> {
         if self.dumped >= MAX_TRACES {

@@ -10,8 +10,8 @@
 //!   ([`Store::prune`]).
 //! - A part that did not pass keeps the sampled curves of its test ([`CurveRecord`]).
 //! - A file belongs to one rig, real or simulated: its first run marks it ([`check_rig`]).
-//! - Any SQLite tool can read the file: every column has a remark, and the views `lots`, `parts`, `reasons`, `measurements`,
-//!   `samples`, `curves` and `alarms` show local time and names instead of row numbers.
+//! - Any SQLite tool can read the file: every column has a remark, and the views `lots`, `parts`, `reasons`,
+//!   `measurements`, `samples`, `curves` and `alarms` show local time and names instead of row numbers.
 //!
 //! The history makes no decisions, computes no statistics (crate `quality` does) and has no clock.
 

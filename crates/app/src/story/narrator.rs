@@ -1,7 +1,7 @@
 //! Writes the account of a story, line by line.
 //!
-//! Counts whole seconds from the first action of the script or the first alarm; lines about the ordinary course of a lot
-//! carry no time. The first alarm of each code comes with its cause, consequence and action.
+//! Counts whole seconds from the first action of the script or the first alarm; lines about the ordinary course of a
+//! lot carry no time. The first alarm of each code comes with its cause, consequence and action.
 
 use super::play::Refusal;
 use super::script::{Awaited, Script, Step};
