@@ -35,7 +35,7 @@ pub struct CheckArgs {
     /// One JSON object per move instead of text
     #[arg(long)]
     pub json: bool,
-    /// Clearances are given up to this distance, mm
+    /// Largest clearance to report, mm
     #[arg(long, value_name = "MM", default_value_t = 25.0)]
     pub range: f64,
 }

@@ -1,4 +1,4 @@
-//! `relayrig study`: reproducible figures, see [`studies`].
+//! `relayrig study`: reproducible figures, each with the limit (bar) that it must meet; see [`studies`].
 //!
 //! Exit status: 0 every bar is kept, 1 a bar is missed, 2 bad input or a lot that did not start.
 
@@ -52,7 +52,8 @@ pub struct StudyArgs {
     /// One JSON object per figure, then a summary
     #[arg(long)]
     pub json: bool,
-    /// Also writes NAME.csv and NAME.svg into this directory; `cycle` adds cycle-gantt.svg, one part through all stations
+    /// Also writes NAME.csv and NAME.svg into this directory; `cycle` adds cycle-gantt.svg, one part through all
+    /// stations
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Lots, with seeds 1 to N; `pace` runs seed 1 N times
