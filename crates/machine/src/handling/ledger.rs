@@ -2,9 +2,9 @@
 //!
 //! A part moves from place to place and is never copied. `in = out + inside + lost` holds at every instant.
 //!
-//! The fingers may stay closed although their opening was driven, when the output module has tripped. So a released
-//! part counts as lost only after the sensor shows empty fingers; a part that the sensor still shows is back in the
-//! fingers.
+//! When the output module has tripped, the fingers may stay closed although their opening was commanded. So a released
+//! part counts as lost only after the sensor shows empty fingers; a part that the sensor still shows is put back into
+//! the fingers.
 
 use super::inside::Inside;
 use super::place::{NestId, Place};
@@ -35,7 +35,7 @@ pub struct Part {
     pub ordinal: u64,
     /// Bin of the part, after its verdict.
     pub bin: Option<Bin>,
-    /// Time from the arrival of the probes to the verdict.
+    /// Time from the arrival of the probes at the part to the verdict.
     pub test: Option<Second>,
     /// Time at which the probes arrived at the part.
     pub probed_at: Option<RigTime>,
@@ -43,7 +43,7 @@ pub struct Part {
     pub interrupted: Option<String>,
     /// Serial number of a part of the lot; `None` in a lot without them, and when no reading gives one.
     pub serial: Option<String>,
-    /// What is wrong with the serial number, so that the part goes to retest without a test; the readings.
+    /// What is wrong with the serial number, with the readings. Such a part goes to retest without a test.
     pub serial_fault: Option<(SerialFault, String)>,
 }
 
@@ -57,7 +57,7 @@ impl Part {
         })
     }
 
-    /// Marks the part as interrupted, unless it already is; returns the reason that remains.
+    /// Marks the part as interrupted; returns its reason, which is the earlier one if it was marked before.
     pub fn interrupt(&mut self, why: &str) -> String {
         let why = self.interrupted.get_or_insert_with(|| why.to_owned());
         why.clone()
@@ -69,7 +69,7 @@ impl Part {
 pub struct Fall {
     /// Bin under the fingers at the release.
     pub bin: Bin,
-    /// Time at which the opening of the fingers was driven.
+    /// Time at which the opening of the fingers was commanded.
     pub since: RigTime,
     /// True once the sensor has shown empty fingers; until then they may still hold the part.
     pub has_left: bool,
@@ -109,7 +109,7 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// Makes an empty ledger, except for the parts left by an earlier run.
+    /// Makes a ledger that holds no part, and remembers the parts that an earlier run left inside.
     pub fn after(left: Inside) -> Self {
         Self {
             left,
@@ -193,7 +193,7 @@ impl Ledger {
         self.came_in == self.went_out + self.inside() + self.lost
     }
 
-    /// Adds a part to the empty pocket.
+    /// Adds a part to the pocket, which must be empty.
     pub fn enter_pocket(&mut self) {
         self.came_in += 1;
         self.put(Place::Pocket, Content::Unnumbered { found: false });
@@ -230,7 +230,7 @@ impl Ledger {
         part
     }
 
-    /// Adds a part of unknown origin to the empty place.
+    /// Adds a part of unknown origin to a place, which must be empty.
     pub fn find(&mut self, place: Place) {
         self.came_in += 1;
         self.found += 1;
@@ -280,7 +280,7 @@ impl Ledger {
         self.hand_over(Place::Gripper, Place::Falling);
     }
 
-    /// Moves the falling part back to the fingers: it sticks to them, or the fingers never opened.
+    /// Moves the falling part back to the fingers, because it sticks to them or they never opened.
     pub fn return_to_gripper(&mut self) {
         self.fall = None;
         self.hand_over(Place::Falling, Place::Gripper);
