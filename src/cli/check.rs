@@ -9,7 +9,7 @@ use app::exit::Exit;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Collision answers for a scene and its moves, without a rig.
+/// Tells whether moves in a scene collide, without a rig.
 #[derive(Debug, clap::Args)]
 #[command(after_help = r#"Examples:
   echo '{"elements": [{"id": "pin", "kind": "cylinder", "radius": 4, "height": 30}],

@@ -65,7 +65,7 @@ impl LinkArgs {
         }
     }
 
-    /// Returns a link with the settings of a profile, or without one, with default settings that suit most instruments.
+    /// Returns a link with the settings of `profile`; without one, with default settings that suit most instruments.
     fn link(&self, profile: Option<&Profile>) -> Link {
         let gpib = self.link.gpib;
         let mut settings = profile.map_or_else(

@@ -9,7 +9,7 @@ use tokio::sync::mpsc;
 /// Answers given in advance, and the person who gives them.
 #[derive(Debug, Clone, Default)]
 pub struct Answers {
-    /// Person whom the record names.
+    /// Person who answers, for the audit of orders.
     pub by: By,
     /// Pairs of a prompt's name and the name of the choice.
     pub given: Vec<(String, String)>,

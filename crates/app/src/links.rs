@@ -32,7 +32,8 @@ fn reader<'a>(context: &LotContext<'a>) -> Option<&'a SerialReaderSettings> {
     context.plant.serial_reader.as_ref().filter(|_| reads)
 }
 
-/// Returns how many EEPROM writes all modules have made so far; `None` on a real rig, whose modules do not count them.
+/// Function that returns how many EEPROM writes all modules have made so far; `None` on a real rig, whose modules keep
+/// no count.
 pub type EepromCount = Box<dyn Fn() -> Option<u64> + Send>;
 
 /// Open lines, ready for the cycle.

@@ -10,7 +10,7 @@ use machine::form::{Form, Key, Points, Range};
 use machine::rig::fault::{Fault, Requirement};
 use std::path::PathBuf;
 
-/// Faults in the order of the file, those of missing keys after the others of their table.
+/// Faults in the order of the file; within a table, missing keys come last.
 pub type Faults = Vec<ConfigError>;
 
 /// A parsed file.

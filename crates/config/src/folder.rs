@@ -71,7 +71,7 @@ impl Folder {
     /// Checks that a directory exists.
     ///
     /// # Errors
-    /// Fails without one; the message names the command that writes a configuration.
+    /// Fails when the directory does not exist; the message names the command that writes a configuration.
     pub fn check_exists(&self) -> Result<(), ConfigError> {
         match self {
             Self::Directory(dir) if !dir.exists() => {

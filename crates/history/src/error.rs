@@ -179,7 +179,7 @@ impl HistoryError {
         }
     }
 
-    /// Returns the code of the refusal that a page shows, in the family `refusal`.
+    /// Returns the code of the message, in family `refusal`, that a page shows for this error.
     pub fn refusal(&self) -> &'static str {
         match self {
             Self::Missing { .. } => "history_missing",

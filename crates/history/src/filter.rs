@@ -33,7 +33,7 @@ pub struct Filter {
     pub serial: Option<String>,
     /// `lot` for production parts (also when absent), `golden` for reference parts, or `all`.
     pub kind: Option<String>,
-    /// Key of a parameter; selects parts with a value of it that counts (judged, and not measured again).
+    /// Key of a parameter; selects parts with a judged value of it. Of repeated measurements, the last one counts.
     pub param: Option<String>,
     /// Least value of `param`, included.
     pub min: Option<f64>,

@@ -94,7 +94,7 @@ fn landed_before(it: &LandingRecord, first: Option<String>) -> Result<()> {
     }
 }
 
-/// Inserts an alarm; for one that has a row, adds only the time at which it was cleared.
+/// Inserts an alarm; for an alarm that already has a row, adds only the time at which it was cleared.
 pub(super) fn alarm(tx: &Transaction<'_>, row_ids: &RowIds, it: &AlarmRecord) -> Result<()> {
     let run = it.lot.as_deref().map(|lot| row_ids.run(lot)).transpose()?;
     insert_alarm(tx, run, it)

@@ -143,8 +143,8 @@ impl Store {
         save(&self.connection, calibration)
     }
 
-    /// Returns the calibration for one coil voltage that was stored last, expired or not, of the real or the simulated
-    /// rig. Its date may be before that of an earlier one, after the clock was set back.
+    /// Returns the calibration that was stored last for one coil voltage, expired or not, of the real or the simulated
+    /// rig. After the clock was set back, this may not be the calibration with the latest date.
     pub fn latest_calibration_of(
         &self,
         simulated: bool,

@@ -84,7 +84,7 @@ pub fn run(
     })
 }
 
-/// Measures one phase, under load when there is a file for it.
+/// Measures one phase; with a `file`, under a load that writes this file.
 async fn test(
     phase: Phase,
     span: Span,

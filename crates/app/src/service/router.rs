@@ -2,8 +2,9 @@
 //!
 //! - `start` with a lot goes to the station once the lot is admitted. The station ends the present run when the machine
 //!   rests; the run of the new lot follows.
-//! - `hold_lot`, `close_lot` of the lot under way go to its station; those of another lot go into the history, as
-//!   `release_lot`, `reopen_lot` and `replaced` do.
+//! - `hold_lot` and `close_lot` for the lot under way go to its station; `release_lot` and `reopen_lot` for it are
+//!   refused.
+//! - These orders for any other lot, and `replaced`, are written into the history.
 //! - Every other order goes straight to the station.
 //!
 //! The router sends refused orders to the station too, marked as denied, because the audit has one writer during a run.
