@@ -178,7 +178,7 @@ fn dispatch(files: &Files, command: Command) -> anyhow::Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Checks the file; damage is an answer (status 1), not bad input.
+/// Checks the file; damage gives exit status 1, not an error.
 fn check(db: &Path) -> anyhow::Result<Exit> {
     match Archive::open(db)?.check() {
         Ok(()) => {

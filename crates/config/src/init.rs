@@ -1,6 +1,6 @@
 //! Writes the configuration that is compiled into the program as a directory of its own.
 //!
-//! The files are written to a hidden directory and moved from there when all are on the disk, so that no half-written
+//! Writes the files to a hidden directory and moves them from there when all are on the disk, so that no half-written
 //! configuration is left. The hidden directory lies beside a target that does not exist yet, but inside an empty
 //! target, which may be the working directory or the root of a file system.
 

@@ -7,8 +7,8 @@
 //!   measure. A refused revision changes no file.
 //! - A change names, by hash, the text that it is based on. The change is refused when that text is no longer the
 //!   newest.
-//! - The old text is stored first, then a rename puts the new one in its place. After a crash between these two steps
-//!   the newest text is stored twice, under one number.
+//! - The program stores the old text first, then a rename puts the new one in its place. After a crash between these
+//!   two steps the newest text is stored twice, under one number.
 //! - The folder is locked while files change, so that two programs cannot interfere.
 //!
 //! A run reads its recipe once, before it begins, so a revision never changes a lot under way.

@@ -3,7 +3,8 @@
 //! - [`Store`] is the only writer. It takes records ([`Row`]) in batches, one transaction each: a batch that was
 //!   acknowledged survives power loss, and one that failed leaves no row.
 //! - [`Archive`] is the reader. Command line, page and exports select with the same [`Filter`].
-//! - A row is written once. Recording a part again adds no row; opening a lot again adds a run.
+//! - A part has one row: recording the part again adds none; its landing or interruption completes the row. Opening a
+//!   lot again adds a run.
 //! - Each value is stored with its attempt, limits, uncertainty and budget, and with the raw replies by line, module
 //!   and channel. The run names its recipe and calibration by their hashes.
 //! - Judging by another recipe writes nothing ([`rejudged`]). Only a run that was copied whole can be deleted

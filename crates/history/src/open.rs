@@ -1,7 +1,8 @@
 //! Opens a history file: checks whose it is, brings it to the present schema, makes writes durable.
 //!
-//! 1. A file with tables but another `application_id` belongs to another program. It is refused before any write.
-//! 2. A schema newer than this program is refused; an older one is migrated, all missing steps in one transaction.
+//! 1. A file with tables but another `application_id` belongs to another program; opening it fails before any write.
+//! 2. Opening fails on a schema newer than this program, and migrates an older one: all missing steps in one
+//!    transaction.
 //! 3. Write-ahead log with `synchronous = FULL`: a batch that was acknowledged survives power loss.
 //! 4. SQLite may not use bound values for its query plans (`QPSG`), because planning a statement again for each part
 //!    would take longer than running it.

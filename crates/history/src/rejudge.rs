@@ -1,8 +1,8 @@
 //! Judges stored values and curves by another recipe; writes no row.
 //!
-//! - Values are judged as in a run, with their stored uncertainty. A value within its uncertainty of a limit is
-//!   `not proven`, because it cannot be measured again.
-//! - Values that the first recipe states at its reference temperature are converted to that of the other recipe.
+//! - Judges values as a run does, with their stored uncertainty. A value within its uncertainty of a limit is
+//!   `not proven`, because a confirmation measurement is no longer possible.
+//! - Converts values that the first recipe states at its reference temperature to that of the other recipe.
 //! - When a characteristic has no value, its curves may prove that it exceeds the upper limit
 //!   ([`machine::dut::characteristic::KindCharacteristic`]).
 //! - Reasons that depend on no limit (an open circuit, a refused reply) stay.

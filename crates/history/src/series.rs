@@ -1,9 +1,9 @@
 //! Packed values of closed runs, for statistics over many runs.
 //!
-//! When a run is closed, the values of its production parts that count (judged, and not measured again) are packed into
-//! one blob per parameter: 8 bytes per value instead of the 31 of an index entry, and no decoding row by row. Filters
-//! that select whole runs read the blobs; other filters, and runs that were never closed, read the index
-//! `measurement_value`. Both ways give the same values in the same order.
+//! [`Store::close_lot`](super::Store::close_lot) packs the values of production parts that count (judged, and not
+//! measured again) into one blob per parameter of the run: 8 bytes per value instead of the 31 of an index entry, and
+//! no decoding row by row. Filters that select whole runs read the blobs; other filters, and runs that were never
+//! closed, read the index `measurement_value`. Both ways give the same values in the same order.
 
 use super::{Archive, Filter};
 use rusqlite::{Connection, OptionalExtension, params};

@@ -25,7 +25,7 @@ Ctrl-C.")]
 pub struct ScanArgs {
     #[command(flatten)]
     port: PortArgs,
-    /// Bits per second; may be given several times. All rates of the protocol without it
+    /// Bits per second; may be given several times; without it, all rates of the protocol
     #[arg(long, value_parser = baud)]
     baud: Vec<u32>,
     /// Addresses, hexadecimal, FIRST-LAST

@@ -217,7 +217,8 @@ impl Service {
         runner.run(OrderQueue::from(taken), outer).await
     }
 
-    /// Returns the rig as it is now; a simulated one is loaded for the lot, and its calibration is dropped.
+    /// Returns the rig for the next run. Loads a simulated rig for the lot, if there is one; gives it no calibration,
+    /// so that the run calibrates.
     fn current_source(&self, lot: Option<&LotOrder>) -> anyhow::Result<RigSource> {
         match &self.source {
             RigSource::Serial(_) => {}

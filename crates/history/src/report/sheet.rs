@@ -1,7 +1,7 @@
 //! Spreadsheet of an export: a summary with native charts, then one row per part.
 //!
-//! Headings and texts are in the language of the paper; numbers show as many digits as on paper. CSV has keys and
-//! codes. Memory does not grow with the number of parts: the library writes rows to a temporary file, and only a
+//! Headings and texts are in the language of the paper (in CSV they are keys and codes); numbers show as many digits as
+//! on paper. Memory does not grow with the number of parts: the library writes rows to a temporary file, and only a
 //! [`Tally`] per parameter stays in memory. After [`ROWS`] rows a new sheet begins. Texts are written as texts, never
 //! as formulas.
 
