@@ -21,7 +21,7 @@ pub enum Activity {
     Running,
     /// Handles reference parts.
     ReferenceParts,
-    /// Stays in this PackML state, without an activity of its own.
+    /// Rests in this PackML state and does nothing else.
     Resting(State),
 }
 
@@ -50,7 +50,7 @@ impl Activity {
         Some(stage)
     }
 
-    /// Returns the words for a view: the code with blanks, followed by the stage.
+    /// Returns the words for a view: the code with blanks instead of underscores, followed by the stage.
     pub fn name(self) -> String {
         let code = self.code().replace('_', " ");
         match self.stage() {

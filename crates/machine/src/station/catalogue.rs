@@ -1,4 +1,4 @@
-//! Every alarm by its code, with the reaction of the machine and what clears it.
+//! Every alarm by its code, with the reaction of the machine and with what clears the alarm.
 //!
 //! The catalogue of texts holds cause, consequence and action as attributes of the code.
 
@@ -29,7 +29,7 @@ pub enum ClearedBy {
     Sensor,
     /// The order `clear`, `unhold` or `reset`.
     Operator,
-    /// The alarm itself, because it reports an instant.
+    /// Nothing: the alarm reports an instant, and its cause is over at once.
     Itself,
 }
 
@@ -42,8 +42,8 @@ pub struct Entry {
     pub cleared_by: ClearedBy,
 }
 
-/// Declares [`AlarmCode`], a row per code: after `by` the argument that distinguishes its alarms, after `of` the type
-/// of its subject (both optional), the id of its text, [`Reaction`], [`ClearedBy`].
+/// Declares [`AlarmCode`], one row per code: after `by` the argument that distinguishes its alarms (optional), after
+/// `of` the type of its subject (optional), the id of its text, [`Reaction`], [`ClearedBy`].
 macro_rules! codes {
     ($($(#[$doc:meta])* $code:ident $(by $argument:literal)? $(of $subject:ty)? = $id:literal, $reaction:ident, $by:ident;)+) => {
         /// Code of an alarm, stable over versions.

@@ -14,7 +14,7 @@ pub(super) struct Machine {
     pub mode: Mode,
     /// Time of the first turn, or of the first turn after the modules were verified.
     pub began: Option<RigTime>,
-    /// True before the first command, which the program itself gives.
+    /// True until the first command, which the program itself gives.
     pub fresh: bool,
     /// True when the run ends once the parts inside are finished.
     pub stopping: bool,

@@ -1,4 +1,4 @@
-//! Prompts of the lot under way: while one is open nothing moves, and only its answer, a stop or an abort goes on.
+//! Prompts of the lot under way: while a prompt is open nothing moves until its answer, a stop or an abort.
 //!
 //! A prompt opens in the turn in which its moment comes, stays open while [`Prompts::asks`] is called in each turn, and
 //! closes with its answer, or when the machine leaves the moment (after an abort it opens again).
@@ -10,11 +10,11 @@ use crate::dut::prompt::{Prompt, PromptMoment};
 #[derive(Debug, Default)]
 pub(super) struct Prompts {
     all: Vec<Prompt>,
-    /// Places of the answered prompts in `all`.
+    /// Indices in `all` of the answered prompts.
     answered: Vec<usize>,
-    /// Place of the open prompt.
+    /// Index in `all` of the open prompt.
     open: Option<usize>,
-    /// Place of the prompt that was open in the turn before.
+    /// Index in `all` of the prompt that was open in the turn before.
     shown: Option<usize>,
 }
 
@@ -73,7 +73,7 @@ impl Prompts {
         Ok(stops)
     }
 
-    /// Asks the prompts around a calibration again.
+    /// Marks the prompts before and after a calibration as unanswered, because there will be another calibration.
     pub fn calibrate_again(&mut self) {
         let again = [
             PromptMoment::BeforeCalibration,
