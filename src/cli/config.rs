@@ -78,7 +78,7 @@ pub struct Revised {
     save_as: Option<String>,
 }
 
-/// Reads `KEY=VALUE`: the value as JSON, else as a text; an empty one as null, which removes the key.
+/// Parses `KEY=VALUE`: a value that is not valid JSON is a text, and an empty value is null, which removes the key.
 fn key_value(text: &str) -> Result<(String, Value), KeyValueError> {
     let (key, value) = text.split_once('=').ok_or(KeyValueError)?;
     let value = match value {

@@ -128,7 +128,7 @@ impl Output {
         Ok(self.0.write_all(b"\n")?)
     }
 
-    /// Writes the rows in this form; JSON shows every field of a row, not only the columns.
+    /// Writes the rows in the form `format`; JSON shows every field of a row, not only the columns.
     pub fn list<T: Serialize>(
         &mut self,
         format: Format,

@@ -38,7 +38,7 @@ pub struct RigThread {
 }
 
 impl RigThread {
-    /// Returns the current thread in virtual time; else starts a thread and raises it.
+    /// Returns the current thread in virtual time; otherwise starts a thread and raises its priority.
     ///
     /// # Errors
     /// Fails when the system refuses a thread or its runtime.
@@ -157,7 +157,7 @@ pub struct BareLoop {
 }
 
 impl BareLoop {
-    /// Starts the loop on a thread of its own, raised as the rig's.
+    /// Starts the loop on a thread of its own, with the priority of the rig's thread.
     ///
     /// # Errors
     /// Fails when the system refuses the thread.

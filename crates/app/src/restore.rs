@@ -41,7 +41,7 @@ pub struct Contents {
 }
 
 impl Contents {
-    /// Finds a backup: a dated folder, the newest inside a folder of them, or a copied history.
+    /// Finds the backup at `at`: a dated folder, a folder of dated folders (the newest counts), or a copied history.
     ///
     /// # Errors
     /// Fails when there is none, or when a folder holds several histories.

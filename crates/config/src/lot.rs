@@ -32,7 +32,7 @@ pub(super) fn load_lot(folder: &Folder) -> Result<LotSettings, ConfigError> {
     }
 }
 
-/// Reads the prompts of every lot, which `lot.toml` has.
+/// Reads the prompts of every lot from `lot.toml`.
 ///
 /// # Errors
 /// Fails when the file cannot be read or has a faulty key.

@@ -232,7 +232,8 @@ fn earlier_revisions(folder: &Folder, name: &str) -> Vec<u32> {
     numbers
 }
 
-/// Returns the number of the newest revision, whose text is `text`; `kept` are the numbers of the earlier ones.
+/// Returns the number of the newest revision, whose text is `text`; `kept` are the numbers of the stored earlier
+/// revisions.
 fn number_of(folder: &Folder, name: &str, kept: &[u32], text: &str) -> u32 {
     let Some(last) = kept.last() else {
         return 1;

@@ -104,7 +104,8 @@ pub(super) fn chinese(stored: Option<Value>) -> Option<String> {
 }
 
 impl Archive {
-    /// Returns one page of the alarms in order of time; lot, run, recipe and time span of the filter select them.
+    /// Returns the alarms that lot, run, recipe and time span of the filter select, in order of time; limit and offset
+    /// of the filter apply.
     pub fn alarms(&self, filter: &Filter) -> Result<Vec<Alarm>> {
         let alarms = filter.alarms().rows(&self.connection, |row| {
             let moment = |column: usize| {

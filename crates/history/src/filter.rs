@@ -33,7 +33,8 @@ pub struct Filter {
     pub serial: Option<String>,
     /// `lot` for production parts (also when absent), `golden` for reference parts, or `all`.
     pub kind: Option<String>,
-    /// Key of a parameter; selects parts with a judged value of it. Of repeated measurements, the last one counts.
+    /// Key of a parameter; selects parts with a usable value of it: a number from the last attempt, unless this attempt
+    /// is void.
     pub param: Option<String>,
     /// Least value of `param`, included.
     pub min: Option<f64>,
@@ -160,7 +161,7 @@ impl Filter {
     }
 
     /// Selects the row number of each part and its value of a parameter, in no particular order. Reads only the index
-    /// `measurement_value`, unless the filter has a bin, a time or `suspect`.
+    /// `measurement_value`, unless the filter has a bin, a serial number, a time span or `suspect`.
     pub(super) fn series(&self, param: &str) -> Select {
         let joined = self.restricts_part();
         let mut select = self.values(param, "m.part_id, m.value", joined);
@@ -170,7 +171,8 @@ impl Filter {
         select
     }
 
-    /// Counts the selected parts; reads only the index `measurement_value` when it holds every member of the filter.
+    /// Counts the selected parts; reads only the index `measurement_value` when it has a column for every member of the
+    /// filter.
     pub(super) fn count(&self) -> Select {
         let found = match &self.param {
             Some(param) if !self.restricts_part() => {

@@ -176,7 +176,7 @@ pub struct CalibrationRecord {
 }
 
 impl CalibrationRecord {
-    /// Returns true when the calibration has run out at `now_us`, microseconds since 1970 UTC.
+    /// Returns true when the calibration has expired at `now_us`, microseconds since 1970 UTC.
     pub const fn is_overdue(&self, now_us: i64) -> bool {
         self.due_at_us <= now_us
     }

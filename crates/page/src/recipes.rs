@@ -86,7 +86,7 @@ pub(super) struct ShownRevision {
     revision: Revision,
     /// Approval of the revision; null in a plant that requires none.
     approval: Option<ApprovalState>,
-    /// Prompts of every lot, which `lot.toml` has; those of the recipe are in `fields`.
+    /// Prompts of every lot, from `lot.toml`; the prompts of the recipe are in `fields`.
     prompts_of_lots: Vec<Prompt>,
 }
 

@@ -122,7 +122,7 @@ impl Sessions {
 }
 
 impl Inner {
-    /// Locks the file of people, even after another holder panicked: none leaves data half changed.
+    /// Locks the file of people even after another holder panicked, because no panic leaves data half changed.
     fn register(&self) -> MutexGuard<'_, Register> {
         self.register.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -39,7 +39,7 @@ pub struct GaugeRr {
     pub repeatability: f64,
     /// Variation between operators.
     pub reproducibility: f64,
-    /// Variation between operators that depends on the part; 0 when the interaction is pooled.
+    /// Interaction: variation between operators that depends on the part; 0 when it is pooled with the residual.
     pub interaction: f64,
     /// Repeatability and reproducibility with interaction, combined: the variation of the gauge.
     pub grr: f64,

@@ -94,7 +94,7 @@ pub fn calibrate(
     }
 }
 
-/// Returns the nominal coil voltage of the recipe; fails without a reference part of that voltage.
+/// Returns the nominal coil voltage of the recipe, V; fails when no reference part has this voltage.
 fn reference_voltage(config: &Folder, recipe: &str) -> anyhow::Result<f64> {
     let plant = Plant::load(config)?;
     let Some(nominal_v) = load_recipe(config, recipe)?.device.part().nominal_v else {

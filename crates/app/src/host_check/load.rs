@@ -20,7 +20,7 @@ const STEPS: u32 = 10_000;
 /// Creates a file without a name in `folder`: the system removes it however the program ends.
 ///
 /// # Errors
-/// Fails when the folder does not exist or takes no file; names it.
+/// Fails when the folder does not exist or refuses a new file; the error names the folder.
 pub(super) fn scratch_file(folder: &Path) -> anyhow::Result<File> {
     let place = || {
         format!(

@@ -127,7 +127,8 @@ impl LotRunner<'_> {
             stream.give_up(error);
         }
         let ended = running.await;
-        // The cycle has dropped its end, so that the last snapshot comes before the end of the run.
+        // The cycle has dropped its sender, so this ends; the last snapshot is then on the page before the end of the
+        // run.
         showing.await?;
         if let Some(limiter) = limiter {
             limiter.abort();

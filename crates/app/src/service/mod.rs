@@ -242,7 +242,7 @@ impl Service {
     }
 }
 
-/// Builds a simulated rig with an empty magazine that lives from now on; returns a serial source unchanged.
+/// Builds a simulated rig with an empty magazine, which then serves all runs; returns a serial source unchanged.
 fn with_live_rig(source: RigSource, plant: &Plant, order: &LotOrder) -> anyhow::Result<RigSource> {
     let _ = (plant, order);
     Ok(match source {

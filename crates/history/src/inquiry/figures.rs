@@ -19,7 +19,7 @@ pub struct Figures {
     pub limits_differ: bool,
 }
 
-/// Computes the statistics of `param`; uses the limits of its runs unless the caller gives others.
+/// Computes the statistics of `param`; uses the stored limits of the selected runs unless the caller gives others.
 pub fn figures(
     archive: &Archive,
     param: &str,

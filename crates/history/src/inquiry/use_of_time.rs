@@ -49,8 +49,8 @@ pub(super) fn use_of_time(
     Ok(effectiveness(observed))
 }
 
-/// Returns the spans of a run in which the line was set up: from its start to the test of the first production part,
-/// which includes a calibration, and the cycles of reference parts.
+/// Returns the spans of a run that count as set-up: from its start, with the calibration if there is one, to the test
+/// of the first production part, and the cycle of every reference part.
 fn set_up(archive: &Archive, run: &LotSummary, closed: Moment) -> Result<Vec<(Moment, Moment)>> {
     let parts = |kind: &str, limit| {
         archive.query(&Filter {

@@ -121,7 +121,7 @@ impl Places {
     }
 }
 
-/// Locks even after another holder panicked: no panic leaves the places half changed.
+/// Locks the places even after another holder panicked, because no panic leaves them half changed.
 fn locked(places: &Mutex<Places>) -> MutexGuard<'_, Places> {
     places.lock().unwrap_or_else(PoisonError::into_inner)
 }
