@@ -171,8 +171,8 @@ impl Filter {
         select
     }
 
-    /// Counts the selected parts. With `param`, reads only the index `measurement_value` when this has a column for every
-    /// member of the filter.
+    /// Counts the selected parts. With `param`, reads only the index `measurement_value` when this index has a column
+    /// for every member of the filter.
     pub(super) fn count(&self) -> Select {
         let found = match &self.param {
             Some(param) if !self.restricts_part() => {
