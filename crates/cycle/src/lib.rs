@@ -81,9 +81,9 @@ pub struct CycleLinks {
     pub epoch_us: i64,
     /// State of the history; the recorder sets it.
     pub history: watch::Receiver<HistoryState>,
-    /// Carries the readings of the code reader; none in a lot without one.
+    /// Carries the readings of the code reader; `None` in a lot without one.
     pub readings: Option<mpsc::Receiver<Reading>>,
-    /// Carries snapshots to the screens; none on a rig without a screen.
+    /// Carries snapshots to the screens; `None` on a rig without a screen.
     pub snapshots: Option<mpsc::Sender<Snapshot>>,
 }
 
@@ -135,7 +135,7 @@ pub struct Cycle {
     orders_closed: bool,
     /// Readings of the code reader since the last turn; `None` for a reading without a code.
     readings: Vec<Option<String>>,
-    /// Alarm of a code reader whose port is lost.
+    /// Alarm about the code reader while its port is lost.
     reader: Option<Alarm>,
     verified: bool,
     publish_at: RigTime,

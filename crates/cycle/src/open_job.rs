@@ -32,7 +32,8 @@ impl OpenJob {
         before != self.rewrites.len()
     }
 
-    /// Closes one transaction and keeps the first trouble; after the last transaction, returns the result of the job.
+    /// Closes one transaction and keeps the first trouble; returns the result of the job after the last transaction,
+    /// else `None`.
     pub(super) fn part_done(&mut self, at: RigTime, trouble: Option<Message>) -> Option<JobDone> {
         self.parts = self.parts.saturating_sub(1);
         self.last = at;
@@ -42,7 +43,7 @@ impl OpenJob {
         self.if_empty(self.last)
     }
 
-    /// Returns the result of a job without open transactions.
+    /// Returns the result of the job; `None` while a transaction is open.
     pub(super) fn if_empty(&self, at: RigTime) -> Option<JobDone> {
         (self.parts == 0).then(|| JobDone {
             at,

@@ -249,14 +249,14 @@ impl Traffic {
         written.collect()
     }
 
-    /// Returns the result of a measuring job that needed no transaction.
+    /// Returns the result of the measuring job if it needed no transaction, else `None`.
     pub fn job_if_empty(&mut self, now: RigTime) -> Option<JobDone> {
         let done = self.job.as_ref()?.if_empty(now)?;
         self.job = None;
         Some(done)
     }
 
-    /// Closes one transaction of the measuring job; after the last one, returns the result of the job.
+    /// Closes one transaction of the measuring job; returns the result of the job after the last one, else `None`.
     pub fn job_part_done(&mut self, at: RigTime, trouble: Option<Message>) -> Option<JobDone> {
         let done = self.job.as_mut()?.part_done(at, trouble)?;
         self.job = None;
@@ -339,7 +339,7 @@ impl Traffic {
         }
     }
 
-    /// Returns the next answer that has arrived.
+    /// Returns the next answer that has arrived; `None` if there is none.
     pub fn next_answer(&mut self) -> Option<(LineId, Purpose, Answer)> {
         for slot in &mut self.slots {
             let Some(answer) = slot
@@ -374,7 +374,7 @@ impl Traffic {
         .await;
     }
 
-    /// Returns the first instant at which a heartbeat or a scan is due on an idle line.
+    /// Returns the first instant after `now` at which a heartbeat or a scan is due on an idle line.
     pub fn next_due(&self, now: RigTime) -> Option<RigTime> {
         self.slots
             .iter()

@@ -54,7 +54,7 @@ pub struct View {
     pub bins: BTreeMap<String, u64>,
     /// Judged parts of the lot by verdict.
     pub verdicts: BTreeMap<String, u64>,
-    /// Parts per hour of rig time since the lot began.
+    /// Parts per hour of rig time since the lot began; null before the first part.
     pub parts_per_hour: Option<f64>,
     /// The last judged part.
     pub last: Option<LastPart>,

@@ -60,7 +60,7 @@ impl Characteristic {
         Kind::ALL.into_iter().flat_map(Kind::characteristics)
     }
 
-    /// Returns the characteristic with this key; none when no kind has it.
+    /// Returns the characteristic with this key; `None` when no kind has it.
     pub fn from_key(key: &str) -> Option<Self> {
         Self::all().find(|it| it.key() == key)
     }

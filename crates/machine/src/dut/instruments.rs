@@ -27,7 +27,7 @@ impl From<&ReferencePart> for Certificate {
     }
 }
 
-/// Returns every factor of a stored calibration; none when the calibration has a form that this version of the program
+/// Returns every factor of a stored calibration; empty when the calibration has a form that this version of the program
 /// cannot read.
 pub fn factors(calibration: serde_json::Value) -> Vec<Named> {
     let read = serde_json::from_value::<Calibration>(calibration);

@@ -46,7 +46,7 @@ pub fn reference_inputs(wiring: &Wiring) -> Vec<AnalogInput> {
     em_relay::reference::inputs(wiring)
 }
 
-/// Returns the meaning of the bits of a stored signal, highest first; none for any other signal.
+/// Returns the meaning of the bits of a stored signal, highest first; `None` for any other signal.
 pub fn bits_of(signal: &str) -> Option<&'static str> {
     (signal == em_relay::points::BOARD).then_some(em_relay::points::BOARD_BITS)
 }

@@ -56,7 +56,8 @@ pub trait TestProcedure {
         MEASURING
     }
 
-    /// Returns why the part cannot be judged: the rig was in trouble, or the test could not measure the part.
+    /// Returns why the part cannot be judged (the rig was in trouble, or the test could not measure the part); `None`
+    /// for any other part.
     fn why_void(&self) -> Option<&Reason> {
         match self.why_stopped()? {
             Stop::Void(why) | Stop::Trouble(why) => Some(why),

@@ -29,7 +29,7 @@ pub struct Prompt {
     pub text_en: String,
     /// Request in Chinese.
     pub text_zh: String,
-    /// File in `config/pictures`.
+    /// File in `config/pictures` that shows what to do; `None` without a picture.
     pub picture: Option<String>,
     /// Answers, at least one.
     pub choices: Vec<Choice>,

@@ -161,7 +161,7 @@ pub struct PartFacts {
     pub pin_length_mm: f64,
     /// Temperature to which results are converted.
     pub reference: Celsius,
-    /// Nominal voltage that a calibration and its reference parts must share with the part, V; none for a kind that
+    /// Nominal voltage that a calibration and its reference parts must share with the part, V; `None` for a kind that
     /// needs neither.
     pub nominal_v: Option<f64>,
 }

@@ -118,7 +118,8 @@ impl<T> TestRecord<T> {
         own.map(|(_, reading)| reading)
     }
 
-    /// Returns the result of a characteristic: the mean of its repetitions, whose scatter enters the uncertainty.
+    /// Returns the result of a characteristic: the mean of its repetitions, whose scatter enters the uncertainty;
+    /// `None` if it was not measured.
     pub fn result(&self, of: impl Into<Characteristic>) -> Option<Reading> {
         let of = of.into();
         let repetitions: Vec<Reading> = self.each(of).cloned().collect();
@@ -178,7 +179,7 @@ impl<T> TestRecord<T> {
         self.stop.is_some()
     }
 
-    /// Returns why the test ended early.
+    /// Returns why the test ended early; `None` if it did not.
     pub fn why_stopped(&self) -> Option<&Stop> {
         self.stop.as_ref()
     }

@@ -21,9 +21,9 @@ use super::space::PresentRoles;
 pub(super) struct PartRoles {
     /// Roles present in the space.
     pub present: PresentRoles,
-    /// Role that moves with the stroke.
+    /// Role that moves with the stroke, if a part does.
     pub taken: Option<Role>,
-    /// Role that the stroke leaves behind.
+    /// Role that the stroke leaves behind, if it leaves a part.
     pub left: Option<Role>,
 }
 

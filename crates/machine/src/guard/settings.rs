@@ -66,7 +66,7 @@ pub struct Element {
     /// Pose with all actuators at rest.
     #[serde(default)]
     pub pose: PoseSettings,
-    /// Actuator that carries the element; none for a fixed one.
+    /// Actuator that carries the element; `None` for a fixed one.
     pub rides: Option<Actuator>,
 }
 
@@ -128,7 +128,7 @@ pub struct ActuatorSettings {
     pub id: Actuator,
     /// Direction of the stroke, unit length.
     pub axis: [f64; 3],
-    /// Length of the stroke, mm, > 0.
+    /// Length of the stroke, mm, > 0; absent for a slide with `points_mm`.
     pub stroke_mm: Option<f64>,
     /// Positions of a slide with several stops, mm, instead of `stroke_mm`; the stroke runs from the least to the
     /// greatest.

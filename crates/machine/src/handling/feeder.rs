@@ -138,7 +138,7 @@ impl Feeder {
         self.sort
     }
 
-    /// Returns the running test.
+    /// Returns the test under way, if there is one.
     pub fn test(&self) -> Option<&Procedure> {
         self.nests.iter().find_map(Nest::test)
     }

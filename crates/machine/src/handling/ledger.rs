@@ -75,7 +75,7 @@ pub struct Fall {
     pub has_left: bool,
     /// Count of the bin's beam before the release.
     pub beam_before: u32,
-    /// Time of the beam's first count.
+    /// Time at which the beam first counted the part; `None` before.
     pub seen: Option<RigTime>,
 }
 
@@ -139,7 +139,7 @@ impl Ledger {
         }
     }
 
-    /// Returns the part in the place for changes.
+    /// Returns the part in the place for changes; `None` without a part or without its number.
     pub fn part_mut(&mut self, place: Place) -> Option<&mut Part> {
         match self.places.get_mut(&place)? {
             Content::Numbered(part) => Some(part),
@@ -173,12 +173,12 @@ impl Ledger {
         }
     }
 
-    /// Returns the fall of the last released part, until its beam has counted it.
+    /// Returns the fall of the released part until its beam has counted the part, else `None`.
     pub fn fall(&self) -> Option<&Fall> {
         self.fall.as_ref()
     }
 
-    /// Returns the fall of the last released part for changes.
+    /// Returns [`Self::fall`] for changes.
     pub fn fall_mut(&mut self) -> Option<&mut Fall> {
         self.fall.as_mut()
     }

@@ -176,7 +176,7 @@ impl Move {
         }
     }
 
-    /// Returns the target station of the sort axis.
+    /// Returns the target station of the sort axis; `None` for any other motion.
     pub fn station(self) -> Option<AxisStation> {
         let Move::AxisTo(station) = self else {
             return None;
@@ -224,7 +224,7 @@ impl Move {
         }
     }
 
-    /// Returns the bin that the axis goes to; none for any other motion.
+    /// Returns the bin that the axis goes to; `None` for any other motion.
     pub fn bin(self) -> Option<Bin> {
         match self.station()? {
             AxisStation::Bin(bin) => Some(bin),

@@ -62,7 +62,7 @@ pub struct TestTerms<'a> {
     pub device: &'a Device,
     /// True when confirmation measurements repeat every result.
     pub thorough: bool,
-    /// Serial number of the part while reference parts calibrate the rig; none otherwise.
+    /// Serial number of the part while reference parts calibrate the rig; `None` otherwise.
     pub teaching: Option<&'a str>,
 }
 
@@ -142,7 +142,7 @@ impl Nest {
         }
     }
 
-    /// Returns the running test.
+    /// Returns the test under way, if there is one.
     pub fn test(&self) -> Option<&Procedure> {
         let NestState::Testing(test) = &self.state else {
             return None;

@@ -41,7 +41,7 @@ pub struct Jog {
 pub struct Commands {
     /// Motions that the guard must clear and the rig then carries out.
     pub motions: Vec<Move>,
-    /// A manual motion.
+    /// A motion by hand.
     pub jog: Option<Jog>,
     /// Digital outputs that move nothing, with their values.
     pub outputs: Vec<(DigitalOut, bool)>,

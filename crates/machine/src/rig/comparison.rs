@@ -167,8 +167,8 @@ impl Comparison<'_> {
         ))
     }
 
-    /// Compares the safe value. A mismatch has no remedy: no single command corrects it, because the module stores its
-    /// present output as the safe value.
+    /// Compares the safe value of an analog output; returns the mismatch, if there is one. The mismatch has no remedy:
+    /// no single command corrects it, because the module stores its present output as the safe value.
     pub(super) fn safe_level(&self, found: Level) -> Option<Mismatch> {
         let safe = self.module.safe_volts;
         let volts = found.in_units(self.module.type_code).unwrap_or(f64::NAN);

@@ -55,7 +55,7 @@ enum Image {
     /// Digital outputs, bit n = channel n.
     Bits {
         word: u16,
-        /// A word to write before `word`, which makes a rising edge.
+        /// A word to write before `word`, so that `word` makes a rising edge.
         before: Option<u16>,
         width: Width,
     },

@@ -280,7 +280,7 @@ impl Image {
         Some(requested + self.wiring.emergency_stop_max_age())
     }
 
-    /// Returns the time of the last request for a digital input.
+    /// Returns the time of the last answered request for a digital input; `None` without a value.
     pub fn input_at(&self, point: impl Into<DigitalInput>) -> Option<RigTime> {
         self.words[self.wiring.digital_in(point).module.0].map(|word| word.at)
     }

@@ -80,7 +80,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Returns the value of a good sample.
+    /// Returns the value of a sample of good quality, else `None`.
     pub fn good(&self) -> Option<f64> {
         match self.quality {
             Quality::Good if self.value.is_finite() => Some(self.value),

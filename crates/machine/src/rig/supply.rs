@@ -230,7 +230,8 @@ pub(super) fn resolve_ranges(
     Ok(ranges)
 }
 
-/// Returns the source with the highest full scale: its module, and volts of the supply at factor 1.
+/// Returns the source with the highest full scale: its module, and this full scale in volts of the supply at factor 1;
+/// `None` without a source.
 fn strongest<'a>(settings: &'a RigSettings, modules: &[Module]) -> Option<(&'a str, Volt)> {
     let full_scale = |name: &str| {
         let module = modules.iter().find(|module| module.name == name)?;

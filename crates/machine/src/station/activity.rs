@@ -42,7 +42,7 @@ impl Activity {
         code.to_owned()
     }
 
-    /// Returns the stage of the test: the key of its text in the family `stage`.
+    /// Returns the stage of the test, which is the key of its text in the family `stage`; `None` without a test.
     pub fn stage(self) -> Option<&'static str> {
         let Self::Testing(stage) = self else {
             return None;

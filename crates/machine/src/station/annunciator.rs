@@ -42,7 +42,7 @@ pub struct ListedAlarm {
     pub count: u32,
     /// True when no other alarm was active before it.
     pub first_out: bool,
-    /// End of the time for which the alarm is shelved; none while it is not shelved.
+    /// End of the time for which the alarm is shelved; `None` while it is not shelved.
     pub shelved_until: Option<RigTime>,
     /// True for an alarm of an earlier run, whose times do not apply to this run.
     pub inherited: bool,
@@ -212,7 +212,8 @@ impl Annunciator {
             .find(|one| one.is_active() && one.entry().reaction == stops)
     }
 
-    /// Returns the first active alarm with the reaction `Abort` whose sensor still shows the cause.
+    /// Returns the first active alarm with the reaction `Abort` that only a sensor can clear, whose cause the sensor
+    /// thus still shows.
     pub fn still_sensed(&self) -> Option<&ListedAlarm> {
         self.listed.iter().find(|one| {
             let entry = one.entry();

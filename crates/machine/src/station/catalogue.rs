@@ -51,7 +51,7 @@ macro_rules! codes {
         pub enum AlarmCode { $($(#[$doc])* $code $(($subject))?,)+ }
 
         impl AlarmCode {
-            /// Returns every code, with each of its subjects (actuators or wearing parts).
+            /// Returns every code, with each of its subjects (actuators, wearing parts or promises).
             pub fn all() -> impl Iterator<Item = Self> {
                 [$(each!($code $($subject)?)),+].concat().into_iter()
             }
@@ -71,7 +71,8 @@ macro_rules! codes {
                 }
             }
 
-            /// Returns the name of the argument that distinguishes alarms of this code, such as `place` of a lost part.
+            /// Returns the name of the argument that distinguishes alarms of this code, for example `place` of a lost
+            /// part; `None` for a code whose alarms share one line.
             pub(super) fn distinguished_by(self) -> Option<&'static str> {
                 $($(if matches!(self, Self::$code { .. }) {
                     return Some($argument);
@@ -79,7 +80,8 @@ macro_rules! codes {
                 None
             }
 
-            /// Returns the name of the actuator or of the wearing part that the code carries.
+            /// Returns the name of the subject that the code carries (actuator, wearing part or promise), if it carries
+            /// one.
             fn subject(self) -> Option<&'static str> {
                 $($(if let Self::$code(subject) = self {
                     return Some(<$subject>::name(subject));

@@ -35,7 +35,7 @@ const MIN_JUDGED: u64 = 20;
 pub struct LotSettings {
     /// Number of parts at the beginning of a run that get confirmation measurements.
     pub first_article_parts: u64,
-    /// Greatest share of failed parts, % of the size of the lot.
+    /// Greatest share of failed parts, % of the size of the lot; without it the gate does not apply.
     #[serde(rename = "discard_limit_pct")]
     pub reject_rate_limit_pct: Option<f64>,
     /// When the machine checks a reference part.
@@ -86,7 +86,8 @@ pub struct WearSettings {
 pub(super) struct Gates {
     /// True while only reference parts are tested, until one agrees with its certificate.
     checking: bool,
-    /// Time of the last good check, and number of parts of the lot that had entered the nest by then.
+    /// Time of the last good check, and number of parts of the lot that had entered the nest by then; `None` before the
+    /// first.
     good: Option<(RigTime, u64)>,
     judged: u64,
     failed: u64,

@@ -72,8 +72,8 @@ use units::RigTime;
 pub struct Plan {
     /// Number of parts of the lot; `None` for an endless lot.
     pub count: Option<u64>,
-    /// Serial numbers of the reference parts at the head of the magazine; only a run without a calibration measures
-    /// them.
+    /// Serial numbers of the reference parts, in the order of the magazine. A run without a calibration begins with all
+    /// of them; a reference check uses the first.
     pub reference_serials: Vec<String>,
     /// True with a valid calibration: the run measures neither references nor reference parts.
     pub calibrated: bool,
@@ -199,7 +199,7 @@ impl Station {
         &self.line.ledger
     }
 
-    /// Returns the prompt that waits for its answer.
+    /// Returns the prompt that waits for its answer, if there is one.
     pub fn prompt(&self) -> Option<&Prompt> {
         self.prompts.open()
     }

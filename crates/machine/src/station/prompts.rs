@@ -26,7 +26,7 @@ impl Prompts {
         }
     }
 
-    /// Returns the open prompt.
+    /// Returns the open prompt, if there is one.
     pub fn open(&self) -> Option<&Prompt> {
         self.open.map(|place| &self.all[place])
     }
@@ -36,7 +36,7 @@ impl Prompts {
         self.shown = self.open.take();
     }
 
-    /// Returns the prompt that has opened in this turn.
+    /// Returns the open prompt if it has opened in this turn.
     pub fn opened(&self) -> Option<&Prompt> {
         self.open().filter(|_| self.open != self.shown)
     }

@@ -52,7 +52,8 @@ impl Timeouts {
         self.since.clear();
     }
 
-    /// Returns the alarm of a step that has exceeded its timeout; of several steps, that of the last one.
+    /// Returns the alarm of a step that has exceeded its timeout, if there is one; of several, that of the step last in
+    /// the feeder.
     pub fn look(
         &mut self,
         now: RigTime,

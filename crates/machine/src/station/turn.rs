@@ -26,7 +26,7 @@ pub struct Inputs<'a> {
     pub bus: Vec<Alarm>,
     /// Readings of the code reader since the last turn, in order; `None` is a reading without a code.
     pub readings: Vec<Option<String>>,
-    /// Alarm of a code reader whose port is lost.
+    /// Alarm about the code reader while its port is lost.
     pub reader: Option<Alarm>,
     /// Lateness of this computer in the last seconds, if it is long enough to explain an input that was not read.
     pub host_late: Option<Span>,

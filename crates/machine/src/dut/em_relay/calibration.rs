@@ -160,7 +160,7 @@ pub struct Calibration {
     pub ohm_fine: Factor,
     /// [`Calibration::ohm_fine`] on the wide current channel, for coils beyond the range of the fine one.
     pub ohm_wide: Factor,
-    /// [`Calibration::ohm_fine`] on the high current channel; none on a rig without one.
+    /// [`Calibration::ohm_fine`] on the high current channel; `None` on a rig without one.
     #[serde(default)]
     pub ohm_high: Option<Factor>,
     /// Factor of the supply range in which the calibration was made; the lines of the outputs and of the coil voltage

@@ -59,7 +59,7 @@ pub fn u_with_later_v(readings: usize, later: usize, reading_v: f64, emf_v: f64)
     (reading_v.powi(2) * (forward + reversed + own) + emf_v.powi(2) * own).sqrt()
 }
 
-/// Returns the resistance in milliohms from the drops of one or more closures, each free of offset and EMF.
+/// Returns the resistance in milliohms from the drops of closures, each free of offset and EMF; `None` without a drop.
 ///
 /// `mean_u_v` is the standard uncertainty of their mean at the terminal. The budget omits the scatter from closure to
 /// closure: the result is the mean of these closures.

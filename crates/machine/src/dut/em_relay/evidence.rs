@@ -20,7 +20,7 @@ pub const DOUBT: f64 = 0.03;
 /// Supply command, as a share of the nominal voltage, from which the coil counts as driven at nominal.
 const NOMINAL: f64 = 0.98;
 
-/// Returns the lower bound of `parameter` in its unit, for a coil of `nominal_v`; none when the curves prove nothing.
+/// Returns the lower bound of `parameter` in its unit, for a coil of `nominal_v`; `None` when the curves prove nothing.
 pub fn at_least(curves: &[Curve], parameter: Parameter, nominal_v: f64) -> Option<f64> {
     let proven = Bounds::of(curves, nominal_v);
     let ms = |us: i64| us as f64 / 1e3;

@@ -88,7 +88,7 @@ pub struct Predicted {
     pub volts: f64,
     /// Standard uncertainty, volts.
     pub u_v: f64,
-    /// Variance of the line at this part, as a multiple of the scatter about the line.
+    /// Variance of the line at this part, as a multiple of the residual variance about the line.
     pub spread: f64,
     /// True when the part lies among those that taught the model.
     pub alike: bool,

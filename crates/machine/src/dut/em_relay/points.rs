@@ -198,7 +198,7 @@ pub struct Points {
     pub track: Thermometer,
     /// Inputs of the board that one reading samples together.
     pub board: Arc<Word>,
-    /// Points that select the range of the supply; none on a rig with one range.
+    /// Points that select the range of the supply; `None` on a rig with one range.
     pub range: Option<RangeSelector>,
 }
 
@@ -265,12 +265,12 @@ impl Points {
         input
     }
 
-    /// Returns an analog input; none where the rig lacks it.
+    /// Returns an analog input; `None` where the rig lacks it.
     pub fn wired_analog(&self, point: AnalogIn) -> Option<AnalogInput> {
         self.analog[point.index()].map(|(input, _)| input)
     }
 
-    /// Returns the gain of an analog input, volts at the terminal per unit; none where the rig lacks it.
+    /// Returns the gain of an analog input, volts at the terminal per unit; `None` where the rig lacks it.
     pub fn gain(&self, point: AnalogIn) -> Option<f64> {
         self.analog[point.index()].map(|(_, gain)| gain)
     }

@@ -18,7 +18,7 @@ pub struct BoardInputs {
     pub compliance: bool,
     /// True when the hard-wired chain reports the probes up.
     pub probe_chain: bool,
-    /// Code of the supply range; none on a rig with one range.
+    /// Code of the supply range; `None` on a rig with one range.
     pub range: Option<u8>,
 }
 
@@ -81,7 +81,7 @@ impl Readings {
     }
 }
 
-/// Yields the samples of an analog input; none where the rig lacks it.
+/// Yields the samples of an analog input; yields nothing where the rig lacks the input.
 fn analog<'a>(
     read: &'a ByPoint,
     points: &Points,

@@ -64,7 +64,7 @@ const DROPS: usize = 8;
 /// Number of gate pulses: their sum is uncertain by one count, their mean by 1/25 of a count.
 const PULSES: u32 = 25;
 
-/// Returns the inputs that [`acts`] scans; none on a rig that lacks a point of the relay test.
+/// Returns the inputs that [`acts`] scans; empty on a rig that lacks a point of the relay test.
 pub fn inputs(wiring: &Wiring) -> Vec<AnalogInput> {
     let points = Points::resolve(wiring).ok();
     let inputs = points.map(|points| {

@@ -217,7 +217,8 @@ impl ReferenceRun {
         self.contact.mean().map_or(0.0, |Ohm(ohm)| ohm)
     }
 
-    /// Returns the mean of fine indication minus certificate over the parts so far, volts, for operate and release.
+    /// Returns the mean of fine indication minus certificate over the parts so far, volts, for operate and release;
+    /// `None` before the first part.
     pub fn fine_v(&self) -> Option<(f64, f64)> {
         let mean = |direction| self.mean(direction);
         (!self.shifts.is_empty()).then(|| (mean(Direction::Rising), mean(Direction::Falling)))

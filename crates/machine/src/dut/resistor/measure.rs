@@ -36,7 +36,7 @@ pub struct Device {
     channel: ChannelAccuracy,
     /// Number of enabled channels of the converter that reads the current.
     channels: u32,
-    /// Range of the supply and the points that select it; none on a rig with one range.
+    /// Range of the supply and the points that select it; `None` on a rig with one range.
     range: Option<(RangeSelector, SupplyRange)>,
 }
 

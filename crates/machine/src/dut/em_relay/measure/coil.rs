@@ -191,7 +191,8 @@ pub(super) fn conclude(
     None
 }
 
-/// Returns the resistance in series with `coil`, between supply and pins, from the calibrated input and supply.
+/// Returns the resistance in series with `coil`, between supply and pins, from the calibrated input and supply; `None`
+/// when a scan lacks the coil voltage.
 fn probe_contact(context: &Context, scans: &[CoilScan], coil: Ohm) -> Option<Ohm> {
     let at_pins = |scan: &CoilScan| {
         let Sample {

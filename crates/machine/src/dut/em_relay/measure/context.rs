@@ -177,7 +177,7 @@ impl Context {
         Scale::new(self.relay.part.nominal_v, factor)
     }
 
-    /// Returns the code of the range to select; none on a rig with one range.
+    /// Returns the code of the range to select; `None` on a rig with one range.
     pub fn range_code(&self) -> Option<u8> {
         let range = self.range.as_ref();
         range.filter(|it| it.is_selected()).map(|it| it.code)

@@ -13,7 +13,8 @@ use crate::dut::em_relay::timing::counts;
 use crate::gauge::budget::Reading;
 use units::{Celsius, Second, Volt};
 
-/// Returns the time for which gate 0 was open between the last two readings.
+/// Returns the time for which gate 0 was open between the last two readings, less the delay of the gate; `None` with
+/// fewer than two readings.
 pub(super) fn gate0(context: &Context, readings: &Readings) -> Option<Second> {
     let [.., before, after] = readings.gates.as_slice() else {
         return None;

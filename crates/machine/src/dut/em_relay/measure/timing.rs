@@ -208,8 +208,8 @@ pub(super) fn conclude_operate(
     None
 }
 
-/// Concludes a stage in which the contact did not close: the relay is late, or its contact does not move. The test
-/// measures the coil before it judges the part, because the coil may be the cause.
+/// Concludes a timed operation in which NO did not make in time: the relay is late, or a contact does not move. For a
+/// contact that does not move, returns the coil stage: the test measures the coil first, which may be the cause.
 fn not_made(readings: &Readings, state: &mut TestState) -> Option<Stage> {
     let TestState { plan, record, .. } = state;
     plan.unmoved = match readings.boards.last() {

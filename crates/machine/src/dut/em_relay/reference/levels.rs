@@ -24,7 +24,7 @@ const ALIKE: f64 = 0.1;
 pub(super) struct Levels {
     pub(super) low: Volt,
     pub(super) high: Volt,
-    /// Level at which the current channel of the recipe reads the reference coil best; none where that is `high`.
+    /// Level at which the current channel of the recipe reads the reference coil best; `None` if this is `high`.
     pub(super) current: Option<Volt>,
 }
 
