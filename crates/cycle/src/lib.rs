@@ -155,7 +155,7 @@ pub struct Cycle {
 }
 
 impl Cycle {
-    /// Takes over the lines; writes nothing before [`Cycle::run`].
+    /// Takes over the lines, one for each line of the wiring; writes nothing before [`Cycle::run`].
     pub fn new(
         wiring: Arc<Wiring>,
         pace: Pace,

@@ -219,7 +219,7 @@ impl Ledger {
         self.put(Place::Socket(socket), Content::Numbered(part));
     }
 
-    /// Removes the judged part that a person took out of a socket and put into its bin.
+    /// Removes the part that a person took out of a socket and put into its bin; panics unless the part is judged.
     pub fn unload_socket(&mut self, socket: u16) -> Part {
         let Content::Numbered(part) = self.take(Place::Socket(socket)) else {
             panic!("a part without a number in socket {socket}");
@@ -264,7 +264,8 @@ impl Ledger {
         self.hand_over(Place::Gripper, Place::Nest(nest));
     }
 
-    /// Moves the gripper's part to [`Place::Falling`], over `bin`; does nothing for an empty gripper.
+    /// Moves the gripper's part to [`Place::Falling`], over `bin`; does nothing for an empty gripper. Panics while
+    /// another part falls.
     pub fn drop_over(&mut self, bin: Bin, since: RigTime, beam_before: u32) {
         assert!(self.fall.is_none(), "two parts fall at once");
         if !self.holds(Place::Gripper) {
@@ -286,7 +287,7 @@ impl Ledger {
         self.hand_over(Place::Falling, Place::Gripper);
     }
 
-    /// Removes the falling part, if any, after its beam has counted it.
+    /// Removes the falling part, if there is one, because its beam has counted it; the part is then out of the machine.
     pub fn land(&mut self) -> Option<Part> {
         if !self.holds(Place::Falling) {
             return None;

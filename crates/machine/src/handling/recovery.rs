@@ -2,9 +2,9 @@
 //!
 //! 1. Resets the drive of the axis and switches its servo on, before any motion.
 //! 2. Raises z, before anything else moves near the nest.
-//! 3. Compares the ledger with the sensors: parts are where the sensors show them. A part unknown to the ledger is
-//!    *found*, a part that no sensor shows is *lost*; both are reported. So is a missing part of those that an earlier
-//!    run [left inside](super::inside).
+//! 3. Compares the ledger with the sensors, which decide where parts are. Reports a part unknown to the ledger as
+//!    *found*, a part that no sensor shows as *lost*, and a missing part that an earlier run
+//!    [left inside](super::inside) as *gone*.
 //! 4. Brings every other actuator to rest, one at a time. A motion that the guard refuses waits until the others are
 //!    home; an alarm follows when only refused motions remain. Fingers that hold a part stay closed.
 //! 5. The ordinary sequence (feed, nest without a test, sort) then discharges the parts inside to retest.

@@ -165,7 +165,7 @@ impl SupplyDemand {
 }
 
 impl Wiring {
-    /// Returns this wiring with the gains that hold in `range`.
+    /// Returns this wiring with the gains that hold in `range`; panics if it has those of a range already.
     pub fn in_range(&self, range: &SupplyRange) -> Self {
         assert!(self.supply_range.is_none(), "gains of one range already");
         let mut ranged = self.clone();

@@ -13,7 +13,8 @@ use units::{Ampere, Volt};
 
 /// Lowest voltage at the terminal of a current channel that a test can distinguish from no current.
 const LEAST_CURRENT_V: f64 = 0.3;
-/// Difference of a good coil from its nominal resistance, as a share of it, where the recipe sets no limit.
+/// Assumed difference of a good coil from its nominal resistance, as a share of the latter, where the recipe sets no
+/// limit.
 const USUAL_SPREAD: f64 = 0.1;
 
 /// Returns the demand of a test on the supply. Voltage: the nominal voltage or the top of the coarse ramp, whichever is

@@ -110,8 +110,8 @@ impl Expected {
         }
     }
 
-    /// Returns an interval of the same width around `end`, where the ramp had stopped before the event: the gate time
-    /// after that shows time at rest, not volts.
+    /// Returns an interval of the same width around `end`, at which the ramp stopped before the event: the gate time
+    /// after the stop shows a wait, not volts.
     pub fn around(&self, end: Volt) -> Self {
         Self {
             centre: end,
