@@ -21,7 +21,7 @@ pub struct ModuleSpec {
     pub settings: Table,
 }
 
-/// The world behind the terminals; each method takes the identifier of a module in `config/rig.toml`.
+/// The world behind the terminals; it knows modules by their identifiers in `config/rig.toml`.
 pub trait Plant {
     /// Brings the world to `t_us`; all other methods refer to that instant.
     fn advance(&mut self, t_us: u64);

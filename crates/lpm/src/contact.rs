@@ -4,7 +4,6 @@
 //! ([`meeting`](super::meeting)). A pair that needs a search (tilted pieces, triangles, turns) goes onto a list, once.
 //! The search takes the pairs on the list in the order in which their boxes meet: a contact shortens the path for all
 //! later pairs, so this order finds the first contact soonest.
-//! pairs, so the first contact is found soonest this way.
 
 use super::candidates::Candidates;
 use super::distance::Gap;

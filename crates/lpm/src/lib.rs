@@ -62,6 +62,7 @@
 //!    (`piece::NOISE` times the sum of all magnitudes that entered). The way in which the plane was found does not
 //!    matter.
 //! 3. Along a translation the separation by a fixed plane is linear; along a turn `turning` bounds it from below. A
+//!    stretch ends where this separation reaches the margin, and stretches follow each other without a gap.
 //! 4. When the broad phase drops a pair, the boxes of its pieces never overlap during the move. These boxes are rounded
 //!    outward by the same error bound and then to single precision. Every place that the broad phase computes along the
 //!    path carries `space::sweep::SLACK_MM`, and rounding heights to layers keeps their order.

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// Meaning of a fault's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FaultKind {
-    /// Start in seconds of rig time; the fault ends after a fixed time.
+    /// Start in seconds of rig time; the fault ends by itself.
     Timed,
     /// Number of a lot part in the order of leaving the magazine, from 1; the fault strikes once.
     OfPart,

@@ -1,5 +1,6 @@
 //! Boxes in single precision, stored axis by axis (`low` of x of every box, then of y, ...), so that one instruction
 //! compares four of them.
+//!
 //! Bounds are always rounded outward. Single precision makes boxes larger (by 6e-5 mm at 1 m, 0.06 mm at 1 km) but
 //! never unsafe: a rounded box contains the true one, and the exact phase removes pairs that overlap only by rounding.
 

@@ -1,10 +1,10 @@
 //! The cases file: parameters of a relay, and the excitations of its coil.
 //!
 //! ```text
-//! parameters         SI units; a name left out is that of the default relay; T in Celsius
-//! parameters         SI units, temperatures in Celsius; a missing name has the value of the default relay
+//! parameters         SI units, T in Celsius; a missing parameter has the value of the default relay
+//! mu0                optional
 //! cases[].name
-//! cases[].name
+//!        .changed    parameters of this case that differ
 //!        .s0         [flux linkage, x, v, y, w] at 0
 //!        .initial    without s0: "rest", or "sealed12" for a relay that holds with 12 V
 //!        .waveform   [[s, V], ...], linear between, held after; two points at one instant are a step

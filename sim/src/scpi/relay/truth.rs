@@ -121,7 +121,7 @@ pub struct Truth {
     pub on_ohm: f64,
     /// Threshold voltage of the triac for the positive and the negative half cycle, volts.
     pub knee_v: [f64; 2],
-    /// Latching current: the load current that must flow for the triac to stay on after firing, amperes.
+    /// Latching current: the load current that must flow for the triac to fire and stay on, amperes.
     pub latching_a: f64,
     /// Holding current: the load current below which the triac turns off, amperes.
     pub holding_a: f64,
