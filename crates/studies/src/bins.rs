@@ -9,8 +9,8 @@ use super::order::Order;
 use super::output::Report;
 use std::collections::BTreeMap;
 
-/// Number of good parts in one lot of the figure `lots of 100 good parts without a reject`; the rig's own lots may be
-/// longer or shorter.
+/// Number of good parts in one lot of the figure `lots of 100 good parts without a reject`, whatever the size of the
+/// lots that the study runs.
 const GOOD_PARTS_OF_A_LOT: usize = 100;
 
 /// Returns the bin to which a part with this defect belongs; `None` for an unknown defect.

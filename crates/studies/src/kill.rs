@@ -28,7 +28,7 @@ use tempfile::TempDir;
 const LONGEST_MS: u64 = 1_500;
 /// One round in this number counts the time to the kill from the start of the process.
 const FROM_START: u64 = 3;
-/// Longest wait for the first part of a lot; after it, the study kills the lot without a part.
+/// Longest wait for the first part of a lot; after it, the study kills the lot all the same.
 const FIRST_PART_TIMEOUT: Duration = Duration::from_secs(30);
 /// Interval at which the study polls for the first part.
 const LOOK: Duration = Duration::from_millis(5);

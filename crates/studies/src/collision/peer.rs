@@ -1,4 +1,4 @@
-//! The collision library parry3d in single and double precision, asked by one shape cast for a whole move.
+//! The collision library parry3d in single and double precision, queried with one shape cast per move.
 //!
 //! Scene and mover are one compound each. A move of length zero uses an intersection test, because the shape cast
 //! reports no contact for it. The axis of a parry3d cylinder is y: this module rotates it to z.

@@ -36,7 +36,7 @@ use tempfile::TempDir;
 use tracing::subscriber::{NoSubscriber, with_default};
 use units::Span;
 
-/// Greatest number of lives after the faults; one of them must complete its lot. The first may only discharge parts
+/// Greatest number of lives after the faults; one of them must complete its lot. The first may have to discharge parts
 /// left inside.
 const CALM: u64 = 3;
 /// Number of parts in the lot of a life after the faults.

@@ -113,7 +113,7 @@ impl CoilSupply {
         self.stuck = true;
     }
 
-    /// Records an overdrive at its begin; `on_coil` means that the drive reaches a coil.
+    /// Records an overdrive when it begins; `on_coil` means that the drive reaches a coil.
     pub fn watch(&mut self, now_us: f64, commands: Commands, on_coil: bool) {
         // The drive may outlast its command while the contact source switches off first: that does not count as an
         // overdrive.

@@ -5,8 +5,8 @@
 //! all. A pair that lists actuators may touch only through these.
 //!
 //! Between two events of the mechanism every motion is known. [`Bodies::watch`] checks such an interval for the pairs
-//! with a moved body whose swept boxes meet, in steps of [`STEP_MM`] of their relative travel. Without the feature
-//! `bodies`, `no_bodies.rs` replaces this module.
+//! that move relative to each other and whose swept boxes meet, in steps of [`STEP_MM`] of their relative travel.
+//! Without the feature `bodies`, `no_bodies.rs` replaces this module.
 
 mod body;
 mod pair_limits;

@@ -2,8 +2,8 @@
 //!
 //! The motion selects one of two levels of detail:
 //!
-//! - *held*: the flux presses the armature on backstop or seat. The motion integrates only the flux; travel and leaf
-//!   follow it in equilibrium. A constant flux costs nothing.
+//! - *held*: the armature presses on backstop or seat. The motion integrates only the flux; travel and leaf follow it
+//!   in equilibrium. A constant flux costs nothing.
 //! - *moving*: the motion integrates all five states of [`super::lumped`], from the instant at which the force on the
 //!   stop falls to [`LEAST_PUSH_N`] until the bounce has died out.
 //!

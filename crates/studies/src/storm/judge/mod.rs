@@ -2,7 +2,7 @@
 //!
 //! | file | rules |
 //! |---|---|
-//! | `bodies` | every body lies in the bin that its row names, or an alarm declares it lost; row and body match one to one |
+//! | `bodies` | every body lies in the bin that its row names, or an alarm declares it lost; every row has a body, no body two rows |
 //! | `values` | every value belongs to the body of its row; no defect in the pass bin, no good part in the bin of a defect |
 //! | `motion` | no driven motion begins after a stop, while a safety input is open, or without a controller |
 //! | `endings` | every life ends, an alarm names every trouble, and production resumes after the faults |

@@ -175,7 +175,7 @@ impl Solver {
         }
     }
 
-    /// Shortens the step to the turning point of an overlap that comes close to a touch without crossing it.
+    /// Shortens the step to the turning point of an overlap that comes close to a touch or passes it twice.
     fn cut_at_graze(
         &mut self,
         model: &Model,
